@@ -41,7 +41,7 @@ def cause_of(error: BaseException) -> str:
     the last line. For a ZeroDivisionError or OverflowError, a sentence says that a number of the rod
     overflows or underflows, and contains this line in brackets."""
     cause = error.__cause__ or error
-    text = (str(cause) or type(cause).__name__).splitlines()[-1]
+    message = (str(cause) or type(cause).__name__).splitlines()[-1]
     if isinstance(cause, ZeroDivisionError | OverflowError):
-        return f"a number of this rod overflows or underflows ({text})"
-    return text
+        return f"a number of this rod overflows or underflows ({message})"
+    return message

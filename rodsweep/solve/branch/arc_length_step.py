@@ -111,7 +111,7 @@ class BranchCycle:
 
     @cached_property
     def multipliers_over_solved_part(self) -> Complex:
-        """Nontrivial multipliers over the solved time interval, (rank - 1,). Asymmetric cycle: eigenvalues of
+        """Nontrivial multipliers over the solved part of the period, (m,). Asymmetric cycle: eigenvalues of
         the map over the period. Symmetric cycle: eigenvalues of the map over half a period, composed with the
         reflection."""
         values = self.cycle.converged_orbit.matrix.multipliers_over_solved_part
@@ -136,22 +136,22 @@ class BranchCycle:
 
     def _cubic_coefficients(self, previous: PreviousCycle) -> Array:
         """Coefficients, (3, N + 1), of the predicting cubic: factors of the arc length, of its square and of
-        its cube; the last two are 0 if `previous` is not behind this cycle. previous: previous cycle, on the
-        cubic."""
+        its cube; the last two are 0 if `previous` is not behind this cycle. previous: the previous cycle of
+        the branch."""
         name = self.scale.parameter_name
         mesh = mesh_of(self.orbit)
-        last = mesh.interpolated_orbit(previous.orbit)
-        coordinate = last.form.rod.coordinate(name)
+        orbit = mesh.interpolated_orbit(previous.orbit)
+        coordinate = orbit.form.rod.coordinate(name)
         # Both tangents on one mesh: the cubic combines their values node by node.
         slope = np.append(
             interpolated_change(previous.orbit, previous.tangent[:-1], mesh), previous.tangent[-1]
         )
-        step = float(self.unit_tangent @ (self.scale.components(self.orbit) - self.scale.components(last)))
-        rate = float(self.unit_tangent @ self.scale.directional_derivative(last, slope))
+        step = float(self.unit_tangent @ (self.scale.components(self.orbit) - self.scale.components(orbit)))
+        rate = float(self.unit_tangent @ self.scale.directional_derivative(orbit, slope))
         # Without progress along the tangent the two cycles do not define a cubic: the tangent alone predicts.
         if not (step > 0 and rate > 0):
             return np.array([self.tangent, 0 * slope, 0 * slope])
-        difference = np.append(last.values - self.orbit.values, coordinate - self.parameter_coordinate)
+        difference = np.append(orbit.values - self.orbit.values, coordinate - self.parameter_coordinate)
         # Hermite interpolation at the lengths -step and 0, with `slope` rescaled to the same length unit.
         A = (difference + step * self.tangent) * step**-2
         B = (self.tangent - slope / rate) * (0.5 / step)

@@ -28,7 +28,8 @@ from .start.hopf_point import hopf_as_special_point
 
 
 def follow_branch(hopf_index: int, limits: BranchLimits) -> BranchCurve:
-    """The branch from the Hopf point `limits.hopfs[hopf_index]`; the last special point stores a failure."""
+    """The branch from the Hopf point `limits.hopfs[hopf_index]`; a failure is stored in its last special
+    point."""
     hopf = limits.hopfs[hopf_index]
     curve = BranchCurve(start_hopf=hopf_index)
     curve.add_special_point(hopf_as_special_point(hopf))
@@ -40,7 +41,7 @@ def follow_branch(hopf_index: int, limits: BranchLimits) -> BranchCurve:
 def follow_asymmetric_branch(breaking_index: int, name: str, limits: BranchLimits) -> BranchCurve:
     """The branch of asymmetric cycles along the parameter `name` from the symmetry breaking
     `limits.breakings[breaking_index]`, solved at least to the accuracy `max_accuracy` of asymmetric cycles; a
-    failure is stored in the last special point."""
+    failure is stored in its last special point."""
     limits = replace(limits, accuracy=min(limits.accuracy, ASYMMETRIC_START_SETTINGS.max_accuracy))
     breaking = limits.breakings[breaking_index]
     curve = BranchCurve(start_hopf=-1, start_breaking=breaking)
@@ -141,8 +142,8 @@ def _end_without_cycle(curve: BranchCurve, reason: BranchEndReason, message: str
 
 
 def index_of_passed_range_end(point: BranchCycle, range_ends: tuple[float, float]) -> int:
-    """Index of the range end that a cycle has passed: 0 below the range, 1 above, -1 within the range.
-    range_ends: smallest and largest coordinate of the range."""
+    """Index of the end of the range beyond which a cycle lies: 0 below the range, 1 above, -1 within the
+    range. range_ends: smallest and largest coordinate of the range."""
     low, high = range_ends
     if point.parameter_coordinate < low:
         return 0
@@ -204,7 +205,7 @@ def _end_or_shorter_step(
 
 def range_end_point(point: BranchCycle, reason: BranchEndReason) -> SpecialPoint:
     """The special point for the end of a branch at its last cycle `point`, at an end of the range. reason:
-    reason for this end of the range."""
+    why the branch ends there."""
     special = branch_end_point(point, reason)
     return replace(special, error=BRANCH_END_SETTINGS.range_end_error * abs(special.parameter_value))
 
@@ -221,16 +222,16 @@ def _add_special_points(
         )
     if limits.locates_special_points:
         cycle_at = partial(cycle_at_length, accuracy=limits.accuracy)
-        special_points, explained = special_points_between(start, end, cycle_at, limits.accuracy)
+        special_points, are_complete = special_points_between(start, end, cycle_at, limits.accuracy)
     else:
         kinds = fold_and_breaking_between(start, end)
         special_points = [special_point_between(kind, start, end, limits.accuracy) for kind in kinds]
-        explained = True
+        are_complete = True
     closing_index = curve.index_of_first_special_point(special_points)
     if closing_index < 0:
-        curve.add_special_points(special_points, explained)
+        curve.add_special_points(special_points, are_complete)
         return None
-    curve.add_special_points(special_points[:closing_index], explained)
+    curve.add_special_points(special_points[:closing_index], are_complete)
     return BranchEnd(special_points[closing_index], complete=True, closed=True)
 
 
@@ -238,6 +239,6 @@ def _step_has_unresolved_corner(start: BranchCycle, end: BranchCycle) -> bool:
     """Whether the largest tip y has a corner on the last step (a different maximum of y(t) becomes the
     largest), and the step is too long for a figure, which locates a corner from two cycles before and two
     cycles after the corner."""
-    time_difference = abs(end.cycle.path.time_of_largest_y - start.cycle.path.time_of_largest_y)
+    time_difference = abs(end.cycle.motion.time_of_largest_y - start.cycle.motion.time_of_largest_y)
     is_other_peak = min(time_difference, 1 - time_difference) > BRANCH_END_SETTINGS.max_peak_shift_fraction
     return is_other_peak and arc_length_between(start, end) > BRANCH_END_SETTINGS.max_step_with_corner

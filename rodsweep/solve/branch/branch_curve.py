@@ -213,13 +213,13 @@ class BranchCurve:
     def joined_with(self, forward: "BranchCurve") -> "BranchCurve":
         """The branch of this branch, reversed, and the branch `forward`; both start at the same cycle, in
         opposite directions."""
-        count = len(self.points)
+        cycle_count = len(self.points)
         backward_points = [
-            replace(point, index_of_cycle_before=count - 2 - point.index_of_cycle_before)
+            replace(point, index_of_cycle_before=cycle_count - 2 - point.index_of_cycle_before)
             for point in reversed(self.special_points)
         ]
         forward_points = [
-            replace(point, index_of_cycle_before=point.index_of_cycle_before + count - 1)
+            replace(point, index_of_cycle_before=point.index_of_cycle_before + cycle_count - 1)
             for point in forward.special_points
         ]
         return BranchCurve(

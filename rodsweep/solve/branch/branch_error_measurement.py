@@ -43,19 +43,19 @@ def measured_branch_calibration(
     condition = BorderCondition.at_arc_length(derivatives.scale, border, orbit)
     rough = CycleMotion(orbit)
     multipliers = multipliers_and_trivial_error(solved)[0]
-    parts = np.empty((2, MULTIPLIER_INDEX + 2))
-    for part, target in zip(parts, target_meshes, strict=True):
+    differences = np.empty((2, MULTIPLIER_INDEX + 2))
+    for difference, target in zip(differences, target_meshes, strict=True):
         fine_orbit = condition.solve_on_mesh(
             target,
             solved,
             branch_newton_tolerance(accuracy),
             FINER_MESH_SETTINGS.max_matrix_distance,
         )
-        part[:] = _differences_between_meshes(rough, multipliers, fine_orbit, derivatives)
-    # The mesh that is finer in time removes only the fraction `share` of the error in time.
-    parts[1] /= fraction
-    calibration = calibration_of(mesh, parts[0, :-1], parts[1, :-1], orbit, previous_calibration)
-    return BranchCalibration(calibration, parts[:, -1], relative_tip_y_sensitivity(rough, derivatives))
+        difference[:] = _differences_between_meshes(rough, multipliers, fine_orbit, derivatives)
+    # The mesh that is finer in time removes only a fraction of the error in time.
+    differences[1] /= fraction
+    calibration = calibration_of(mesh, differences[0, :-1], differences[1, :-1], orbit, previous_calibration)
+    return BranchCalibration(calibration, differences[:, -1], relative_tip_y_sensitivity(rough, derivatives))
 
 
 def _border_of_comparison(orbit: Orbit, derivatives: BranchDerivatives) -> Array:
@@ -74,43 +74,45 @@ def _differences_between_meshes(
     rough: CycleMotion, multipliers: Complex, fine: ConvergedOrbit, derivatives: BranchDerivatives
 ) -> Array:
     """Differences, (6,), between a cycle on a rough mesh and the same cycle on a fine mesh. The first five,
-    at the parameter value of the rough cycle, are `path_differences` and the difference of the multipliers.
-    The last is the parameter difference at equal deflection. rough, multipliers: path and nontrivial
-    multipliers, (rank - 1,), of the rough cycle. derivatives: derivatives of the branch at this cycle."""
+    at the parameter value of the rough cycle, are `path_differences` and the difference of the largest
+    multipliers; the last is the parameter difference at equal deflection. rough: motion of the rough cycle.
+    multipliers: its nontrivial multipliers, (m,). derivatives: derivatives of the branch at this cycle."""
     orbit = rough.orbit
     scale = derivatives.scale
     deflection, _, parameter_change = scale.components(orbit) - scale.components(fine.orbit)
     length = derivatives.arc_length_for_parameter_change(parameter_change)
     target = mesh_of(fine.orbit)
-    parameter_name = np.append(
-        interpolated_change(orbit, derivatives.tangent[:-1], target), derivatives.tangent[-1]
-    )
+    tangent = np.append(interpolated_change(orbit, derivatives.tangent[:-1], target), derivatives.tangent[-1])
     # The fine cycle is moved along the branch to the parameter value of the rough cycle.
-    slid = moved_orbit(fine.orbit, scale.parameter_name, length * parameter_name)
-    change = largest_multiplier_difference(multipliers, multipliers_and_trivial_error(fine)[0]) + abs(
-        length * derivatives.multiplier_rate
-    )
-    by_deflection = abs(derivatives.unit_tangent[0])
-    by_parameter = abs(derivatives.parameter_rate)
+    moved_fine = moved_orbit(fine.orbit, scale.parameter_name, length * tangent)
+    multiplier_difference = largest_multiplier_difference(
+        multipliers, multipliers_and_trivial_error(fine)[0]
+    ) + abs(length * derivatives.multiplier_rate)
+    deflection_rate = abs(derivatives.unit_tangent[0])
+    parameter_rate = abs(derivatives.parameter_rate)
     # Distance of the two branches across their common tangent, in (deflection, parameter).
-    apart = abs(parameter_change * derivatives.unit_tangent[0] - deflection * derivatives.parameter_rate)
-    own_difference = apart / max(
-        by_deflection, BRANCH_ERROR_SETTINGS.min_deflection_rate_ratio * by_parameter
+    branch_distance = abs(
+        parameter_change * derivatives.unit_tangent[0] - deflection * derivatives.parameter_rate
     )
-    return np.array([*path_differences(rough, CycleMotion(slid)), change, own_difference])
+    parameter_difference = branch_distance / max(
+        deflection_rate, BRANCH_ERROR_SETTINGS.min_deflection_rate_ratio * parameter_rate
+    )
+    return np.array(
+        [*path_differences(rough, CycleMotion(moved_fine)), multiplier_difference, parameter_difference]
+    )
 
 
-def relative_tip_y_sensitivity(path: CycleMotion, derivatives: BranchDerivatives) -> float:
-    """Sensitivity |(p/y) dy/dp| of the largest tip y to the parameter p along a branch at the cycle `path`.
+def relative_tip_y_sensitivity(motion: CycleMotion, derivatives: BranchDerivatives) -> float:
+    """Sensitivity |(p/y) dy/dp| of the largest tip y to the parameter p along a branch at the cycle `motion`.
     derivatives: derivatives of the branch at this cycle."""
-    orbit: Orbit = path.orbit
+    orbit: Orbit = motion.orbit
     name = derivatives.scale.parameter_name
     step = BRANCH_ERROR_SETTINGS.sensitivity_step * derivatives.tangent
     if 0 <= orbit.form.rod.coordinate(name) < -step[-1]:  # no rod has a negative coordinate
         step = -step
-    moved_path = CycleMotion(moved_orbit(orbit, name, step))
-    y = path.extrema["tip_y_max"]
-    other = moved_path.extrema["tip_y_max"]
-    return abs((other - y) / (BRANCH_ERROR_SETTINGS.sensitivity_step * y)) / max(
+    moved_motion = CycleMotion(moved_orbit(orbit, name, step))
+    y = motion.extrema["tip_y_max"]
+    moved_y = moved_motion.extrema["tip_y_max"]
+    return abs((moved_y - y) / (BRANCH_ERROR_SETTINGS.sensitivity_step * y)) / max(
         abs(derivatives.parameter_rate), EXPONENT_SETTINGS.min_divisor
     )

@@ -135,12 +135,13 @@ class BranchCalibration:
         return self._limiting_errors.errors(accuracy).largest_weighted_error
 
     def cheapest_mesh(self, accuracy: float) -> OrbitMesh:
-        """The cheapest mesh on which `largest_weighted_error` is predicted within the accuracy; if there is
-        none among the allowed meshes, a mesh one step finer than these."""
+        """The cheapest mesh on which `largest_weighted_error` is predicted within the accuracy; the next
+        finer mesh if no such mesh is allowed."""
         return cheapest_mesh(self._limiting_errors, accuracy)
 
     def cheapest_mesh_for_parameter(self, accuracy: float) -> OrbitMesh:
-        """Like `cheapest_mesh`, for a relative accuracy of the parameter at equal deflection."""
+        """The cheapest mesh on which the parameter at equal deflection is predicted to have a relative
+        accuracy."""
         return cheapest_mesh(self._parameter_errors_only, accuracy)
 
     @cached_property
@@ -149,22 +150,26 @@ class BranchCalibration:
         `largest_weighted_error`, and the parameter error."""
         # Errors at equal p are proportional to the slope dy/dp; a steep slope is no defect of the mesh.
         reduction = max(1.0, self.sensitivity / BRANCH_ERROR_SETTINGS.max_sensitivity)
-        parts = [
+        space_and_time_errors = [
             self.at_equal_parameter.space_errors / reduction,
             self.at_equal_parameter.time_errors / reduction,
         ]
-        for part, parameter_error in zip(parts, self.parameter_errors, strict=True):
+        for part, parameter_error in zip(space_and_time_errors, self.parameter_errors, strict=True):
             part[PERIOD_INDEX] = max(part[PERIOD_INDEX], parameter_error)
-        return replace(self.at_equal_parameter, space_errors=parts[0], time_errors=parts[1])
+        return replace(
+            self.at_equal_parameter,
+            space_errors=space_and_time_errors[0],
+            time_errors=space_and_time_errors[1],
+        )
 
     @cached_property
     def _parameter_errors_only(self) -> Calibration:
         """A calibration in which the errors of period, largest y, extrema and path equal the parameter error
         at equal deflection, in space and in time; the error of the multiplier is unchanged."""
-        numbers = [PERIOD_INDEX, Y_INDEX, EXTREMUM_INDEX, PATH_INDEX]
+        indices = [PERIOD_INDEX, Y_INDEX, EXTREMUM_INDEX, PATH_INDEX]
         parts = [self.at_equal_parameter.space_errors.copy(), self.at_equal_parameter.time_errors.copy()]
         for part, parameter_error in zip(parts, self.parameter_errors, strict=True):
-            part[numbers] = parameter_error
+            part[indices] = parameter_error
         return replace(self.at_equal_parameter, space_errors=parts[0], time_errors=parts[1])
 
     def grown(self, growth: Array) -> "BranchCalibration":
@@ -182,7 +187,7 @@ class BranchCalibration:
         errors of the second measured cycle. fraction: fraction of the arc length from the first measured
         cycle to the second at which the interpolated cycle lies. sensitivity: |(p/y) dy/dp| of the
         interpolated cycle."""
-        mean = [
+        mean_errors = [
             _log_interpolated_errors(own_errors, other_errors, fraction)
             for own_errors, other_errors in (
                 (self.at_equal_parameter.space_errors, other.at_equal_parameter.space_errors),
@@ -191,15 +196,18 @@ class BranchCalibration:
             )
         ]
         calibration = replace(
-            self.at_equal_parameter, space_errors=mean[0], time_errors=mean[1], error_growth=np.ones(2)
+            self.at_equal_parameter,
+            space_errors=mean_errors[0],
+            time_errors=mean_errors[1],
+            error_growth=np.ones(2),
         )
-        return BranchCalibration(calibration, mean[2], sensitivity)
+        return BranchCalibration(calibration, mean_errors[2], sensitivity)
 
 
 def _log_interpolated_errors(first_errors: Array, second_errors: Array, fraction: float) -> Array:
     """Geometric interpolation between the errors `first_errors` and `second_errors`, arrays of equal shape,
-    at the fraction `fraction` of the distance from `first_errors`; times `interpolation_factor`, but at most
-    the larger of the two errors."""
+    at the fraction `fraction` of the distance from the first to the second; multiplied by
+    `interpolation_factor`, but not above the larger of the two errors."""
     # Errors of a mesh change by factors along a branch, so their logarithms are interpolated.
     logarithms = np.log(np.maximum([first_errors, second_errors], BRANCH_ERROR_SETTINGS.min_error))
     means = np.exp(logarithms[0] + fraction * (logarithms[1] - logarithms[0]))

@@ -85,9 +85,9 @@ def with_measured_errors(point: BranchCycle, accuracy: float) -> BranchCycle:
 def with_calibration(point: BranchCycle, calibration: BranchCalibration, accuracy: float) -> BranchCycle:
     """The cycle `point`, solved to a relative accuracy, with the errors of `calibration`, which was measured
     or interpolated at this cycle. In the result the number of unmeasured steps is 0."""
-    present = point.cycle
+    cycle_before = point.cycle
     cycle = cycle_with_calibrated_errors(
-        calibration.at_equal_parameter, present.converged_orbit, accuracy, present.path
+        calibration.at_equal_parameter, cycle_before.converged_orbit, accuracy, cycle_before.motion
     )
     return replace(
         point, cycle=cycle, calibration=calibration, steps_since_measured=0, arc_since_measured=0.0
@@ -114,7 +114,7 @@ def solve_on_sufficient_mesh(
             raise mesh_limit_error()
         point = solved_on_mesh(point, target, condition, accuracy)
     raise MeshLimitReached(
-        f"none of {BRANCH_MESH_SETTINGS.max_meshes} finer and finer meshes reaches the requested accuracy"
+        f"none of {BRANCH_MESH_SETTINGS.max_meshes} successively finer meshes reaches the requested accuracy"
     )
 
 
@@ -164,7 +164,7 @@ def with_errors_within_accuracy(
         for point in between
     ]
     growth = expected_error_growth(measured, points)
-    # Only after the interpolation, because the interpolated errors belong to the old mesh.
+    # Solved again only after the interpolation, because the interpolated errors belong to the old mesh.
     end = solve_on_sufficient_mesh(end, accuracy, condition)
     end = replace(end, next_mesh=mesh_ahead(end, growth, accuracy))
     solved_again = [
@@ -183,7 +183,7 @@ def _cycle_on_mesh_of(end: BranchCycle, point: BranchCycle, accuracy: float) -> 
     if mesh_of(end.orbit) == mesh_of(point.orbit):
         return solve_on_sufficient_mesh(replace(point, steps_since_measured=1), accuracy)
     solved = solved_on_mesh(point, mesh_of(end.orbit), point.arc_length_condition(0.0), accuracy)
-    # With the fraction 1 the errors are those of `end`, because the cycle now has the mesh of `end`.
+    # With the fraction 1 the errors are the errors of `end`, because the cycle now has the mesh of `end`.
     estimated = _with_interpolated_errors(end, solved, end, 1.0, accuracy)
     is_accurate = estimated.calibration.largest_weighted_error(accuracy) <= accuracy
     return estimated if is_accurate else solve_on_sufficient_mesh(solved, accuracy)
@@ -214,6 +214,6 @@ def _with_interpolated_errors(
     if is_slow or float(error_growth) > BRANCH_MESH_SETTINGS.max_tail_growth:
         return with_measured_errors(point, accuracy)
     calibration = start.calibration.interpolate(
-        end.calibration, fraction, relative_tip_y_sensitivity(point.cycle.path, point.derivatives)
+        end.calibration, fraction, relative_tip_y_sensitivity(point.cycle.motion, point.derivatives)
     )
     return with_calibration(point, calibration, accuracy)

@@ -9,10 +9,10 @@ WORK_UNIT = 1e9
 
 @dataclass(frozen=True, slots=True)
 class BranchRequest:
-    """Request, the same for every rod. along, start, stop: name and range of the continuation parameter.
-    accuracy: relative accuracy of the cycles. certify: whether to prove that no Hopf point is missing.
-    cycles, special: maximum numbers of stored cycles and special points. work: largest work on the branches
-    of a rod, in `WORK_UNIT`; None: no limit."""
+    """Request for the branches of every rod. along, start, stop: name and range of the continuation
+    parameter. accuracy: relative accuracy of the cycles. certify: whether to prove that no Hopf point is
+    missing. cycles, special: maximum numbers of stored cycles and special points. work: limit of the work on
+    the branches of a rod, in `WORK_UNIT`; None: no limit."""
 
     along: str
     start: float

@@ -1,6 +1,6 @@
-"""All branches of a rod: from Hopf points, from symmetry breakings, and through known special points that no
-Hopf point leads to; and those that enter the range from beyond. A branch is followed only once, also if it
-has two starting points."""
+"""All branches of a rod: from Hopf points, from symmetry breakings, through known special points to which no
+Hopf point leads, and branches that enter the range from beyond. A branch with two starting points is followed
+only once."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
@@ -22,7 +22,7 @@ from .symmetry_breaking import SymmetryBreaking, symmetry_breakings_in
 
 @dataclass(slots=True, eq=False)
 class BranchSearch:
-    """Search for the branches of a rod along the parameter `name`. limits: limits of all branches; its
+    """Search for the branches of a rod along the parameter `name`. limits: limits of all branches; their
     `max_cycles` is the maximum number of cycles on all branches together."""
 
     limits: BranchLimits
@@ -42,8 +42,8 @@ class BranchSearch:
     @property
     def followed_range(self) -> tuple[float, float]:
         """Smallest and largest value of the parameter up to which branches are followed."""
-        reached = [*self.limits.coordinate_range, *(region.followed_to for region in self.regions)]
-        values = [PARAMETERS[self.name].value(coordinate) for coordinate in reached]
+        coordinates = [*self.limits.coordinate_range, *(region.followed_to for region in self.regions)]
+        values = [PARAMETERS[self.name].value(coordinate) for coordinate in coordinates]
         return min(values), max(values)
 
     @property
@@ -70,7 +70,7 @@ class BranchSearch:
         self.follow_from_symmetry_breakings()
 
     def follow_into_range(self) -> None:
-        """Follows branches beyond the range, in `regions`, and those that enter the range from there."""
+        """Follows branches beyond the range, in `regions`, and branches that enter the range from there."""
         for region in self.regions:
             region.begin()
         self.follow_beyond()
@@ -96,17 +96,18 @@ class BranchSearch:
 
     def follow_from_hopf_points(self) -> None:
         """Follows the branches from all Hopf points; a branch between two Hopf points only once."""
-        count = len(self.limits.hopfs)
-        fractions = fractions_before_branches(
+        hopf_count = len(self.limits.hopfs)
+        progress_fractions = fractions_before_branches(
             [hopf.parameter_coordinate for hopf in self.limits.hopfs], self.limits.coordinate_range
         )
-        for number in range(count):
-            if any(curve.end_hopf == number for curve in self.curves):
+        for hopf_index in range(hopf_count):
+            if any(curve.end_hopf == hopf_index for curve in self.curves):
                 continue
             with solve_part(
-                f"branch from Hopf point {number + 1} of {count}", (fractions[number], fractions[number + 1])
+                f"branch from Hopf point {hopf_index + 1} of {hopf_count}",
+                (progress_fractions[hopf_index], progress_fractions[hopf_index + 1]),
             ):
-                self.curves.append(follow_branch(number, self._limits_left()))
+                self.curves.append(follow_branch(hopf_index, self._limits_left()))
 
     def follow_from_symmetry_breakings(self) -> None:
         """Follows the branches of asymmetric cycles from all symmetry breakings on the branches so far; a
@@ -199,10 +200,10 @@ class BranchSearch:
                 self._follow_entering(entry, region)
 
     def _follow_detached_within_range(self, start: SpecialPoint) -> None:
-        """Appends the branch through `start`, unless it is a branch that was followed before: the crossing is
-        then an artefact of the mesh of its curve, as beyond the end of a curve of folds at a symmetry
-        breaking, where a mesh rounds off the corner between two branches. Raises Unsolvable if no branch
-        passes `start`."""
+        """Appends the branch through `start`, unless this branch was followed before: `start` is then an
+        artefact of the mesh of its curve of special points. Such an artefact lies, for example, beyond the
+        end of a curve of folds at a symmetry breaking, where a mesh rounds off the corner between two
+        branches. Raises Unsolvable if no branch passes `start`."""
         breakings = symmetry_breakings_in([curve.special_points for curve in self.curves])
         limits = replace(self._limits_left(), breakings=breakings)
         if limits.max_cycles < 1:

@@ -70,9 +70,9 @@ def solve_branches(
     workspace: NewtonWorkspace | None = None,
     starts: Sequence[SpecialPoint] = (),
 ) -> BranchesOfRod:
-    """All branches that start at Hopf points of a rod along a parameter, and those through the special points
-    `starts` of cycles; a failure becomes a status, never an exception. The rod's own value of this parameter
-    is not used. workspace: memory of Newton's matrices, which rods may share; None: a new workspace."""
+    """All branches that start at Hopf points of a rod along a parameter, and the branches through the special
+    points `starts`; a failure becomes a status, never an exception. The rod's own value of this parameter is
+    not used. workspace: memory of Newton's matrices, which rods may share; None: a new workspace."""
     memory = workspace or NewtonWorkspace()
     memory.limit_work(request.max_work)
     try:
@@ -141,8 +141,8 @@ def _end_reason(is_crushed: bool) -> BranchEndReason:
 def _hopf_branch_starts(
     path: ParameterPath, crossings: ThresholdSearchResult, keeps_omega: bool, unit: float
 ) -> tuple[list[HopfBranchStart], list[str]]:
-    """(Hopf points with normal form, messages on Hopf points without). keeps_omega, unit: as in
-    `hopf_branch_start`."""
+    """Returns (Hopf points with normal form, messages on Hopf points whose normal form failed). keeps_omega,
+    unit: arguments of `hopf_branch_start`."""
     hopfs = []
     failures = []
     for crossing in crossings.thresholds:
@@ -157,28 +157,28 @@ def _hopf_branch_starts(
 def _status_and_message(
     crossings: ThresholdSearchResult, curves: list[BranchCurve], failures: list[str], request: BranchRequest
 ) -> tuple[BranchStatus, str]:
-    """(status, message) of all branches of a rod: status of the first problem in the order of `BranchStatus`,
-    and all messages. crossings: result of the search for Hopf points. curves: the branches. failures:
-    messages on Hopf points without a normal form, and on known special points without a branch."""
+    """Returns (status, message) for all branches of a rod: status of the first problem in the order of
+    `BranchStatus`, and all messages. crossings: result of the search for Hopf points. curves: the branches.
+    failures: messages on Hopf points without a normal form, and on known special points without a branch."""
     messages = [
         f"branch {number}: {special.message} at {request.along} = {special.parameter_value:.9g}"
         for number, curve in enumerate(curves, 1)
         for special in curve.special_points
         if special.message
     ]
-    count = sum(len(curve.special_points) for curve in curves)
-    special = [point for curve in curves for point in curve.special_points]
+    special_points = [point for curve in curves for point in curve.special_points]
     tolerance = max(request.accuracy, SPECIAL_POINT_SETTINGS.accuracy)
-    inaccurate = any(point.error > tolerance * abs(point.parameter_value) for point in special)
+    is_inaccurate = any(point.error > tolerance * abs(point.parameter_value) for point in special_points)
     if any(not curve.unit_circle_crossings_explained for curve in curves):
         messages.append("multipliers cross the unit circle where no special point was found")
-    verdicts = {
+    applies_by_status = {
         BranchStatus.stopped: bool(failures)
         or any(not curve.complete and not curve.list_full for curve in curves),
-        BranchStatus.list_full: any(curve.list_full for curve in curves) or count > request.special,
-        BranchStatus.special_undecided: inaccurate
+        BranchStatus.list_full: any(curve.list_full for curve in curves)
+        or len(special_points) > request.special,
+        BranchStatus.special_undecided: is_inaccurate
         or any(not curve.unit_circle_crossings_explained for curve in curves),
         BranchStatus.search_open: crossings.ended_early or (request.certify and not crossings.proved),
     }
-    status = next((status for status, applies in verdicts.items() if applies), BranchStatus.ok)
+    status = next((status for status, applies in applies_by_status.items() if applies), BranchStatus.ok)
     return status, "; ".join(filter(None, [*failures, *messages, crossings.doubt_text]))

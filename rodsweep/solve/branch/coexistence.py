@@ -109,7 +109,7 @@ def row_branches(
     workspace: NewtonWorkspace | None = None,
     starts: Sequence[SpecialPoint] = (),
 ) -> BranchesOfRod:
-    """All branches of cycles that start at Hopf points of a row, and those through the special points
+    """All branches of cycles that start at Hopf points of a row, and the branches through the special points
     `starts`. max_special_points: maximum number of stored special points. workspace: memory of Newton's
     matrices."""
     start = float(request.values[0])
@@ -122,12 +122,12 @@ def _first_searched_value(row: DiagramRow, request: RowRequest) -> float:
     """Value of the parameter from which a row was searched for thresholds: later than the first value if no
     a-priori bound or no mesh covers a strong pull."""
     first = row.thresholds.search_result.searched_interval[0]
-    is_late = row.thresholds.search_result.ended_early and request.values[0] < first < request.values[-1]
-    return float(first if is_late else request.values[0])
+    starts_late = row.thresholds.search_result.ended_early and request.values[0] < first < request.values[-1]
+    return float(first if starts_late else request.values[0])
 
 
 def _branch_request(start: float, request: RowRequest, max_special_points: int) -> BranchRequest:
-    """Request of the branches of a row from the parameter value `start` on. max_special_points: maximum
+    """Request for the branches of a row from the parameter value `start` on. max_special_points: maximum
     number of stored special points."""
     return BranchRequest(
         along=request.parameter_name,
@@ -159,7 +159,7 @@ def _undecided_values_text(name: str, values: Array) -> str:
 def _status_and_message_of_row(
     row: DiagramRow, branches: BranchesOfRod, max_special_points: int, undecided: Array
 ) -> tuple[CoexistenceStatus, str]:
-    """(status, message) of a row: status of the search for thresholds if this search has a problem,
+    """Returns (status, message) of a row: status of the search for thresholds if this search has a problem,
     otherwise status of the branches. max_special_points: maximum number of stored special points. undecided:
     parameter values, (n,), at which the stable states are undecided because of the cycles."""
     message = "; ".join(filter(None, [row.message, branches.message]))
@@ -209,24 +209,24 @@ def stability_intervals(curve: BranchCurve) -> list[StabilityInterval]:
     interval."""
     intervals = []
     for first, second in zip(curve.special_points[:-1], curve.special_points[1:], strict=True):
-        signs = {
+        stabilities = {
             point.min_unstable_multipliers
             for point in curve.points[first.index_of_cycle_before + 1 : second.index_of_cycle_before + 1]
         } - {-1}
         # Stability changes at special points only. If cycles between two special points disagree, it is
         # undecided.
-        stable = -1
-        if signs == {0}:
-            stable = 1
-        elif signs and 0 not in signs:
-            stable = 0
+        stability = -1
+        if stabilities == {0}:
+            stability = 1
+        elif stabilities and 0 not in stabilities:
+            stability = 0
         low, high = sorted((first, second), key=lambda point: point.parameter_value)
         inner_interval = (
             low.parameter_value + _end_error_sign(low) * low.error,
             high.parameter_value - _end_error_sign(high) * high.error,
         )
         outer_interval = low.parameter_value - low.error, high.parameter_value + high.error
-        intervals.append(StabilityInterval(inner_interval, outer_interval, stable))
+        intervals.append(StabilityInterval(inner_interval, outer_interval, stability))
     return intervals
 
 

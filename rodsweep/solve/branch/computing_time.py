@@ -40,9 +40,9 @@ def fractions_before_branches(starts: Sequence[float], parameter_range: Paramete
     """Estimated fractions of the total computing time of all branches that have passed before each branch,
     and after the last branch, (branches + 1,). starts: parameter coordinates of the Hopf points where the
     branches start. parameter_range: range of the parameter coordinate."""
-    work_of_branches = [
+    computing_times = [
         max(abs(end - start) for end in parameter_range) ** COMPUTING_TIME_SETTINGS.length_exponent
         for start in starts
     ]
-    work_before = [sum(work_of_branches[:number]) for number in range(len(work_of_branches) + 1)]
-    return [work / work_before[-1] if work_before[-1] else 1.0 for work in work_before]
+    times_before = [sum(computing_times[:branch_index]) for branch_index in range(len(computing_times) + 1)]
+    return [time / times_before[-1] if times_before[-1] else 1.0 for time in times_before]

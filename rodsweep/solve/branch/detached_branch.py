@@ -39,7 +39,7 @@ class DetachedBranchSettings:
 
     first_distances: tuple[float, ...] = (0.02, 0.005, 0.001, 2e-4)
     """Arc lengths of the first cycle from the known special point, tried in this order: 0.02 is the first
-    step length on all branches, and a small closed branch needs a shorter one."""
+    step length on all branches, and a small closed branch needs a shorter step."""
     max_prediction_error_ratio: float = 0.5
     """Largest difference between the first cycle and its prediction on the tangent, divided by the length of
     this step. If the difference is larger, the branch turns by about a right angle on this step, and the
@@ -58,8 +58,8 @@ DETACHED_BRANCH_SETTINGS = DetachedBranchSettings()
 def follow_detached_branch(start: SpecialPoint, name: str, limits: BranchLimits) -> BranchCurve:
     """The branch along the parameter `name` through the special point `start`, whose orbit need not be
     accurate, in both directions to its ends; raises Unsolvable if no cycle is found beside `start`. A later
-    failure is stored in an end of the branch. The branch found may be another one, which does not pass
-    `start`."""
+    failure is stored in an end of the branch. The branch found may be another branch, which does not pass
+    through `start`."""
     if start.orbit is None:
         raise Unsolvable(start.message or "the cycle of the special point is not known")
     if not start.orbit.is_symmetric:
@@ -102,8 +102,10 @@ def follow_in_both_directions(first_cycle: BranchCycle, limits: BranchLimits) ->
     directions."""
     curve = follow_from_cycle(BranchCurve(start_hopf=-1), first_cycle, limits)
     if not curve.closed:
-        left = replace(limits, max_cycles=limits.max_cycles - len(curve.points) + 1)
-        backward_curve = follow_from_cycle(BranchCurve(start_hopf=-1), turned_back(first_cycle), left)
+        remaining_limits = replace(limits, max_cycles=limits.max_cycles - len(curve.points) + 1)
+        backward_curve = follow_from_cycle(
+            BranchCurve(start_hopf=-1), turned_back(first_cycle), remaining_limits
+        )
         curve = backward_curve.joined_with(curve)
     return curve
 
@@ -131,8 +133,8 @@ def _first_cycle(orbit: Orbit, name: str, limits: BranchLimits) -> BranchCycle:
 @dataclass(frozen=True, eq=False, slots=True)
 class _Tangent:
     """Tangent of a branch at the orbit `orbit` with unit arc length in the units of `scale`. change: change
-    of orbit values and parameter coordinate, (N + 1,). side: the same in components (deflection, log period,
-    parameter), (3,)."""
+    of orbit values and parameter coordinate, (N + 1,). side: this change in components (deflection, log
+    period, parameter), (3,)."""
 
     orbit: Orbit
     scale: ArcLengthScale
@@ -145,13 +147,13 @@ def _tangent_towards_larger_cycles(orbit: Orbit, name: str, limits: BranchLimits
     branch."""
     mesh = mesh_from_tails(orbit, limits.accuracy, cheapest_stage_count(limits.accuracy))
     orbit = mesh.interpolated_orbit(orbit)
-    height = abs(float(orbit.form.tip_coordinates(orbit.start_state)[1]))
-    min_unit = abs(deflection_of(orbit)) * BRANCH_START_SETTINGS.min_deflection_amplitude / height
-    scale = ArcLengthScale.at_orbit(orbit, name, min_unit, limits.min_coordinate_unit)
+    tip_y = abs(float(orbit.form.tip_coordinates(orbit.start_state)[1]))
+    min_deflection_unit = abs(deflection_of(orbit)) * BRANCH_START_SETTINGS.min_deflection_amplitude / tip_y
+    scale = ArcLengthScale.at_orbit(orbit, name, min_deflection_unit, limits.min_coordinate_unit)
     tangent = tangent_at(orbit, scale, ALONG_DEFLECTION, BorderedMatrix(orbit, scale, limits.workspace))
     derivative = scale.directional_derivative(orbit, tangent)
-    unit = float(np.linalg.norm(derivative))
-    return _Tangent(orbit, scale, tangent / unit, derivative / unit)
+    tangent_length = float(np.linalg.norm(derivative))
+    return _Tangent(orbit, scale, tangent / tangent_length, derivative / tangent_length)
 
 
 def _cycle_on_other_side(tangent: _Tangent, distance: float, limits: BranchLimits) -> BranchCycle:
@@ -163,10 +165,10 @@ def _cycle_on_other_side(tangent: _Tangent, distance: float, limits: BranchLimit
     solved_orbit = condition.solve_cycle(
         predicted, branch_newton_tolerance(accuracy), limits.workspace, allowed_matrix_distance(accuracy)
     )
-    step = relative_change(tangent.orbit, distance * tangent.change[:-1])
+    step_size = relative_change(tangent.orbit, distance * tangent.change[:-1])
     prediction_error = relative_change(predicted, solved_orbit.orbit.values - predicted.values)
-    if prediction_error > DETACHED_BRANCH_SETTINGS.max_prediction_error_ratio * step:
-        raise Unsolvable("the cycle found is far from the prediction")
+    if prediction_error > DETACHED_BRANCH_SETTINGS.max_prediction_error_ratio * step_size:
+        raise Unsolvable("the cycle found is far from its prediction")
     low, high = limits.coordinate_range
     if not low < solved_orbit.orbit.form.rod.coordinate(tangent.scale.parameter_name) < high:
         raise Unsolvable("the cycle found lies outside the range")
@@ -176,5 +178,7 @@ def _cycle_on_other_side(tangent: _Tangent, distance: float, limits: BranchLimit
 def turned_back(cycle: BranchCycle) -> BranchCycle:
     """The cycle of a branch, for the continuation in the opposite direction."""
     derivatives = cycle.derivatives
-    turned = replace(derivatives, tangent=-derivatives.tangent, unit_tangent=-derivatives.unit_tangent)
-    return replace(cycle, derivatives=turned)
+    turned_derivatives = replace(
+        derivatives, tangent=-derivatives.tangent, unit_tangent=-derivatives.unit_tangent
+    )
+    return replace(cycle, derivatives=turned_derivatives)

@@ -113,5 +113,5 @@ def _end_at_breaking(start: BranchCycle, end: BranchCycle, limits: BranchLimits)
         breaking = limits.breakings[index]
         special = replace(breaking.special_point, message="", orbit=None)
         return BranchEnd(special, complete=True, end_breaking=breaking)
-    reason = "the cycles become symmetric, but no symmetry breaking is known there"
-    return BranchEnd(branch_end_point(start, BranchEndReason.no_cycle_found, reason), complete=False)
+    message = "the cycles become symmetric, but no symmetry breaking is known there"
+    return BranchEnd(branch_end_point(start, BranchEndReason.no_cycle_found, message), complete=False)

@@ -42,13 +42,13 @@ def cycle_at_range_end(
         return -range_end.residual(segment.predicted_orbit(length))
 
     tolerance = BRANCH_END_SETTINGS.range_end_tolerance
-    ends = beyond(0.0), beyond(segment.length)
-    inner = 0.0
-    if abs(ends[0]) <= tolerance * abs(ends[1]):
-        inner = _length_within_range(beyond, segment.length)
-        ends = beyond(inner), ends[1]
-    length = inner + zero_along_step(
-        lambda part: beyond(inner + part), ends, segment.length - inner, 0.0, tolerance
+    end_distances = beyond(0.0), beyond(segment.length)
+    inner_length = 0.0
+    if abs(end_distances[0]) <= tolerance * abs(end_distances[1]):
+        inner_length = _length_within_range(beyond, segment.length)
+        end_distances = beyond(inner_length), end_distances[1]
+    length = inner_length + zero_along_step(
+        lambda part: beyond(inner_length + part), end_distances, segment.length - inner_length, 0.0, tolerance
     )
     return _solved_at_range_end(start, segment.predicted_orbit(length), length, range_end, accuracy)
 
@@ -70,8 +70,8 @@ def _length_within_range(beyond: Callable[[float], float], step: float) -> float
 def cycle_at_zero_coordinate(start: BranchCycle, low: float, accuracy: float) -> BranchCycle | None:
     """The cycle at the coordinate 0, for a parameter that cannot be negative, so that no step can overshoot
     this end. None unless the range begins at 0 and the tangent at `start` reaches 0 within the next step;
-    also None if no cycle is found there, as when the branch folds before 0. low: smallest coordinate of the
-    range. Raises WorkLimitReached."""
+    also None if no cycle is found there, for example because the branch has a fold before 0. low: smallest
+    coordinate of the range. Raises WorkLimitReached."""
     rate = float(start.tangent[-1])
     may_be_negative = PARAMETERS[start.scale.parameter_name].allowed.contains(-1.0)
     if may_be_negative or low != 0 or rate >= 0 or -start.parameter_coordinate / rate > start.next_arc_length:
@@ -91,9 +91,9 @@ def cycle_at_zero_coordinate(start: BranchCycle, low: float, accuracy: float) ->
 def cycle_within_range(
     start: BranchCycle, end: BranchCycle, range_ends: tuple[float, float], accuracy: float
 ) -> tuple[BranchCycle, int]:
-    """Returns (cycle, index): the next cycle after `start`, which is `end`, or the cycle where the branch
-    first leaves the parameter range before `end`; and the index in `range_ends` of the range end at this
-    cycle, -1 if the cycle is within the range. Raises Unsolvable.
+    """Returns (cycle, index). cycle: `end`, or the cycle where the branch first leaves the parameter range
+    between `start` and `end`. index: index in `range_ends` of the range end at this cycle; -1 if the cycle is
+    within the range. Raises Unsolvable.
 
     range_ends: smallest and largest coordinate of the range. Between two cycles within the range the branch
     may leave the range and return, if a fold lies beyond an end. A step over such a fold would continue on
@@ -130,8 +130,8 @@ def _range_end_passed_before_fold(
     rate = float(start.scale.directional_derivative(end.orbit, end.tangent) @ start.unit_tangent)
     slopes = length * start.tangent[-1], length * end.tangent[-1] / rate
     increment = end.parameter_coordinate - start.parameter_coordinate
-    # The cubic minus the range end, by powers of the fraction of the arc length.
-    excess = Polynomial(
+    # The cubic minus the range end, a polynomial in the fraction of the arc length.
+    cubic = Polynomial(
         (
             start.parameter_coordinate - range_ends[index],
             slopes[0],
@@ -139,8 +139,8 @@ def _range_end_passed_before_fold(
             slopes[0] + slopes[1] - 2 * increment,
         )
     )
-    passages = [float(root.real) for root in excess.roots() if root.imag == 0 and 0 < root.real < 1]
-    return (index, length * min(passages)) if passages else (-1, 0.0)
+    fractions = [float(root.real) for root in cubic.roots() if root.imag == 0 and 0 < root.real < 1]
+    return (index, length * min(fractions)) if fractions else (-1, 0.0)
 
 
 def _solved_at_range_end(

@@ -93,13 +93,13 @@ class RegionBeyond:
     def entries_from_hopf_points(self) -> Iterator[RangePassage]:
         """Yields the places where branches from the Hopf points of the region enter the range. Hopf points
         at which a followed branch ends are omitted."""
-        for number, hopf in enumerate(self.limits.hopfs):
-            if number in self._ended_hopfs:
+        for index, hopf in enumerate(self.limits.hopfs):
+            if index in self._ended_hopfs:
                 continue
             place = self.path.text_at(hopf.parameter_coordinate)
             entry = None
             with solve_part(f"branch from the Hopf point at {place}"), self._limited_work():
-                entry = self._entry_from_hopf_point(number, hopf)
+                entry = self._entry_from_hopf_point(index, hopf)
             if entry is not None:
                 yield entry
 
@@ -124,7 +124,8 @@ class RegionBeyond:
 
     def _with_step_into_region(self, passage: RangePassage) -> BranchCycle | None:
         """The cycle of `passage`, with a next step that ends in the region although a fold may follow
-        closely. Returns None and closes the region if even the shortest step does not end there."""
+        closely. If even the shortest step does not end there, returns None, and the region is not searched
+        further."""
         start = passage.cycle
         length = start.next_arc_length
         while length >= ARC_STEP_CONTROL.min_length:
@@ -140,8 +141,8 @@ class RegionBeyond:
         self.stop_at(self.range_end)
         return None
 
-    def _entry_from_hopf_point(self, number: int, hopf: HopfBranchStart) -> RangePassage | None:
-        """The place where the branch from the Hopf point `hopf` with the index `number` enters the range."""
+    def _entry_from_hopf_point(self, index: int, hopf: HopfBranchStart) -> RangePassage | None:
+        """The place where the branch from the Hopf point `hopf`, of index `index`, enters the range."""
         accuracy = accuracy_near_hopf_points([hopf], self.limits.accuracy)
         moves_away = hopf.direction == (-1 if self.index == 0 else 1)
         # The straight rod loses stability by pairs: without the multiplier that is 1 at the Hopf point, which
@@ -156,7 +157,7 @@ class RegionBeyond:
         if moves_away and unstable_count_bounds(first)[0] > 1:
             return None
         if index_of_passed_range_end(first, self.limits.coordinate_range) != 1 - self.index:
-            return self._entry(BranchCurve(start_hopf=number), first, accuracy)
+            return self._entry(BranchCurve(start_hopf=index), first, accuracy)
         # The first cycle already lies within the range.
         limits = replace(self.range_limits, accuracy=accuracy, locates_special_points=False)
         passage = follow_from_cycle(BranchCurve(start_hopf=-1), turned_back(first), limits).end_passage
@@ -191,8 +192,8 @@ class RegionBeyond:
         return replace(passage, index=self.index)
 
     def entries_through(self, start: SpecialPoint) -> list[RangePassage]:
-        """The places where the branch through the special point `start` in the region enters the range.
-        Empty if the branch is known. Raises Unsolvable if no branch is found, or if it is not followed to its
+        """The places where the branch through the special point `start` in the region enters the range; empty
+        if the branch is known. Raises Unsolvable if no branch is found, or if it is not followed to its
         ends."""
         workspace = self.limits.workspace
         initial_work = workspace.work
@@ -204,7 +205,7 @@ class RegionBeyond:
         if curve is None:
             return []
         if not curve.complete:
-            raise Unsolvable("the branch is not followed to its ends")
+            raise Unsolvable("the branch was not followed to both ends, so it may enter the range unseen")
         self.limits = replace(self.limits, max_cycles=self.limits.max_cycles - len(curve.points))
         self._add_special_points(curve)
         passages = (curve.start_passage, curve.end_passage)
@@ -237,8 +238,8 @@ class RegionBeyond:
 
     @contextmanager
     def _limited_work(self) -> Iterator[None]:
-        """Counts the work of the `with` block, and limits it to `remaining_work`. A failure
-        in the block is caught, and closes the region."""
+        """Counts the work of the `with` block, and limits it to `remaining_work`. A failure in the block is
+        caught, and ends the search in the region."""
         workspace = self.limits.workspace
         initial_work = workspace.work
         try:

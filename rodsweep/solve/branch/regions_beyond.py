@@ -25,7 +25,8 @@ def regions_beyond(path: ParameterPath, limits: BranchLimits, margin: float) -> 
 
 def _region(path: ParameterPath, index: int, limits: BranchLimits, margin: float) -> RegionBeyond | None:
     """The region beyond the end `index` of the range, within the allowed values of the parameter; None at a
-    crushed rod and at a coordinate of 0 or less. margin: see `regions_beyond`."""
+    crushed rod and at a coordinate of 0 or less. margin: smallest relative distance from the crushing
+    force."""
     end = limits.coordinate_range[index]
     if end <= 0 or limits.end_reasons[index] is BranchEndReason.crushed:
         return None
@@ -33,12 +34,12 @@ def _region(path: ParameterPath, index: int, limits: BranchLimits, margin: float
     low, high = sorted(map(path.parameter.value, (end, far_end)))
     bounds = path.parameter.allowed.schema_bounds
     low, high = max(bounds.get("minimum", low), low), min(bounds.get("maximum", high), high)
-    rod = {"F": path.rod.F, "k1": path.rod.k1, "taper": path.rod.taper}
-    low, high = uncrushed_interval(path.rod.material, rod, (path.name, low, high), margin)
+    base_values = {"F": path.rod.F, "k1": path.rod.k1, "taper": path.rod.taper}
+    low, high = uncrushed_interval(path.rod.material, base_values, (path.name, low, high), margin)
     far_end = (min, max)[index](path.coordinate(low), path.coordinate(high))
     # The unknowns of a branch cannot change within the branch.
-    is_small = has_small_rotational_drag(path.rod_at(far_end))
-    if not low < high or is_small and not limits.keeps_omega:
+    has_small_drag = has_small_rotational_drag(path.rod_at(far_end))
+    if not low < high or has_small_drag and not limits.keeps_omega:
         return None
     region_limits = replace(
         limits,

@@ -44,8 +44,8 @@ class BranchStatus(PointStatus):
 
 
 def _status_as_in_thresholds(status: ThresholdStatus) -> tuple[int, str, bool]:
-    """(value, sentence, success) of a `ThresholdStatus`, from which the `CoexistenceStatus` with the same
-    name is made."""
+    """Returns (value, sentence, success) of a `ThresholdStatus`, from which the `CoexistenceStatus` of the
+    same name is made."""
     return int(status), status.sentence, status.succeeded
 
 

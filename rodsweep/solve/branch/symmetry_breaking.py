@@ -36,8 +36,8 @@ def symmetry_breakings_in(branches: Sequence[Sequence[SpecialPoint]]) -> list[Sy
     """The symmetry breakings whose cycle is known, among the special points of all branches. branches:
     special points of each branch."""
     return [
-        SymmetryBreaking(number, index, point)
-        for number, special in enumerate(branches, 1)
+        SymmetryBreaking(branch_number, index, point)
+        for branch_number, special in enumerate(branches, 1)
         for index, point in enumerate(special)
         if point.kind == SpecialKind.symmetry_breaking and point.orbit is not None
     ]
@@ -46,15 +46,15 @@ def symmetry_breakings_in(branches: Sequence[Sequence[SpecialPoint]]) -> list[Sy
 def extended_to_whole_period(orbit: Orbit) -> Orbit:
     """A symmetric orbit, which stores half a period, extended by its symmetry to the whole period and to
     twice as many time intervals."""
-    intervals = 2 * orbit.interval_count
+    interval_count = 2 * orbit.interval_count
     grading = orbit.grading.doubled
-    times = 2 * node_times(intervals, orbit.stage_count, grading)
+    times = 2 * node_times(interval_count, orbit.stage_count, grading)
     is_second_half = times > 1
     points = orbit.states_at(np.where(is_second_half, times - 1, times))
     # The second half of the period is the mirror image of the first.
     points[is_second_half] = orbit.symmetry.apply(points[is_second_half], orbit.form.layout)
     values = np.append(points.ravel(), orbit.period)
-    return replace(orbit, symmetry=NO_SYMMETRY, interval_count=intervals, values=values, grading=grading)
+    return replace(orbit, symmetry=NO_SYMMETRY, interval_count=interval_count, values=values, grading=grading)
 
 
 def asymmetry(orbit: Orbit) -> Array:
@@ -76,11 +76,11 @@ def reaches_symmetric_cycle(
     """Whether an asymmetric branch reaches or passes a symmetric cycle between two cycles: the asymmetry
     changes sign or almost vanishes; or the parameter turns back near a symmetry breaking in `breakings`,
     because a mesh without the symmetry of the cycle perturbs the crossing of the branches."""
-    reference = asymmetry(start.orbit)
+    start_asymmetry = asymmetry(start.orbit)
     orbit_on_mesh = end.orbit.on_mesh(start.orbit.form.mesh, end.orbit.interval_count, end.orbit.stage_count)
     # The asymmetry changes sign where the branch passes a symmetric cycle, and is small near this cycle.
-    max_asymmetry = BRANCH_END_SETTINGS.lost_asymmetry_ratio * float(reference @ reference)
-    if float(asymmetry(orbit_on_mesh) @ reference) < max_asymmetry:
+    max_asymmetry = BRANCH_END_SETTINGS.lost_asymmetry_ratio * float(start_asymmetry @ start_asymmetry)
+    if float(asymmetry(orbit_on_mesh) @ start_asymmetry) < max_asymmetry:
         return True
     turns_back = start.parameter_rate * end.parameter_rate < 0 and _is_nearly_symmetric(start)
     return turns_back and _symmetry_breaking_ahead(start, breakings, accuracy) >= 0
@@ -100,8 +100,8 @@ def symmetry_breaking_between(
     start: BranchCycle, end: BranchCycle, breakings: Sequence[SymmetryBreaking], accuracy: float
 ) -> int | None:
     """Index of the symmetry breaking in `breakings` between two cycles of an asymmetric branch; -1 if
-    `breakings` does not contain this symmetry breaking; None if `start` is too asymmetric, so that a shorter
-    step is needed. Raises Unsolvable if no shorter step is allowed."""
+    `breakings` does not contain this symmetry breaking; None if `start` is so asymmetric that a shorter step
+    is needed. Raises Unsolvable if no shorter step is allowed."""
     index = _symmetry_breaking_ahead(start, breakings, accuracy) if _is_nearly_symmetric(start) else -1
     if index >= 0 or _relative_asymmetry(start) <= BRANCH_END_SETTINGS.min_asymmetry_ratio:
         return index
@@ -129,16 +129,21 @@ def _symmetry_breaking_ahead(
         current_asymmetry @ current_asymmetry
     ) / decrease / 2 * start.tangent[-2:]
     for index, breaking in enumerate(breakings):
-        symmetric = breaking.special_point.orbit
-        if symmetric is None:
+        symmetric_orbit = breaking.special_point.orbit
+        if symmetric_orbit is None:
             continue
-        symmetric_at = symmetric.form.rod.coordinate(start.scale.parameter_name)
+        symmetric_coordinate = symmetric_orbit.form.rod.coordinate(start.scale.parameter_name)
         tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(
-            start.parameter_coordinate - symmetric_at
+            start.parameter_coordinate - symmetric_coordinate
         )
-        tolerance += max(BRANCH_END_SETTINGS.parameter_tolerance, accuracy) * abs(symmetric_at)
-        period_tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(orbit.period - symmetric.period)
-        period_tolerance += max(BRANCH_END_SETTINGS.period_tolerance, accuracy) * symmetric.period
-        if abs(coordinate - symmetric_at) <= tolerance and abs(period - symmetric.period) <= period_tolerance:
+        tolerance += max(BRANCH_END_SETTINGS.parameter_tolerance, accuracy) * abs(symmetric_coordinate)
+        period_tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(
+            orbit.period - symmetric_orbit.period
+        )
+        period_tolerance += max(BRANCH_END_SETTINGS.period_tolerance, accuracy) * symmetric_orbit.period
+        if (
+            abs(coordinate - symmetric_coordinate) <= tolerance
+            and abs(period - symmetric_orbit.period) <= period_tolerance
+        ):
             return index
     return -1

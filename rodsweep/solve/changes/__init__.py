@@ -1,2 +1,2 @@
 """Thresholds of the straight rod along a parameter (crossings of the imaginary axis, exchanges of the leading
-eigenvalue), and diagrams in two parameters."""
+eigenvalue), and phase diagrams in two parameters."""

@@ -42,18 +42,18 @@ class LeaderExchange(NamedTuple):
 def double_eigenvalue_between(
     problem: PathProblem, pair: SpectrumSample, real: SpectrumSample
 ) -> LeaderExchange | None:
-    """The double eigenvalue between a sample `pair` with a leading pair and a sample `real` with two
-    real leading eigenvalues; None if Newton's method does not find it."""
+    """The double eigenvalue between a sample `pair` with a leading pair and a sample `real`
+    with two real leading eigenvalues; None if Newton's method does not find it."""
     pair_difference = pair.squared_pair_difference()
     real_difference = real.squared_pair_difference()
-    width = abs(pair.p - real.p)
+    sample_distance = abs(pair.p - real.p)
     if pair_difference is None or real_difference is None:
         return None
     # (w1 - w2)^2 is smooth through the double root, where w itself has a square root: it is interpolated.
     fraction = real_difference[0] / (real_difference[0] - pair_difference[0])
     p = real.p + fraction * (pair.p - real.p)
     x = (1 - fraction) * float((real.w[0] + real.w[1]).real) / 2 + fraction * float(pair.w[0].real)
-    x, p, _, error = problem.double_eigenvalue(x, p, width)
+    x, p, _, error = problem.double_eigenvalue(x, p, sample_distance)
     return None if math.isnan(p) else LeaderExchange(p, error, x, 0.0)
 
 
@@ -70,25 +70,25 @@ def overtaking_between(
     w_real = _follow_eigenvalue(problem, complex(real.w[0]), real.p, p)
     w_pair = _follow_eigenvalue(problem, complex(pair.w[0]), pair.p, p)
     for _ in range(EXCHANGE_SETTINGS.max_overtaking_steps):
-        w_real, s_real, e_real = problem.eigenvalue(w_real, p)
-        w_pair, s_pair, e_pair = problem.eigenvalue(w_pair, p)
-        slope = s_real.real - s_pair.real
+        w_real, slope_real, error_real = problem.eigenvalue(w_real, p)
+        w_pair, slope_pair, error_pair = problem.eigenvalue(w_pair, p)
+        slope = slope_real.real - slope_pair.real
         # Near a double eigenvalue Newton's method for D may stop before it converges.
         accuracy = EXCHANGE_SETTINGS.accuracy
-        if not (e_real <= accuracy * abs(w_real) and e_pair <= accuracy * abs(w_pair)):
+        if not (error_real <= accuracy * abs(w_real) and error_pair <= accuracy * abs(w_pair)):
             return None
         # An eigenvalue that changed between real and complex is not the one that was followed.
-        if w_real.imag != 0 or abs(w_pair.imag) <= e_pair or slope == 0 or not math.isfinite(slope):
+        if w_real.imag != 0 or abs(w_pair.imag) <= error_pair or slope == 0 or not math.isfinite(slope):
             return None
         step = -(w_real.real - w_pair.real) / slope
-        error = (e_real + e_pair) / abs(slope) + EXCHANGE_SETTINGS.rounding_error * abs(p)
+        error = (error_real + error_pair) / abs(slope) + EXCHANGE_SETTINGS.rounding_error * abs(p)
         p += step
         if not ends[0] <= p <= ends[1]:
             return None
         if abs(step) <= EXCHANGE_SETTINGS.converged_step_in_errors * error:
             return LeaderExchange(p, max(error, abs(step)), w_pair.real, abs(w_pair.imag))
-        w_real = w_real + step * s_real
-        w_pair = w_pair + step * s_pair
+        w_real = w_real + step * slope_real
+        w_pair = w_pair + step * slope_pair
         if w_real.imag != 0:
             w_real = complex(w_real.real, 0.0)
     return None

@@ -25,7 +25,7 @@ from .sample_interpolation import (
     excludes_exchange,
     has_only_double_eigenvalue,
     has_only_leader_exchange,
-    next_sample_position,
+    next_sample_between,
 )
 from .search_range import IntervalQueue, SearchEnd
 from .spectrum_samples import SpectrumSample
@@ -126,32 +126,32 @@ class LeaderExchangeSearch:
 
     def _search_interval(self, a: float, b: float, intervals: IntervalQueue) -> list[Threshold]:
         """The exchange between the samples at a and b, in a list; an empty list without an exchange, or if
-        the test is undecided. An undecided interval is divided into two entries of `intervals`, or ends the
-        proof if it is too short; raises Unsolvable."""
+        the test is undecided. An undecided interval is divided into two entries of `intervals`; if it is too
+        short, the list counts as not proved. Raises Unsolvable."""
         left_sample = self.sample_at(a)
         right_sample = self.sample_at(b)
         fraction = 0.5
         if left_sample.oscillates == right_sample.oscillates:
-            fraction, may_hold_two = next_sample_position(left_sample, right_sample)
+            fraction, may_hold_two = next_sample_between(left_sample, right_sample)
             settings = LEADING_EIGENVALUE_SETTINGS
-            smallest_interval = (
+            min_interval = (
                 settings.min_interval_fraction_with_two_exchanges
                 if may_hold_two
                 else settings.min_interval_fraction
             )
             if len(self.samples) > settings.max_samples:
-                smallest_interval = settings.close_sample_fraction
+                min_interval = settings.close_sample_fraction
             is_close = b - a <= settings.close_sample_fraction * intervals.length
             if fraction == 0.0 or (is_close and excludes_exchange(left_sample, right_sample, may_hold_two)):
                 return []
-            # Two exchanges may hide in an interval too short to divide: the list then is not proved.
-            if b - a <= smallest_interval * intervals.length:
+            # Two exchanges may lie in an interval too short to divide: the list then is not proved.
+            if b - a <= min_interval * intervals.length:
                 self.leading_eigenvalues_proved = False
                 return []
         else:
-            change = self._exchange_between(left_sample, right_sample)
-            if change is not None:
-                return self._exchange_if_alone(change, left_sample, right_sample, intervals)
+            exchange = self._exchange_between(left_sample, right_sample)
+            if exchange is not None:
+                return self._exchange_if_alone(exchange, left_sample, right_sample, intervals)
             if b - a <= LEADING_EIGENVALUE_SETTINGS.min_step_ratio * max(abs(a), abs(b)):
                 raise Unsolvable(
                     f"no point was found near {self.path.text_at(a)} at which the leading eigenvalue turns "
@@ -163,19 +163,19 @@ class LeaderExchangeSearch:
         return []
 
     def _exchange_if_alone(
-        self, change: Threshold, left: SpectrumSample, right: SpectrumSample, intervals: IntervalQueue
+        self, exchange: Threshold, left: SpectrumSample, right: SpectrumSample, intervals: IntervalQueue
     ) -> list[Threshold]:
-        """The exchange `change` between two samples, in a list, if no further exchange lies between them;
-        else an empty list, after the division of the interval next to the exchange. An interval too short to
-        be divided ends the proof."""
-        excludes_others = has_only_double_eigenvalue if change.frequency == 0 else has_only_leader_exchange
+        """The exchange `exchange` between two samples, in a list, if no further exchange lies between them;
+        otherwise an empty list, and the interval is divided on both sides of the exchange. If the interval is
+        too short, the exchange is returned, and the list counts as not proved."""
+        excludes_others = has_only_double_eigenvalue if exchange.frequency == 0 else has_only_leader_exchange
         if excludes_others(left, right):
-            return [change]
+            return [exchange]
         length = right.p - left.p
         if length <= LEADING_EIGENVALUE_SETTINGS.min_interval_fraction_with_two_exchanges * intervals.length:
             self.leading_eigenvalues_proved = False
-            return [change]
-        p = self.path.coordinate(change.value)
+            return [exchange]
+        p = self.path.coordinate(exchange.value)
         distance = LEADING_EIGENVALUE_SETTINGS.distance_to_exchange_fraction * length
         sample_p = sorted({left.p, max(left.p, p - distance), min(right.p, p + distance), right.p})
         intervals.add_subintervals(*pairwise(sample_p))
@@ -184,19 +184,19 @@ class LeaderExchangeSearch:
     def _exchange_between(self, left: SpectrumSample, right: SpectrumSample) -> Threshold | None:
         """The exchange between a sample with a leading pair and a sample with a real leading eigenvalue.
         None if Newton's method finds no exchange, or if a count shows that other eigenvalues lead there."""
-        pair, real = (left, right) if left.oscillates else (right, left)
+        pair_sample, real_sample = (left, right) if left.oscillates else (right, left)
         # Kinds are named in the direction of the parameter, along a stiffness the direction of falling p.
         if right.oscillates != self.path.is_compliance_path:
             double_kind = ThresholdKind.onset
-            crossing_kind = ThresholdKind.pair_leads
+            overtaking_kind = ThresholdKind.pair_leads
         else:
             double_kind = ThresholdKind.real_again
-            crossing_kind = ThresholdKind.real_leads
-        for find, kind, next_index in (
+            overtaking_kind = ThresholdKind.real_leads
+        for find_exchange, kind, next_index in (
             (double_eigenvalue_between, double_kind, 2),
-            (overtaking_between, crossing_kind, 3),
+            (overtaking_between, overtaking_kind, 3),
         ):
-            exchange = find(self.problem, pair, real)
+            exchange = find_exchange(self.problem, pair_sample, real_sample)
             if exchange is None or not left.p <= exchange.p <= right.p:
                 continue
             # Counted halfway to the next eigenvalue: only the exchanged eigenvalues may lie to the right.

@@ -28,7 +28,8 @@ class PathProblem(ABC):
 
     @abstractmethod
     def interval_edges(self, low: float, high: float) -> list[float]:
-        """Path variables from `low` to `high`, both included, so close that neighbours differ little."""
+        """Path variables from `low` to `high`, both included, so close that the spectra of neighbours differ
+        little."""
 
     @abstractmethod
     def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
@@ -50,7 +51,8 @@ class PathProblem(ABC):
 
     @abstractmethod
     def relaxation_time_and_slope(self, p: float) -> tuple[float, float]:
-        """Returns (relaxation time of the rod at p, its derivative by p); the time is smooth in p."""
+        """Returns (relaxation time of the rod at p, its derivative with respect to p); the time is smooth in
+        p."""
 
 
 class UniformPath(PathProblem):
@@ -71,7 +73,7 @@ class UniformPath(PathProblem):
 
     def relaxation_time_and_slope(self, p: float) -> tuple[float, float]:
         coefficients = coefficients_at(p, self.path.origin, self.path.direction)
-        rate = self.path.direction
-        # Along a path the eigenvalues may grow without bound; divided by 1/time they stay moderate.
+        direction = self.path.direction
+        # Along a path the eigenvalues may grow without bound; multiplied by the time they stay moderate.
         time = coefficients.nu * coefficients.nu + coefficients.c2 + coefficients.gamma3  # never zero
-        return time, 2 * coefficients.nu * rate.nu + rate.c2 + rate.gamma3
+        return time, 2 * coefficients.nu * direction.nu + direction.c2 + direction.gamma3

@@ -1,7 +1,8 @@
-"""Interpolation between two samples: whether the slopes exclude exchanges of the leading eigenvalue between
-the samples, other than an exchange that is known."""
+"""Interpolation between two samples: whether the slopes exclude further exchanges of the leading eigenvalue
+between the samples."""
 
 import math
+from typing import NamedTuple
 
 from .spectrum_samples import SPECTRUM_SAMPLE_SETTINGS, SpectrumSample
 
@@ -10,34 +11,39 @@ def minimum_of_cubic(a: float, b: float, slope_a: float, slope_b: float) -> tupl
     """Returns (minimum on [0, 1], argument of the minimum) for the cubic with values `a`, `b` and slopes
     `slope_a`, `slope_b` at 0 and 1; the argument is 0.5 if the minimum is at an end."""
     # The cubic a + slope_a t + square t^2 + cube t^3 of Hermite interpolation.
-    square = 3 * (b - a) - 2 * slope_a - slope_b
+    square_term = 3 * (b - a) - 2 * slope_a - slope_b
     cubic_term = slope_a + slope_b - 2 * (b - a)
     minimum = min(a, b)
     argument = 0.5
-    discriminant = square * square - 3 * cubic_term * slope_a
-    if discriminant >= 0 and (square or cubic_term):
+    discriminant = square_term * square_term - 3 * cubic_term * slope_a
+    if discriminant >= 0 and (square_term or cubic_term):
         # The root of slope_a + 2 square t + 3 cube t^2 at the minimum, computed without cancellation.
         root = math.sqrt(discriminant)
         t = 0.5
-        if square + root > 0:
-            t = -slope_a / (square + root)
+        if square_term + root > 0:
+            t = -slope_a / (square_term + root)
         elif cubic_term:
-            t = (root - square) / (3 * cubic_term)
-        value = a + t * (slope_a + t * (square + t * cubic_term))
+            t = (root - square_term) / (3 * cubic_term)
+        value = a + t * (slope_a + t * (square_term + t * cubic_term))
         if 0 < t < 1 and value < minimum:
             minimum = value
             argument = t
     return minimum, argument
 
 
-def next_sample_position(left: SpectrumSample, right: SpectrumSample) -> tuple[float, bool]:
-    """Returns (fraction, may_hold_two). fraction: position of an additional sample as a fraction of the
-    interval from `left` to `right`; 0 if the slopes explain the end values and exclude exchanges of the
-    leading eigenvalue. may_hold_two: whether two exchanges may lie between the samples.
+class NextSample(NamedTuple):
+    """Position of an additional sample between two samples, as a fraction of their interval; 0 if the slopes
+    explain the end values and exclude exchanges of the leading eigenvalue. may_hold_two_exchanges: whether
+    two exchanges may lie between the samples."""
 
-    The leading eigenvalue must be real at both samples, or a pair at both samples.
-    """
-    h = right.p - left.p
+    position: float
+    may_hold_two_exchanges: bool
+
+
+def next_sample_between(left: SpectrumSample, right: SpectrumSample) -> NextSample:
+    """The sample to be added between two samples. The leading eigenvalue must be real at both samples, or a
+    pair at both samples."""
+    distance = right.p - left.p
     for a, b in (
         (left.squared_pair_difference(), right.squared_pair_difference()),
         (left.leading_growth_gap(), right.leading_growth_gap()),
@@ -46,28 +52,30 @@ def next_sample_position(left: SpectrumSample, right: SpectrumSample) -> tuple[f
             continue
         if a is None or b is None:
             value, slope = a or b or (0.0, 0.0)
-            if abs(value) < 2 * abs(slope) * h:
-                return 0.5, False
+            if abs(value) < 2 * abs(slope) * distance:
+                return NextSample(0.5, False)
             continue
         smallest_value = min(abs(a[0]), abs(b[0]))
         # By the trapezoidal rule smooth slopes explain the change between the samples.
-        unexplained_change = _unexplained_change(a, b, h)
-        sign = math.copysign(h, a[0])
+        unexplained_change = _unexplained_change(a, b, distance)
+        sign = math.copysign(distance, a[0])
         minimum, fraction = minimum_of_cubic(abs(a[0]), abs(b[0]), sign * a[1], sign * b[1])
         if a[0] * b[0] <= 0 or minimum < SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * smallest_value:
-            return fraction, True
+            return NextSample(fraction, True)
         if unexplained_change > SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * max(
             smallest_value, abs(b[0] - a[0])
         ):
-            return 0.5, False
-    return 0.0, False
+            return NextSample(0.5, False)
+    return NextSample(0.0, False)
 
 
-def excludes_exchange(left: SpectrumSample, right: SpectrumSample, may_hold_two: bool) -> bool:
+def excludes_exchange(left: SpectrumSample, right: SpectrumSample, may_hold_two_exchanges: bool) -> bool:
     """Whether the slopes at two close samples exclude an exchange of the leading eigenvalue, although
-    `next_sample_position` asks for a sample between them and returns `may_hold_two`. The leading eigenvalue
-    must be real at both samples, or a pair at both samples."""
-    return two_pairs_exchange_lead(left, right) or (not may_hold_two and next_two_stay_below(left, right))
+    `next_sample_between` asks for a sample between them and returns `may_hold_two_exchanges`. The leading
+    eigenvalue must be real at both samples, or a pair at both samples."""
+    return two_pairs_exchange_lead(left, right) or (
+        not may_hold_two_exchanges and next_two_stay_below(left, right)
+    )
 
 
 def next_two_stay_below(left: SpectrumSample, right: SpectrumSample) -> bool:
@@ -78,8 +86,8 @@ def next_two_stay_below(left: SpectrumSample, right: SpectrumSample) -> bool:
     right_gaps = right.gaps_to_next_two()
     if left_gaps is None or right_gaps is None:
         return False
-    h = right.p - left.p
-    return all(_stays_positive(a, b, h) for a, b in zip(left_gaps, right_gaps, strict=True))
+    distance = right.p - left.p
+    return all(_stays_positive(a, b, distance) for a, b in zip(left_gaps, right_gaps, strict=True))
 
 
 def two_pairs_exchange_lead(left: SpectrumSample, right: SpectrumSample) -> bool:
@@ -87,9 +95,9 @@ def two_pairs_exchange_lead(left: SpectrumSample, right: SpectrumSample) -> bool
     opposite order, and exclude that one of the two pairs becomes real between the samples."""
     if any(w.imag == 0 for sample in (left, right) for w in sample.w):
         return False
-    h = right.p - left.p
-    return _changes_sign_once(left.growth_gap(0, 2), right.growth_gap(2, 0), h) and all(
-        _stays_positive(left.squared_frequency(i), right.squared_frequency(2 - i), h) for i in (0, 2)
+    distance = right.p - left.p
+    return _changes_sign_once(left.growth_gap(0, 2), right.growth_gap(2, 0), distance) and all(
+        _stays_positive(left.squared_frequency(i), right.squared_frequency(2 - i), distance) for i in (0, 2)
     )
 
 
@@ -99,10 +107,10 @@ def has_only_double_eigenvalue(left: SpectrumSample, right: SpectrumSample) -> b
     squares = left.squared_pair_difference(), right.squared_pair_difference()
     if squares[0] is None or squares[1] is None:
         return False
-    h = right.p - left.p
+    distance = right.p - left.p
     # The mean of the two leading eigenvalues is smooth where they become a pair.
-    return _changes_sign_once(squares[0], squares[1], h) and _stays_positive(
-        left.growth_gap_of_leading_pair(), right.growth_gap_of_leading_pair(), h
+    return _changes_sign_once(squares[0], squares[1], distance) and _stays_positive(
+        left.growth_gap_of_leading_pair(), right.growth_gap_of_leading_pair(), distance
     )
 
 
@@ -115,22 +123,22 @@ def has_only_leader_exchange(left: SpectrumSample, right: SpectrumSample) -> boo
     samples = ((left, real_left, pair_left), (right, real_right, pair_right))
     if any(sample.w[real].imag != 0 or sample.w[pair].imag == 0 for sample, real, pair in samples):
         return False
-    h = right.p - left.p
+    distance = right.p - left.p
     return (
-        _changes_sign_once(left.growth_gap(*indices[0]), right.growth_gap(*indices[1]), h)
-        and _stays_positive(left.growth_gap(real_left, 3), right.growth_gap(real_right, 3), h)
-        and _stays_positive(left.growth_gap(pair_left, 3), right.growth_gap(pair_right, 3), h)
-        and _stays_positive(left.squared_frequency(pair_left), right.squared_frequency(pair_right), h)
+        _changes_sign_once(left.growth_gap(*indices[0]), right.growth_gap(*indices[1]), distance)
+        and _stays_positive(left.growth_gap(real_left, 3), right.growth_gap(real_right, 3), distance)
+        and _stays_positive(left.growth_gap(pair_left, 3), right.growth_gap(pair_right, 3), distance)
+        and _stays_positive(left.squared_frequency(pair_left), right.squared_frequency(pair_right), distance)
     )
 
 
-def _stays_positive(left: tuple[float, float], right: tuple[float, float], h: float) -> bool:
+def _stays_positive(left: tuple[float, float], right: tuple[float, float], distance: float) -> bool:
     """Whether the slopes of a quantity explain its values at two samples and exclude a zero between them.
-    left, right: (value, slope) at the samples. h: distance of the samples."""
+    left, right: (value, slope) at the samples. distance: distance of the samples."""
     (a, slope_a), (b, slope_b) = left, right
     smallest_value = min(a, b)
-    minimum, _ = minimum_of_cubic(a, b, h * slope_a, h * slope_b)
-    unexplained_change = _unexplained_change(left, right, h)
+    minimum, _ = minimum_of_cubic(a, b, distance * slope_a, distance * slope_b)
+    unexplained_change = _unexplained_change(left, right, distance)
     return (
         minimum >= SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * smallest_value > 0
         and unexplained_change
@@ -138,17 +146,18 @@ def _stays_positive(left: tuple[float, float], right: tuple[float, float], h: fl
     )
 
 
-def _changes_sign_once(left: tuple[float, float], right: tuple[float, float], h: float) -> bool:
+def _changes_sign_once(left: tuple[float, float], right: tuple[float, float], distance: float) -> bool:
     """Whether a quantity has opposite signs at two samples and its slopes explain the change. left, right:
-    (value, slope) at the samples. h: distance of the samples."""
+    (value, slope) at the samples. distance: distance of the samples."""
     change = abs(right[0] - left[0])
     return (
         left[0] * right[0] < 0
-        and _unexplained_change(left, right, h) <= SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * change
+        and _unexplained_change(left, right, distance)
+        <= SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * change
     )
 
 
-def _unexplained_change(left: tuple[float, float], right: tuple[float, float], h: float) -> float:
+def _unexplained_change(left: tuple[float, float], right: tuple[float, float], distance: float) -> float:
     """Modulus of the change of a quantity between two samples, minus its change by the trapezoidal rule.
-    left, right: (value, slope) at the samples. h: distance of the samples."""
-    return abs(right[0] - left[0] - h * (left[1] + right[1]) / 2)
+    left, right: (value, slope) at the samples. distance: distance of the samples."""
+    return abs(right[0] - left[0] - distance * (left[1] + right[1]) / 2)

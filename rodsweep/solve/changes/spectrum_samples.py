@@ -106,7 +106,8 @@ class SpectrumSample:
         return (first_gap + second_gap) / 2, (first_slope + second_slope) / 2
 
     def squared_frequency(self, i: int) -> tuple[float, float]:
-        """Returns (tau^2 (Im w)^2, its derivative by p), tau: `relaxation_time`, for w = `self.w[i]`."""
+        """Returns (tau^2 (Im w)^2, its derivative with respect to p), tau: `relaxation_time`, for w =
+        `self.w[i]`."""
         frequency, slope = self._times_relaxation_time(self.w[i].imag, self.slope[i].imag)
         return frequency**2, 2 * frequency * slope
 

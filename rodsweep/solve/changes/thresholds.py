@@ -1,4 +1,5 @@
-"""Task `thresholds` for one rod: all thresholds (`kinds`) as the force grows from 0 (paper, Sec. VI)."""
+"""Task `thresholds` for one rod: all thresholds (`threshold_kinds`) as the force grows from 0 (paper, Sec.
+VI)."""
 
 import math
 from dataclasses import dataclass
@@ -63,8 +64,9 @@ def empty_thresholds(status: ThresholdStatus, end: float, message: str = "") -> 
 def thresholds_with_status(
     result: ThresholdSearchResult, accuracy: float, certify: bool, max_thresholds: int
 ) -> Thresholds:
-    """The result of a search with its status: the most serious problem, or ok. accuracy, certify: as
-    requested. max_thresholds: maximum number of thresholds in the list."""
+    """The result of a search with its status: the most serious problem, or ok. accuracy: requested relative
+    accuracy. certify: whether a proof is requested. max_thresholds: maximum number of thresholds in the
+    list."""
     status = ThresholdStatus.ok
     if result.ended_early:
         status = ThresholdStatus.ended_early

@@ -1,5 +1,5 @@
-"""Search for all thresholds along a path of rods (`kinds`): pairs that cross the imaginary axis, and
-exchanges of the leading eigenvalue.
+"""Search for all thresholds along a path of rods (`threshold_kinds`): pairs that cross the imaginary axis,
+and exchanges of the leading eigenvalue.
 
 The crossings come from a cover of the (eigenvalue, parameter) region with boxes (`covering`), or for
 nonuniform arms from `arm.crossings`; exchanges from `leader_exchanges`. Winding numbers confirm the counts.
@@ -38,7 +38,8 @@ THRESHOLD_SETTINGS = ThresholdSettings()
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ThresholdSearchResult:
-    """All thresholds along a path, by parameter. unstable_at_start, unstable_at_end: -1 if unknown."""
+    """All thresholds along a path, by increasing parameter. unstable_at_start, unstable_at_end: number of
+    unstable modes at both ends, -1 if unknown."""
 
     thresholds: tuple[Threshold, ...] = ()
     searched_interval: tuple[float, float] = (math.nan, math.nan)
@@ -104,32 +105,36 @@ def find_thresholds(
     a-priori bound applies."""
     low, high = sorted((path.coordinate(start), path.coordinate(stop)))
     problem = path_problem(path)
-    found = _crossings(problem, (low, high), certify, max_crossings)
-    tracer = LeaderExchangeSearch(problem, certify)
+    crossings = _crossings(problem, (low, high), certify, max_crossings)
+    search = LeaderExchangeSearch(problem, certify)
     edges = problem.interval_edges(low, high)
-    # A second round only if a pair on the axis was not found to lead, with samples close to it.
+    # A second round, with samples close to it, only if a pair on the axis was not found to lead.
     for _ in range(2):
-        exchanges, end = tracer.exchanges([*(p for p in edges if p < found.search_end.p), found.search_end.p])
-        found = found.restricted_to(end) if end.reason else found
-        ends = found.searched_interval(start, stop)
-        counts = ModeCounter(problem, found.gaps, certify)
+        exchanges, end = search.exchanges(
+            [*(p for p in edges if p < crossings.search_end.p), crossings.search_end.p]
+        )
+        crossings = crossings.restricted_to(end) if end.reason else crossings
+        ends = crossings.searched_interval(start, stop)
+        counter = ModeCounter(problem, crossings.gaps, certify)
         # Without load the operator is self-adjoint and negative: no mode is unstable, no count is needed.
-        count = 0 if path.name == "F" and start == 0 else counts.count_at_start(*ends, found.crossings)
-        oscillates = tracer.sample_at(path.coordinate(ends[0])).oscillates
-        ordered = sorted(exchanges + found.crossings, key=lambda c: c.value)
-        crossings, end_count = counts.crossings_with_counts(ordered, ends, count)
-        missed_p = _crossings_without_leading_pair(path, crossings, oscillates, count)
+        start_count = (
+            0 if path.name == "F" and start == 0 else counter.count_at_start(*ends, crossings.crossings)
+        )
+        oscillates = search.sample_at(path.coordinate(ends[0])).oscillates
+        ordered = sorted(exchanges + crossings.crossings, key=lambda c: c.value)
+        thresholds, end_count = counter.crossings_with_counts(ordered, ends, start_count)
+        missed_p = _crossings_without_leading_pair(path, thresholds, oscillates, start_count)
         if not missed_p:
             break
-        p_near = [
+        sample_p = [
             p + s * THRESHOLD_SETTINGS.sample_shift_fraction * (high - low) for p in missed_p for s in (-1, 1)
         ]
-        edges = sorted({*edges, *(p for p in p_near if low < p < high)})
+        edges = sorted({*edges, *(p for p in sample_p if low < p < high)})
     else:
-        counts.doubts.append("a pair crosses the imaginary axis, but another eigenvalue grows faster")
-    if certify and not tracer.leading_eigenvalues_proved:
-        counts.doubts.append("it is not proved everywhere in the range which eigenvalue leads")
-    result = _search_result(found, (start, stop), counts, crossings, (count, end_count))
+        counter.doubts.append("a pair crosses the imaginary axis, but another eigenvalue grows faster")
+    if certify and not search.leading_eigenvalues_proved:
+        counter.doubts.append("it is not proved everywhere in the range which eigenvalue leads")
+    result = _search_result(crossings, (start, stop), counter, thresholds, (start_count, end_count))
     return replace(result, oscillates_at_start=oscillates, solve_count=problem.solve_count)
 
 
@@ -137,44 +142,45 @@ def find_axis_crossings(
     path: ParameterPath, start: float, stop: float, certify: bool = True, max_crossings: float = math.inf
 ) -> ThresholdSearchResult:
     """Crossings of the imaginary axis by pairs between the parameter values `start` and `stop`, without
-    exchanges of the leading eigenvalue; takes half the time of `find_thresholds`. `proved`: boxes without
-    a further crossing cover the region, and every count agrees. certify requests a proof. The search ends
-    early, or raises Unsolvable, for the reasons of `find_thresholds`."""
+    exchanges of the leading eigenvalue, in half the time of `find_thresholds`. certify: whether a proof is
+    requested. The result is `proved` if boxes without a further crossing cover the region and every count
+    agrees. The search ends early, or raises Unsolvable, for the reasons of `find_thresholds`."""
     low, high = sorted((path.coordinate(start), path.coordinate(stop)))
     problem = path_problem(path)
-    found = _crossings(problem, (low, high), certify, max_crossings)
-    counts = ModeCounter(problem, found.gaps, certify)
-    ends = found.searched_interval(start, stop)
-    ordered = sorted(found.crossings, key=lambda c: c.value)
-    count = 0 if path.name == "F" and start == 0 else counts.count_at_start(*ends, ordered)
-    crossings, end_count = counts.crossings_with_counts(ordered, ends, count)
-    return _search_result(found, (start, stop), counts, crossings, (count, end_count))
+    path_crossings = _crossings(problem, (low, high), certify, max_crossings)
+    counter = ModeCounter(problem, path_crossings.gaps, certify)
+    ends = path_crossings.searched_interval(start, stop)
+    ordered = sorted(path_crossings.crossings, key=lambda c: c.value)
+    count = 0 if path.name == "F" and start == 0 else counter.count_at_start(*ends, ordered)
+    crossings, end_count = counter.crossings_with_counts(ordered, ends, count)
+    return _search_result(path_crossings, (start, stop), counter, crossings, (count, end_count))
 
 
 def _search_result(
-    found: PathCrossings,
+    crossings: PathCrossings,
     interval: tuple[float, float],
-    counts: ModeCounter,
+    counter: ModeCounter,
     thresholds: tuple[Threshold, ...],
     end_counts: tuple[int, int],
 ) -> ThresholdSearchResult:
     """`ThresholdSearchResult` of `thresholds` in the searched part of the requested `interval`, and why the
-    search ended early. counts: gaps and doubts of the search. end_counts: unstable modes at both ends."""
-    starts, ends = zip(*counts.gaps, strict=True) if counts.gaps else ((math.nan,), (math.nan,))
-    known = all(number >= 0 for number in (*end_counts, *(c.unstable_after for c in thresholds)))
-    reason = found.search_end.reason
-    end = found.path.parameter.value(found.search_end.p)
-    message = f"the search ends at {found.path.name} = {end:.12g}: {reason}" if reason else ""
+    search ended early. counter: gaps and doubts of the search. end_counts: numbers of unstable modes at
+    both ends."""
+    starts, ends = zip(*counter.gaps, strict=True) if counter.gaps else ((math.nan,), (math.nan,))
+    is_known = all(number >= 0 for number in (*end_counts, *(c.unstable_after for c in thresholds)))
+    reason = crossings.search_end.reason
+    end = crossings.path.parameter.value(crossings.search_end.p)
+    message = f"the search ends at {crossings.path.name} = {end:.12g}: {reason}" if reason else ""
     return ThresholdSearchResult(
         thresholds=thresholds,
-        searched_interval=found.searched_interval(*interval),
+        searched_interval=crossings.searched_interval(*interval),
         ended_early=bool(reason),
         open_range=(min(starts), max(ends)),
         unstable_at_start=end_counts[0],
         unstable_at_end=end_counts[1],
-        proved=counts.certify and not counts.gaps and not counts.doubts and known,
-        evaluation_count=found.evaluation_count,
-        doubt_text="; ".join(filter(None, (message, *counts.doubts))),
+        proved=counter.certify and not counter.gaps and not counter.doubts and is_known,
+        evaluation_count=crossings.evaluation_count,
+        doubt_text="; ".join(filter(None, (message, *counter.doubts))),
     )
 
 
@@ -193,35 +199,38 @@ def _crossings(
 
 
 def _crossings_by_covering(path: ParameterPath, low: float, high: float) -> PathCrossings:
-    """Crossings for path variables from `low` to `high`, by boxes; Unsolvable without a bound."""
+    """Crossings for path variables from `low` to `high`, by boxes; raises Unsolvable if no a-priori bound
+    applies."""
     boxes = first_boxes(path, low, high)
     if boxes is None:
         ends = f"from {path.text_at(low)} to {path.text_at(high)}"
         raise Unsolvable(f"no a-priori bound on the eigenvalues applies to all rods {ends}")
     zeros, undecided, box_count = cover_with_boxes(boxes, path.origin, path.direction)
-    inside = [zero for zero in zeros if low <= zero.p + zero.error_of_p and zero.p - zero.error_of_p <= high]
-    hopfs = [_hopf_crossing(path, zero) for zero in inside]
-    return PathCrossings(path, hopfs, _undecided_intervals(path, undecided), SearchEnd(high), box_count)
+    inner_zeros = [
+        zero for zero in zeros if low <= zero.p + zero.error_of_p and zero.p - zero.error_of_p <= high
+    ]
+    crossings = [_hopf_crossing(path, zero) for zero in inner_zeros]
+    return PathCrossings(path, crossings, _undecided_intervals(path, undecided), SearchEnd(high), box_count)
 
 
 def _crossings_without_leading_pair(
-    path: ParameterPath, crossings: tuple[Threshold, ...], oscillates: bool, count: int
+    path: ParameterPath, crossings: tuple[Threshold, ...], oscillates: bool, unstable_count: int
 ) -> list[float]:
     """Path variables of the crossings whose pair must lead, but does not lead according to the exchanges.
-    oscillates: whether a pair leads at the start. count: number of unstable modes at the start."""
-    missed = []
+    oscillates: whether a pair leads at the start. unstable_count: number of unstable modes at the start."""
+    missed_p = []
     for crossing in crossings:
         if crossing.kind.switches_real_and_complex:
             oscillates = crossing.kind.pair_leads_after
         else:
-            if min(count, crossing.unstable_after) == 0 and not oscillates:
-                missed.append(path.coordinate(crossing.value))
-            count = crossing.unstable_after
-    return missed
+            if min(unstable_count, crossing.unstable_after) == 0 and not oscillates:
+                missed_p.append(path.coordinate(crossing.value))
+            unstable_count = crossing.unstable_after
+    return missed_p
 
 
 def _hopf_crossing(path: ParameterPath, zero: LocatedEigenvalue) -> Threshold:
-    """Crossing at a zero of D on the axis."""
+    """Crossing of the imaginary axis at `zero`, a zero of D on this axis."""
     coefficients = coefficients_at(zero.p, path.origin, path.direction)
     value = determinant_along_path(complex(0.0, zero.eta_or_x), coefficients, path.direction)
     kind = crossing_kind(path, (-value.D_p / value.D_w).real > 0)  # dw/dp = -D_p/D_w

@@ -1,7 +1,7 @@
 """Number of unstable modes between the thresholds along a path of rods.
 
-The directions of the crossings (`kinds`) give the number of unstable modes after every crossing. Winding
-numbers confirm this number at both ends and between the crossings.
+The directions of the crossings (`threshold_kinds`) give the number of unstable modes after every crossing.
+Winding numbers confirm this number at both ends and between the crossings.
 """
 
 from dataclasses import dataclass, replace
@@ -59,25 +59,25 @@ class ModeCounter:
                 return number
         return -1
 
-    def count_at_start(self, start: float, stop: float, hopfs: list[Threshold]) -> int:
+    def count_at_start(self, start: float, stop: float, crossings: list[Threshold]) -> int:
         """Number of unstable modes at `start`, or, if that count is undecided, at a position before all
-        crossings `hopfs`, all gaps and `stop`; -1 if undecided."""
+        crossings `crossings`, all gaps and `stop`; -1 if undecided."""
         number = self.count_at(start)
-        first_position = min([stop, *(c.value for c in hopfs), *(a for a, _ in self.gaps)])
+        first_position = min([stop, *(c.value for c in crossings), *(a for a, _ in self.gaps)])
         return number if number >= 0 else self.count_between(start, first_position)
 
     def crossings_with_counts(
-        self, ordered: list[Threshold], parameter_ends: tuple[float, float], unstable_count: int
+        self, ordered_thresholds: list[Threshold], parameter_ends: tuple[float, float], unstable_count: int
     ) -> tuple[tuple[Threshold, ...], int]:
-        """Returns (thresholds, at_end). thresholds: as `ordered`, with `unstable_after` set, and with the
-        kind restabilization where the last unstable pair becomes stable. at_end: number of unstable modes at
-        the end. ordered: thresholds by increasing parameter. parameter_ends: smallest and largest parameter
-        value. unstable_count: number of unstable modes at the start. Unknown numbers are -1. `doubts`
-        afterwards holds the doubts of this call only."""
+        """Returns (thresholds, at_end). thresholds: as `ordered_thresholds`, with `unstable_after` set, and
+        with the kind restabilization where the last unstable pair becomes stable. at_end: number of unstable
+        modes at the end. ordered_thresholds: thresholds by increasing parameter. parameter_ends: smallest and
+        largest parameter value. unstable_count: number of unstable modes at the start. Unknown numbers are
+        -1. `doubts` afterwards contains the doubts of this call only."""
         self.doubts = []
-        out: list[Threshold] = []
+        counted_thresholds: list[Threshold] = []
         start = parameter_ends[0]
-        for crossing in ordered:
+        for crossing in ordered_thresholds:
             kind = crossing.kind
             if kind in (ThresholdKind.hopf, ThresholdKind.hopf_reverse):
                 unstable_count = self._count_before(start, crossing.value, unstable_count)
@@ -86,8 +86,8 @@ class ModeCounter:
                     unstable_count += 2 if kind == ThresholdKind.hopf else -2
                 if kind == ThresholdKind.hopf_reverse and unstable_count == 0:
                     kind = ThresholdKind.restabilization
-            out.append(replace(crossing, kind=kind, unstable_after=unstable_count))
-        return tuple(out), self._count_before(start, parameter_ends[1], unstable_count)
+            counted_thresholds.append(replace(crossing, kind=kind, unstable_after=unstable_count))
+        return tuple(counted_thresholds), self._count_before(start, parameter_ends[1], unstable_count)
 
     def _count_before(self, a: float, b: float, unstable_count: int) -> int:
         """Number of unstable modes just before b: `unstable_count`, the number just after a, compared with a

@@ -104,13 +104,13 @@ class StepControl:
             raise Unsolvable("the tangent of the curve turns by too large an angle in one step")
         return result
 
-    def next_length(self, length: float, result: StepResult[Solution], solutions: int) -> float:
+    def next_length(self, length: float, result: StepResult[Solution], solution_count: int) -> float:
         """Length of the next step, from the prediction error and the angle of the last step, within the
         limits of the ratio to the last length and at most `max_length`. length: length of the last, accepted
-        step. result: result of the last step. solutions: number of solutions so far."""
+        step. result: result of the last step. solution_count: number of solutions so far."""
         # The error of a prediction from m solutions is proportional to the m-th power of the step.
         error_ratio = (self.target_error / max(result.prediction_error, self.min_error_or_angle)) ** (
-            1 / min(self.prediction_order, solutions)
+            1 / min(self.prediction_order, solution_count)
         )
         angle_ratio = self.target_angle / max(_angle(result.turn_cosine), self.min_error_or_angle)
         factor = min(max(min(error_ratio, angle_ratio), self.min_length_ratio), self.max_length_ratio)

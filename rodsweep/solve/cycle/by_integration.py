@@ -86,27 +86,26 @@ class _IntegrationUntilSettled:
                 self.system, self.request.amplitude * self.leading_mode.z.real, self.leading_mode.period
             )
             settled = self._integrate_until_settled(z)
-            path = self._measured_path(settled)
+            motion = self._measured_path(settled)
             is_nearby_rod = self.rod != self.limiting_rod
-            fraction = INTEGRATION_SETTINGS.max_error_ratio_for_limiting_rod if is_nearby_rod else 1.0
-            tolerance = self.request.accuracy * fraction
+            error_ratio = INTEGRATION_SETTINGS.max_error_ratio_for_limiting_rod if is_nearby_rod else 1.0
+            tolerance = self.request.accuracy * error_ratio
             for _ in range(INTEGRATION_SETTINGS.max_comparisons):
                 settled = self._settled_on_finer_mesh(settled)
-                coarser_path = path
-                path = self._measured_path(settled)
+                coarser_motion = motion
+                motion = self._measured_path(settled)
                 settled_distance = max_settled_distance(self.request.accuracy)
-                errors = errors_of_two_integrations(coarser_path, path, settled_distance)
+                errors = errors_of_two_integrations(coarser_motion, motion, settled_distance)
                 if errors.largest_weighted_error <= tolerance:
                     break
             if is_nearby_rod:
-                errors = self._errors_in_limit(settled, path, errors)
+                errors = self._errors_in_limit(settled, motion, errors)
         except NoCycleFound as end:
             return replace(straight, status=end.status, message=end.message, periods=self.return_count)
-        return self._with_measures(straight, path, errors)
+        return self._with_measures(straight, motion, errors)
 
     def _settled_on_finer_mesh(self, settled: SettledMotion) -> SettledMotion:
-        """The motion `settled`, continued on a finer mesh with a smaller tolerance until it settles again, to
-        be measured at more times."""
+        """The motion `settled`, continued on a finer mesh with a smaller tolerance until it settles again."""
         coarser_system = self.system
         self.mesh = mesh_with_edges(self.mesh.edges, self.mesh.order + INTEGRATION_SETTINGS.order_increase)
         self.scheme = replace(
@@ -120,23 +119,23 @@ class _IntegrationUntilSettled:
     def _integrate_until_settled(self, z: Array) -> SettledMotion:
         """The settled motion from the state z, (unknowns,); raises NoCycleFound."""
         past_moments: deque[Array] = deque(maxlen=RETURN_SETTINGS.max_returns_per_period + 1)
-        row = tip_angle_row(self.system)
-        step = self.leading_mode.period / TRANSIENT_SETTINGS.first_steps_per_period
+        angle_row = tip_angle_row(self.system)
+        time_step = self.leading_mode.period / TRANSIENT_SETTINGS.first_steps_per_period
         distances = ReturnDistances(INTEGRATION_SETTINGS.return_error_over_tolerance * self.scheme.tolerance)
-        max_periods = self.request.most_periods
-        while self.return_count < max_periods:
-            report(lambda: SolvePosition(f"{self.return_count} of at most {max_periods} returns of the tip"))
+        max_returns = self.request.most_periods
+        while self.return_count < max_returns:
+            report(lambda: SolvePosition(f"{self.return_count} of at most {max_returns} returns of the tip"))
             run = self._integrate(
                 z,
                 TRANSIENT_SETTINGS.max_run_duration_ratio
                 * TRANSIENT_SETTINGS.returns_per_run
                 * self.return_times.time_per_return,
-                step,
-                return_limit(row, z, TRANSIENT_SETTINGS.returns_per_run),
+                time_step,
+                return_limit(angle_row, z, TRANSIENT_SETTINGS.returns_per_run),
             )
             z = run.states[-1]
             # The last time step of a run is the first time step of the next run, which continues the motion.
-            step = float(run.times[-1] - run.times[-2])
+            time_step = float(run.times[-1] - run.times[-2])
             times, states = self._crossings(run)
             self.return_times.record_run(times, float(run.times[-1]))
             past_moments.extend(self.system.layout.stress_field(states, "m3"))
@@ -147,12 +146,12 @@ class _IntegrationUntilSettled:
                 continue
             return_count, distance = repetition(list(past_moments))
             distances.record_test(distance, return_count / TRANSIENT_SETTINGS.returns_per_run)
-            # For distances in a geometric sequence, the distance from the cycle is distance/(1 - rate).
+            # For distances in a geometric sequence the distance from the cycle is distance/(1 - rate).
             tolerance = max_settled_distance(self.request.accuracy)
             if distance <= tolerance * (1 - distances.contraction_rate):
-                return SettledMotion(z, return_count, step)
-        reason = not_settled_text(self.return_count, len(past_moments), distances.last)
-        raise NoCycleFound(IntegrationStatus.not_settled, reason)
+                return SettledMotion(z, return_count, time_step)
+        message = not_settled_text(self.return_count, len(past_moments), distances.last)
+        raise NoCycleFound(IntegrationStatus.not_settled, message)
 
     def _integrate(
         self, z: Array, duration: float, step: float, limit: RunLimit, scheme: TimeScheme | None = None
@@ -160,36 +159,36 @@ class _IntegrationUntilSettled:
         """The motion from the state z, (unknowns,), over `duration`, in tau2, or to `limit`; raises
         NoCycleFound if the run fails. step: first time step, in tau2. scheme: None for `self.scheme`."""
         run = integrator(self.system.mesh, scheme or self.scheme).run(self.system, z, duration, step, limit)
-        if end := run_failure(self.system, run, self.return_count):
-            status = IntegrationStatus.left_the_model if end.left_the_model else IntegrationStatus.failed
-            raise NoCycleFound(status, end.message)
+        if failure := run_failure(self.system, run, self.return_count):
+            status = IntegrationStatus.left_the_model if failure.left_the_model else IntegrationStatus.failed
+            raise NoCycleFound(status, failure.message)
         return run
 
     def _crossings(self, run: Trajectory) -> tuple[Array, Array]:
         """Returns (times, states), (k,) and (k, unknowns), at which the tip's theta rises through 0 on a run.
         The motion is integrated to these times, because cubic interpolation is less accurate."""
         times = section_crossings(self.system, run)[0]
-        row = tip_angle_row(self.system)
+        angle_row = tip_angle_row(self.system)
         states = np.empty((len(times), self.system.unknown_count))
         for i, time in enumerate(times):
             step_index = int(np.searchsorted(run.times, time, side="right")) - 1
-            interval = float(time - run.times[step_index])
+            elapsed_time = float(time - run.times[step_index])
             z = run.states[step_index]
-            if interval > 0:
-                z = self._integrate(z, interval, interval, RunLimit()).states[-1]
+            if elapsed_time > 0:
+                z = self._integrate(z, elapsed_time, elapsed_time, RunLimit()).states[-1]
             rates = self.system.state_derivative(z[None])[0]
             # A Newton step in time from the interpolated crossing: theta is smooth there.
-            delay = float(row @ z) / float(row @ rates)
+            delay = float(angle_row @ z) / float(angle_row @ rates)
             times[i] = time - delay
             states[i] = z - delay * rates
         return times, states
 
     def _measured_path(self, settled: SettledMotion) -> CycleMotion:
         """The cycle of a settled motion, from a further run of more than a period; raises NoCycleFound."""
-        returns = settled.returns_per_period + 2
-        limit = return_limit(tip_angle_row(self.system), settled.state, returns)
+        count = settled.returns_per_period + 2
+        limit = return_limit(tip_angle_row(self.system), settled.state, count)
         tolerance = min(self.scheme.tolerance, INTEGRATION_SETTINGS.max_measurement_tolerance)
-        duration = TRANSIENT_SETTINGS.max_run_duration_ratio * returns * self.return_times.time_per_return
+        duration = TRANSIENT_SETTINGS.max_run_duration_ratio * count * self.return_times.time_per_return
         scheme = replace(self.scheme, tolerance=tolerance)
         run = self._integrate(settled.state, duration, settled.last_time_step, limit, scheme)
         times = self._crossings(run)[0]
@@ -210,10 +209,12 @@ class _IntegrationUntilSettled:
             )
         )
 
-    def _errors_in_limit(self, settled: SettledMotion, path: CycleMotion, errors: CycleErrors) -> CycleErrors:
+    def _errors_in_limit(
+        self, settled: SettledMotion, cycle: CycleMotion, errors: CycleErrors
+    ) -> CycleErrors:
         """`errors` plus the error of integrating a nearby rod instead of a limiting rod; raises
         NoCycleFound."""
-        integrated_rod = path.orbit.form.rod
+        integrated_rod = cycle.orbit.form.rod
         limit = self.limiting_rod
         limit_names = [name for name in PARAMETERS if integrated_rod.values[name] != limit.values[name]]
         # The coordinate of a limit is 0, so twice the coordinate is twice the distance from the limit.
@@ -225,7 +226,7 @@ class _IntegrationUntilSettled:
         self.system = ExplicitSystem(self.rod, self.mesh)
         z = relax_fast_components(self.system, settled.state, self.leading_mode.period)
         limit_errors = errors_of_two_integrations(
-            path, self._measured_path(self._integrate_until_settled(z)), 0.0
+            cycle, self._measured_path(self._integrate_until_settled(z)), 0.0
         )
         return CycleErrors(
             errors.period_error + limit_errors.period_error,
@@ -234,8 +235,8 @@ class _IntegrationUntilSettled:
             nan,
         )
 
-    def _with_measures(self, outcome: CycleOutcome, path: CycleMotion, errors: CycleErrors) -> CycleOutcome:
-        """The outcome `outcome` with the status, measures and errors of the settled cycle of `path`."""
+    def _with_measures(self, outcome: CycleOutcome, motion: CycleMotion, errors: CycleErrors) -> CycleOutcome:
+        """The outcome `outcome` with the status, measures and errors of the cycle `motion`."""
         is_accurate = errors.largest_weighted_error <= self.request.accuracy
         cycle = replace(
             outcome,
@@ -246,4 +247,4 @@ class _IntegrationUntilSettled:
             "the requested accuracy",
             periods=self.return_count,
         )
-        return with_measures(cycle, self.request, path, measures_of(path), errors)
+        return with_measures(cycle, self.request, motion, measures_of(motion), errors)

@@ -134,19 +134,19 @@ class CycleOutcome:
     motion_shapes: MotionShapes | None = None
     """Shapes of the rod from the start of the motion, if requested."""
     neighbour: CycleStart | None = None
-    """Data of this cycle from which the next rod of a chain starts; None outside a chain."""
+    """Data of this cycle from which the search for the next rod of a chain starts; None outside a chain."""
 
 
 def with_measures(
     cycle: CycleOutcome,
     request: CycleRequest,
-    path: CycleMotion,
+    motion: CycleMotion,
     measures: CycleMeasures,
     errors: CycleErrors,
 ) -> CycleOutcome:
-    """The outcome `cycle` with the mesh, measures, errors and requested time series of a solved cycle. path:
-    motion of the solved cycle over its period."""
-    mesh = path.orbit.form.mesh
+    """The outcome `cycle` with the mesh, measures, errors and requested time series of a solved cycle.
+    motion: motion of this cycle over its period."""
+    mesh = motion.orbit.form.mesh
     # Unresolved harmonics are smaller than the cycle's error, so 0 is correct within this error.
     amplitudes = padded_or_cut(measures.harmonic_amplitude, request.harmonics, 0.0)
     return replace(
@@ -155,35 +155,35 @@ def with_measures(
         order=mesh.order,
         measures=replace(measures, harmonic_amplitude=amplitudes),
         errors=errors,
-        tip=path.tip_from_mean_crossing(request.samples) if request.samples else None,
-        energy=path.energy_and_powers(request.samples) if request.samples else None,
-        shape=path.shapes_from_mean_crossing(request.shapes, request.nodes) if request.shapes else None,
+        tip=motion.tip_from_mean_crossing(request.samples) if request.samples else None,
+        energy=motion.energy_and_powers(request.samples) if request.samples else None,
+        shape=motion.shapes_from_mean_crossing(request.shapes, request.nodes) if request.shapes else None,
     )
 
 
 def padded_or_cut(values: Array | Complex, count: int, fill_value: complex) -> Any:
     """The first `count` entries of `values`, (m,), padded with `fill_value` if m < count; shape (count,)."""
-    first = np.full(count, fill_value, values.dtype)
-    first[: len(values)] = values[:count]
-    return first
+    padded = np.full(count, fill_value, values.dtype)
+    padded[: len(values)] = values[:count]
+    return padded
 
 
 def with_cycle_quantities(cycle: CycleOutcome, refined: RefinedCycle, request: CycleRequest) -> CycleOutcome:
     """The outcome `cycle` with the measures, errors, time series and multipliers of the solved cycle
     `refined`."""
-    cycle = with_measures(cycle, request, refined.path, refined.measures, refined.errors)
+    cycle = with_measures(cycle, request, refined.motion, refined.measures, refined.errors)
     return with_multipliers(cycle, refined)
 
 
 def with_multipliers(cycle: CycleOutcome, refined: RefinedCycle) -> CycleOutcome:
     """The outcome `cycle` with multipliers of the solved cycle `refined`: the largest modulus, the stored
     list (cut or padded; NO_MULTIPLIER replaces small multipliers), and their errors."""
-    mu = padded_or_cut(refined.multipliers, MULTIPLIER_LIST_SETTINGS.length, NO_MULTIPLIER)
-    mu[np.abs(mu) < MULTIPLIER_LIST_SETTINGS.min_modulus] = NO_MULTIPLIER
+    multipliers = padded_or_cut(refined.multipliers, MULTIPLIER_LIST_SETTINGS.length, NO_MULTIPLIER)
+    multipliers[np.abs(multipliers) < MULTIPLIER_LIST_SETTINGS.min_modulus] = NO_MULTIPLIER
     return replace(
         cycle,
         multiplier=refined.largest_multiplier,
-        multipliers=mu,
+        multipliers=multipliers,
         trivial_multiplier_error=refined.trivial_multiplier_error,
         errors=replace(cycle.errors, multiplier_error=refined.errors.multiplier_error),
     )

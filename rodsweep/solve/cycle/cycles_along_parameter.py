@@ -101,8 +101,8 @@ class CyclePredictor:
         """The predicted orbit of the rod in `form`, on the mesh of the solved orbit; the mesh of `form` is
         ignored.
 
-        name: the varied parameter. Raises Unsolvable if the predicted squared size of the orbit is not
-        positive.
+        name: the varied parameter. Raises Unsolvable if the predicted squared size of the orbit is
+        not positive.
         """
         step = form.rod.coordinate(name) - self.orbit.form.rod.coordinate(name)
         values = predicted_normalised_values(
@@ -121,12 +121,12 @@ class CyclePredictor:
         `target`."""
         if target == mesh_of(self.orbit):
             return self
-        data = [
+        rows = [
             np.append(interpolated_change(self.orbit, row[:-1], target), row[-1])
             for row in self.values_and_derivatives
         ]
         return replace(
-            self, orbit=target.interpolated_orbit(self.orbit), values_and_derivatives=np.array(data)
+            self, orbit=target.interpolated_orbit(self.orbit), values_and_derivatives=np.array(rows)
         )
 
 
@@ -138,8 +138,8 @@ def interpolated_change(orbit: Orbit, change: Array, target: OrbitMesh) -> Array
 
 def predictor_from(solved: ConvergedOrbit, previous: CyclePredictor | None, name: str) -> CyclePredictor:
     """The predictor at the orbit `solved`, which was solved with its tangent. previous: predictor at the
-    previous orbit, or None; unused if its orbit has the same parameter value. name: the varied parameter.
-    Raises ValueError if the orbit has no tangent.
+    previous orbit, or None; unused if its orbit has the same parameter value. name: the varied
+    parameter. Raises ValueError if the orbit has no tangent.
 
     A tangent is as inaccurate as the prediction of its orbit; the values of an orbit are far more accurate.
     With CYCLE_PREDICTION_SETTINGS.orbits_without_second_tangent or more earlier orbits, a second tangent
@@ -152,28 +152,29 @@ def predictor_from(solved: ConvergedOrbit, previous: CyclePredictor | None, name
     step = orbit.form.rod.coordinate(name) - previous.orbit.form.rod.coordinate(name) if previous else 0.0
     if previous is None or step == 0:
         return CyclePredictor(orbit, np.zeros(1), np.ones(1), tangent[None])
-    last = previous.on_mesh(mesh_of(orbit))
+    last_predictor = previous.on_mesh(mesh_of(orbit))
     # Earlier orbits have other meshes; only their tangents are interpolated to a new mesh.
-    if last is not previous:
+    if last_predictor is not previous:
         return CyclePredictor(
-            orbit, np.array([0.0, -step]), np.ones(2), np.array([tangent, last.normalised_tangent])
+            orbit, np.array([0.0, -step]), np.ones(2), np.array([tangent, last_predictor.normalised_tangent])
         )
     older_indices = np.flatnonzero(previous.derivative_orders == 0)[
         : CYCLE_PREDICTION_SETTINGS.max_earlier_orbits - 1
     ]
     offsets = [0.0, -step, *(previous.parameter_offsets[older_indices] - step)]
     # All offsets shift by the step, because the newest orbit has the offset 0.
-    data = [tangent, previous.normalised_values, *previous.values_and_derivatives[older_indices]]
+    rows = [tangent, previous.normalised_values, *previous.values_and_derivatives[older_indices]]
     orders = [1.0] + [0.0] * (1 + len(older_indices))
     if 1 + len(older_indices) < CYCLE_PREDICTION_SETTINGS.orbits_without_second_tangent:
         offsets.append(-step)
-        data.append(previous.normalised_tangent)
+        rows.append(previous.normalised_tangent)
         orders.append(1.0)
-    return CyclePredictor(orbit, np.array(offsets), np.array(orders), np.array(data))
+    return CyclePredictor(orbit, np.array(offsets), np.array(orders), np.array(rows))
 
 
 def relative_parameter_difference(first: StressForm, second: StressForm, name: str) -> float:
-    """|a - b|/max(|a|, |b|) for the coordinates a, b of the parameter `name` in two rods; 0 if a = b."""
+    """|a - b|/max(|a|, |b|) for the coordinates a, b of the parameter `name` of the rods in two
+    forms; 0 if a = b."""
     a = first.rod.coordinate(name)
     b = second.rod.coordinate(name)
     return abs(a - b) / max(abs(a), abs(b)) if a != b else 0.0
@@ -182,8 +183,8 @@ def relative_parameter_difference(first: StressForm, second: StressForm, name: s
 def orbit_near_prediction(
     predicted: Orbit, tolerance: float, workspace: NewtonWorkspace, name: str
 ) -> ConvergedOrbit:
-    """The orbit near `predicted` with its tangent along the parameter `name`, by Newton's method to a
-    relative tolerance; raises Unsolvable if the method does not converge, or if the orbit is farther from
+    """The orbit near `predicted` with its tangent along the parameter `name`, by Newton's method to
+    a relative tolerance; raises Unsolvable if the method does not converge, or if the orbit is farther from
     `predicted` than CYCLE_PREDICTION_SETTINGS.max_prediction_distance."""
     solved = newton(predicted, tolerance, workspace, name)
     if _prediction_error(predicted, solved) > CYCLE_PREDICTION_SETTINGS.max_prediction_distance:

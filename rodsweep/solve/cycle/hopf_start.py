@@ -59,11 +59,11 @@ def hopf_point_below(rod: Rod) -> HopfPointBelow | None:
     upper_w = leading_eigenvalue(rod)
     while HOPF_START_SETTINGS.min_force < F:
         # Successive forces have a constant ratio: thresholds of a rod are far apart at large forces.
-        lower = F * (1 - HOPF_START_SETTINGS.force_scan_ratio)
-        lower_w = leading_eigenvalue(replace(rod, F=lower), upper_w)
+        lower_F = F * (1 - HOPF_START_SETTINGS.force_scan_ratio)
+        lower_w = leading_eigenvalue(replace(rod, F=lower_F), upper_w)
         if lower_w.real < 0 <= upper_w.real:
-            return _hopf_point_between(rod, (lower, lower_w), (F, upper_w))
-        F = lower
+            return _hopf_point_between(rod, (lower_F, lower_w), (F, upper_w))
+        F = lower_F
         upper_w = lower_w
     return None
 
@@ -75,11 +75,14 @@ def _hopf_point_between(rod: Rod, low: tuple[float, complex], high: tuple[float,
     Newton's method fails or another eigenvalue leads at the candidate, the interval is bisected.
     """
     problem = path_problem(ParameterPath(rod, "F"))
-    (a, lower_w), (b, upper_w) = low, high
-    while b - a > HOPF_START_SETTINGS.hopf_tolerance * b:
+    (lower_F, lower_w), (upper_F, upper_w) = low, high
+    while upper_F - lower_F > HOPF_START_SETTINGS.hopf_tolerance * upper_F:
         fraction = lower_w.real / (lower_w.real - upper_w.real)
         hopf = _newton_hopf_point(
-            problem, a + fraction * (b - a), lower_w + fraction * (upper_w - lower_w), (a, b)
+            problem,
+            lower_F + fraction * (upper_F - lower_F),
+            lower_w + fraction * (upper_w - lower_w),
+            (lower_F, upper_F),
         )
         if hopf is not None:
             # The eigenvalue on the axis must lead; otherwise another mode is already unstable.
@@ -87,15 +90,15 @@ def _hopf_point_between(rod: Rod, low: tuple[float, complex], high: tuple[float,
             tolerance = HOPF_START_SETTINGS.hopf_tolerance * abs(w)
             if abs(w.real) <= tolerance and abs(w.imag - hopf.frequency) <= tolerance:
                 return hopf
-        middle = (a + b) / 2
-        w = leading_eigenvalue(replace(rod, F=middle))
+        middle_F = (lower_F + upper_F) / 2
+        w = leading_eigenvalue(replace(rod, F=middle_F))
         if w.real < 0:
-            a = middle
+            lower_F = middle_F
             lower_w = w
         else:
-            b = middle
+            upper_F = middle_F
             upper_w = w
-    raise Unsolvable(f"the mode that becomes unstable at F = {a:g} does not oscillate there")
+    raise Unsolvable(f"the mode that becomes unstable at F = {lower_F:g} does not oscillate there")
 
 
 def _newton_hopf_point(
@@ -136,9 +139,11 @@ def orbit_from_hopf(form: StressForm, hopf: HopfPointBelow, workspace: NewtonWor
     if is_near and normal.squared_y_and_frequency(rod.F)[0] <= HOPF_START_SETTINGS.max_direct_y**2:
         return orbit_by_normal_form(normal, replace(form, mesh=normal.form.mesh))
     coarse_form = replace(form, mesh=coarse_mesh_along_branch(rod))
-    for distance in HOPF_START_SETTINGS.start_force_distances:
+    for force_distance in HOPF_START_SETTINGS.start_force_distances:
         try:
-            return _orbit_along_force(normal, min(rod.F, hopf.F * (1 + distance)), coarse_form, workspace)
+            return _orbit_along_force(
+                normal, min(rod.F, hopf.F * (1 + force_distance)), coarse_form, workspace
+            )
         except Unsolvable as error:
             failure = error
     raise failure
@@ -177,16 +182,17 @@ def _normal_form(form: StressForm, w: complex) -> NormalForm:
 
 
 def _orbit_along_force(normal: NormalForm, F: float, form: StressForm, workspace: NewtonWorkspace) -> Orbit:
-    """Orbit of the rod in `form`, followed along the force from the normal form's orbit at the force F;
-    raises Unsolvable if the first orbit is far from the normal form or the branch cannot be followed."""
+    """Orbit of the rod in `form`, followed along the force from the orbit of the normal form at the force F;
+    raises Unsolvable if the first solved orbit is far from the normal form's, or the branch cannot be
+    followed."""
     start = orbit_by_normal_form(normal, replace(form, rod=replace(form.rod, F=F)))
     tolerance = HOPF_START_SETTINGS.intermediate_orbit_tolerance
     solved_orbit = with_matrix_within_distance(newton(start, tolerance, workspace, "F"), tolerance, "F")
-    squared = normal.squared_y_and_frequency(F)[0]
+    squared_y = normal.squared_y_and_frequency(F)[0]
     min_ratio, max_ratio = HOPF_START_SETTINGS.squared_amplitude_ratios
     if (
         not min_ratio
-        < solved_orbit.orbit.form.tip_coordinates(solved_orbit.orbit.start_state)[1] ** 2 / squared
+        < solved_orbit.orbit.form.tip_coordinates(solved_orbit.orbit.start_state)[1] ** 2 / squared_y
         < max_ratio
     ):
         raise Unsolvable(f"the orbit is not near the prediction from the Hopf point at F = {normal.F:g}")
@@ -197,8 +203,8 @@ def _orbit_along_force(normal: NormalForm, F: float, form: StressForm, workspace
 
 def orbit_by_normal_form(normal: NormalForm, form: StressForm) -> Orbit:
     """The orbit that a normal form predicts for the rod in `form`, whose force is near the Hopf point."""
-    squared, frequency = normal.squared_y_and_frequency(form.rod.F)
-    return orbit_of_amplitude(normal, form, squared**0.5, frequency)
+    squared_y, frequency = normal.squared_y_and_frequency(form.rod.F)
+    return orbit_of_amplitude(normal, form, squared_y**0.5, frequency)
 
 
 def orbit_of_amplitude(normal: NormalForm, form: StressForm, amplitude: float, frequency: float) -> Orbit:

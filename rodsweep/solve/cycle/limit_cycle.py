@@ -115,7 +115,7 @@ def _solve_cycle_or_raise(
 
 
 def _straight_outcome(w: complex) -> CycleOutcome:
-    """Outcome of a motion that ends at the straight rod, whose leading eigenvalue is w."""
+    """Outcome of a motion that ends at the straight rod, with the leading eigenvalue w of this rod."""
     return CycleOutcome(status=CycleStatus.straight, linear_growth_rate=w.real, linear_frequency=abs(w.imag))
 
 
@@ -142,8 +142,8 @@ def _with_motion_data(
 
 def _motion_shapes(transient: TransientIntegration, trace: ShapeTrace, request: CycleRequest) -> MotionShapes:
     """The recorded shapes of an integrated motion, at the requested numbers of times and nodes."""
-    returns = [time for time, _ in transient.past_returns]
-    return trace.motion_shapes(returns, transient.leading_mode.period, request.frames, request.nodes)
+    return_times = [time for time, _ in transient.past_returns]
+    return trace.motion_shapes(return_times, transient.leading_mode.period, request.frames, request.nodes)
 
 
 def _with_neighbour(
@@ -160,8 +160,8 @@ def _with_neighbour(
     leading eigenvalue of the straight rod."""
     if parameter_name is None:
         return cycle
-    followed = eigenvalues_to_follow(refined.orbit.form.rod, stability)
-    start = CycleStart.from_cycle(refined, previous, parameter_name, accuracy, followed)
+    eigenvalues = eigenvalues_to_follow(refined.orbit.form.rod, stability)
+    start = CycleStart.from_cycle(refined, previous, parameter_name, accuracy, eigenvalues)
     return replace(cycle, neighbour=start)
 
 

@@ -90,40 +90,42 @@ class CycleStart:
         eigenvalues: Complex = UNKNOWN_EIGENVALUES,
     ) -> "CycleStart":
         """Data of the cycle `refined`, which was solved with its tangent. previous: data of the previous rod
-        of the chain, or None. name: varied parameter. accuracy: requested relative accuracy. eigenvalues: as
-        in `CycleStart`."""
-        branch = predictor_from(refined.converged_orbit, previous.predictor if previous else None, name)
-        return cls(branch, *_next_mesh_and_calibration(refined, previous, name, accuracy), eigenvalues)
+        of the chain, or None. name: varied parameter. accuracy: requested relative accuracy.
+        eigenvalues: as in `CycleStart`."""
+        predictor = predictor_from(refined.converged_orbit, previous.predictor if previous else None, name)
+        return cls(predictor, *_next_mesh_and_calibration(refined, previous, name, accuracy), eigenvalues)
 
     def arrays(self) -> CheckpointArrays:
         """All data as named arrays, for a checkpoint: orbit (N,), data (m, N + 1), offsets ("places") and
         orders (m,), eigenvalues (n,), meshes, symmetry, rod with its material, and calibration; N, m: as in
         `CyclePredictor`."""
-        branch = self.predictor
+        predictor = self.predictor
         arrays: dict[str, Any] = {
-            "places": branch.parameter_offsets,
-            "orders": branch.derivative_orders,
-            "data": branch.values_and_derivatives,
+            "places": predictor.parameter_offsets,
+            "orders": predictor.derivative_orders,
+            "data": predictor.values_and_derivatives,
             "next_mesh": self.next_mesh.as_array,
             "eigenvalues": self.eigenvalues,
         }
-        return orbit_arrays(branch.orbit) | arrays | self.calibration.arrays()
+        return orbit_arrays(predictor.orbit) | arrays | self.calibration.arrays()
 
     @classmethod
     def from_arrays(cls, arrays: CheckpointArrays) -> "CycleStart":
         """The neighbour from the named arrays that `CycleStart.arrays` returns."""
         next_mesh = OrbitMesh.from_array(arrays["next_mesh"])
         orbit = orbit_from_arrays(arrays)
-        branch = CyclePredictor(orbit, *(arrays[name] for name in ("places", "orders", "data")))
-        return cls(branch, next_mesh, Calibration.from_arrays(arrays), arrays["eigenvalues"].astype(complex))
+        predictor = CyclePredictor(orbit, *(arrays[name] for name in ("places", "orders", "data")))
+        return cls(
+            predictor, next_mesh, Calibration.from_arrays(arrays), arrays["eigenvalues"].astype(complex)
+        )
 
 
 def _next_mesh_and_calibration(
     refined: RefinedCycle, previous: "CycleStart | None", name: str, accuracy: float
 ) -> tuple[OrbitMesh, Calibration]:
     """Returns (mesh, calibration) for the next cycle of a chain. The calibration is outdated if the errors
-    must be measured again at the next cycle. previous: data of the previous rod, or None. name: varied
-    parameter. accuracy: requested relative accuracy."""
+    must be measured again at the next cycle. previous: data of the previous rod, or None. name:
+    varied parameter. accuracy: requested relative accuracy."""
     current_mesh = mesh_of(refined.orbit)
     calibration = refined.calibration
     is_accurate = (
@@ -147,9 +149,13 @@ def _max_cost_ratio(refined: RefinedCycle, previous: "CycleStart | None", name: 
         return NEXT_MESH_SETTINGS.max_new_mesh_cost_ratio
     if not refined.calibration.parameter_change:
         return NEXT_MESH_SETTINGS.max_new_mesh_cost_ratio_if_measured
-    step = relative_parameter_difference(previous.predictor.orbit.form, refined.orbit.form, name)
+    parameter_change = relative_parameter_difference(previous.predictor.orbit.form, refined.orbit.form, name)
     # If the errors must be measured again anyway, another mesh needs no additional measurement.
-    return 0.0 if refined.calibration.is_valid_after(step) else NEXT_MESH_SETTINGS.max_new_mesh_cost_ratio
+    return (
+        0.0
+        if refined.calibration.is_valid_after(parameter_change)
+        else NEXT_MESH_SETTINGS.max_new_mesh_cost_ratio
+    )
 
 
 def cycle_from_neighbour(
@@ -168,11 +174,13 @@ def cycle_from_neighbour(
             "the rods have different unknowns: velocities are unknowns only at small axial or rotational drag"
         )
     solved = _cycle_on_next_mesh(neighbour, form, name, accuracy, workspace)
-    path = CycleMotion(solved.orbit)
-    change = relative_parameter_difference(neighbour.predictor.orbit.form, form, name)
-    calibration = neighbour.calibration.scaled_on_chain(solved.orbit, change, error_indicators(solved, path))
+    motion = CycleMotion(solved.orbit)
+    parameter_change = relative_parameter_difference(neighbour.predictor.orbit.form, form, name)
+    calibration = neighbour.calibration.scaled_on_chain(
+        solved.orbit, parameter_change, error_indicators(solved, motion)
+    )
     if calibration.is_valid:
-        cycle = cycle_with_calibrated_errors(calibration, solved, accuracy, path)
+        cycle = cycle_with_calibrated_errors(calibration, solved, accuracy, motion)
         if cycle.errors.largest_weighted_error <= accuracy:
             return cycle
     return cycle_with_measured_errors(solved, calibration, accuracy, name)

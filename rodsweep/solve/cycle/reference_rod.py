@@ -29,9 +29,9 @@ def warm_up() -> None:
     if cycle.neighbour is not None:
         solve_cycle(replace(rod, F=1.01 * rod.F), request, cycle.neighbour, "F")
     deviation = abs(cycle.measures.period / REFERENCE_PERIOD - 1)
-    reproduced = cycle.status == CycleStatus.cycle and deviation < request.accuracy
+    is_reproduced = cycle.status == CycleStatus.cycle and deviation < request.accuracy
     options = user_options_text(CYCLE_OPTIONS_PREFIX)
-    if options and not reproduced:
+    if options and not is_reproduced:
         outcome = f"{cycle.status.name} {cycle.message}".strip()
         raise EnvironmentIncomplete(
             f"with the PETSc options '{options}' the known cycle of the reference rod is not found: "

@@ -27,16 +27,18 @@ class SecondState(IntEnum):
     cycle_possible = 2
 
 
-def second_state(rod: Rod, status: PointStatus, stable: bool | None) -> tuple[SecondState, float, str]:
+def second_state(
+    rod: Rod, status: PointStatus, is_straight_stable: bool | None
+) -> tuple[SecondState, float, str]:
     """Returns (state, F, message). state: second stable state of the rod. F: force of a subcritical Hopf
     point, in k3/L^2, or NaN. message: for the user, or "".
 
-    status: outcome of the motion or of the search for a cycle. stable: whether the straight rod is stable;
-    None if not known.
+    status: outcome of the motion or of the search for a cycle. is_straight_stable: whether the straight rod
+    is stable; None if not known.
     """
-    if status == CycleStatus.failed or stable is None:
+    if status == CycleStatus.failed or is_straight_stable is None:
         return SecondState.not_known, nan, ""
-    if not stable:
+    if not is_straight_stable:
         return SecondState.none_known, nan, ""
     if status != CycleStatus.straight:
         return SecondState.straight, nan, "the straight rod is stable as well"

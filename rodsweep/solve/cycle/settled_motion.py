@@ -48,7 +48,8 @@ class ReturnTimes:
 
 
 class ReturnDistances:
-    """Relative distances between the returns of a motion that approaches a cycle, at successive tests.
+    """Relative distances between the returns of a motion that approaches a cycle, measured at successive
+    tests.
 
     integration_error: distance that integration errors alone may cause. contraction_rate: upper estimate of
     the factor by which the distance from the cycle changes in one period. last: distance at the last test;
@@ -61,11 +62,13 @@ class ReturnDistances:
         self._last_above_error = nan
         self._below_error: list[float] = []
 
-    def record_test(self, distance: float, periods: float) -> None:
-        """Records the distance at a test. periods: one period over the time between two tests."""
+    def record_test(self, distance: float, period_ratio: float) -> None:
+        """Records the distance at a test. period_ratio: period divided by the time between two tests."""
         if self.last > self.integration_error:
             # Below the integration error the quotient of two distances is not the contraction rate.
-            self.contraction_rate = min(max(distance, self.integration_error) / self.last, 1.0) ** periods
+            self.contraction_rate = (
+                min(max(distance, self.integration_error) / self.last, 1.0) ** period_ratio
+            )
         elif isnan(self.last):
             self.contraction_rate = 0.0 if distance <= self.integration_error else 1.0
         if distance > self.integration_error:
@@ -77,7 +80,7 @@ class ReturnDistances:
         if len(last_distances) == INTEGRATION_SETTINGS.tests_below_error and isfinite(self._last_above_error):
             # Distances that stay small are no coincidence, so the integration_error is smaller than assumed.
             reduction = max(last_distances) / self._last_above_error
-            rate = reduction ** (periods / len(self._below_error))
+            rate = reduction ** (period_ratio / len(self._below_error))
             self.contraction_rate = min(self.contraction_rate, rate)
         self.last = distance
 

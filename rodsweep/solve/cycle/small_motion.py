@@ -73,8 +73,10 @@ def reason_for_decay(rod: Rod, w: complex, amplitude: float) -> str:
         normal = normal_form_by_mesh_rule(rod, w, MOTION_DECAY_SETTINGS.max_cubic_growth_ratio)
     except Unsolvable:
         return ""
-    # d|z|/dt = (Re w + Re c |z|^2) |z|: while the cubic part is small, the motion can only decay.
-    fraction = abs(normal.landau.real) * amplitude**2 / -w.real
-    if fraction >= MOTION_DECAY_SETTINGS.max_cubic_growth_ratio:
+    # d|z|/dt = (Re w + Re c |z|^2) |z|: while the cubic term is small, the motion can only decay.
+    cubic_ratio = abs(normal.landau.real) * amplitude**2 / -w.real
+    if cubic_ratio >= MOTION_DECAY_SETTINGS.max_cubic_growth_ratio:
         return ""
-    return f"the motion decays: at its start the cubic term is only {fraction:.0e} of the linear decay rate"
+    return (
+        f"the motion decays: at its start the cubic term is only {cubic_ratio:.0e} of the linear decay rate"
+    )

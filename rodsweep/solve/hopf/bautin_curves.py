@@ -25,8 +25,9 @@ from .bautin_settings import BAUTIN_SETTINGS, BAUTIN_STEP_CONTROL
 
 
 class BautinEndReason(IntEnum):
-    """Reason why a curve ends. none: no end. range_end: end of the third parameter's range. plane_edge: end
-    of another range. not_found: no further point. list_full: too many points. closed: at its first point."""
+    """Reason why a curve ends. none: the point is not an end. range_end: end of the third parameter's range.
+    plane_edge: end of the range of another parameter. not_found: no further point was found. list_full:
+    maximum number of points. closed: the curve returns to its first point."""
 
     none = 0
     range_end = 1
@@ -74,8 +75,9 @@ class _CurvePoint:
 @dataclass(frozen=True, slots=True)
 class BautinProblem:
     """Problem for `follow_curve`: generalised Hopf points over three parameters. axes: these parameters, with
-    ranges. rod: all other parameters. requested_values: values of the third parameter of further points,
-    (m,). accuracy: relative accuracy of c. direction: sign of the first step along the third parameter."""
+    their ranges. rod: rod with all other parameters. requested_values: values of the third parameter of
+    further points, (m,). accuracy: relative accuracy of c. direction: sign of the first step along the third
+    parameter."""
 
     rod: Rod
     axes: tuple[PlaneAxis, PlaneAxis, PlaneAxis]
@@ -96,9 +98,9 @@ class BautinProblem:
         plane = ParameterPlane(self.rod.with_values(**values), (self.axes[free[0]], self.axes[free[1]]))
         boundary = StabilityBoundary(plane, 0.0)
         accuracy = min(self.accuracy, BAUTIN_POINT_SETTINGS.coarsest_accuracy)
-        hopf = HopfCurve(boundary, np.empty((0, 3)), accuracy)  # finds Hopf points only near a guess
+        curve = HopfCurve(boundary, np.empty((0, 3)), accuracy)  # finds Hopf points only near a guess
         start = guess[[*free, 3]]
-        point = self._zero_by_secants(hopf, start, boundary.tangent(start))
+        point = self._zero_by_secants(curve, start, boundary.tangent(start))
         point_values = np.empty(3)
         errors = np.zeros(3)
         point_values[free] = point.values
@@ -116,19 +118,19 @@ class BautinProblem:
         tangent = np.array([0.0, 0.0, self.direction, 0.0])
         if len(previous) > 1:
             chord = v - previous[-2].v
-            # Step lengths are shares of a parameter's range; the frequency has no range.
+            # Step lengths are fractions of a parameter's range; the frequency has no range.
             tangent = chord / np.abs(chord[:3]).max()
         try:
-            point, on_edge = self._point_in_ranges(v, length * tangent)
+            point, is_on_end = self._point_in_ranges(v, length * tangent)
         except ValueError as reason:
             raise Unsolvable(f"the step leaves the allowed range of the parameters: {reason}") from reason
         prediction_error = float(np.abs(point.v[:3] - v[:3] - length * tangent[:3]).max()) / length
         # No prediction error for the first step, which has no chord, and for a step that an edge shortened.
-        return StepResult(point, 0.0 if on_edge or len(previous) == 1 else prediction_error, 1.0)
+        return StepResult(point, 0.0 if is_on_end or len(previous) == 1 else prediction_error, 1.0)
 
     def _point_in_ranges(self, v: Array, change: Array) -> tuple[_CurvePoint, bool]:
-        """(point near v + change, (4,), or on the range end that the step crosses; whether on an end). No
-        point outside the ranges is solved: its parameters may not be allowed. Raises Unsolvable."""
+        """Returns (point near v + change, (4,), or on the end of a range that this step crosses; whether on
+        such an end). Parameters outside the ranges may not be allowed. Raises Unsolvable."""
         predicted = (v + change)[:3]
         range_ends = np.where(predicted > 1, 1.0, np.where(predicted < 0, 0.0, np.nan))
         fractions = (range_ends - v[:3]) / np.where(change[:3] == 0, 1.0, change[:3])
@@ -155,29 +157,29 @@ class BautinProblem:
         the curve lies between its last point and `point`."""
         first = previous[0].v
         last = previous[-1].v
-        step = float(np.linalg.norm(point.v - previous[-1].v))
-        is_near = max(np.linalg.norm(first - last), np.linalg.norm(first - point.v)) < step
+        step_length = float(np.linalg.norm(point.v - previous[-1].v))
+        is_near = max(np.linalg.norm(first - last), np.linalg.norm(first - point.v)) < step_length
         return len(previous) > BAUTIN_SETTINGS.min_loop_points and bool(is_near)
 
     @staticmethod
-    def _zero_by_secants(hopf: HopfCurve, start: Array, direction: Array) -> BautinPoint:
+    def _zero_by_secants(curve: HopfCurve, start: Array, direction: Array) -> BautinPoint:
         """The point with Re c = 0 near start + s direction, (3,), by secant steps of s; raises Unsolvable."""
         # Secants, because the normal form does not give the derivatives of Re c.
         previous_s = 0.0
         s = BAUTIN_SETTINGS.first_secant_step
-        last = hopf.hopf_point_on_plane(start, direction, hopf.accuracy).relative_real_part
+        last_real_part = curve.hopf_point_on_plane(start, direction, curve.accuracy).relative_real_part
         for _ in range(BAUTIN_SETTINGS.max_secant_steps):
-            hopf_point = hopf.hopf_point_on_plane(start + s * direction, direction, hopf.accuracy)
-            if hopf_point.relative_real_part == last:
+            hopf_point = curve.hopf_point_on_plane(start + s * direction, direction, curve.accuracy)
+            if hopf_point.relative_real_part == last_real_part:
                 break
-            slope = (hopf_point.relative_real_part - last) / (s - previous_s)
+            slope = (hopf_point.relative_real_part - last_real_part) / (s - previous_s)
             step = -hopf_point.relative_real_part / slope
             if not abs(s + step) < BAUTIN_STEP_CONTROL.max_length:
                 break
-            error_along = hopf_point.coefficients.landau_error / abs(slope)
-            if abs(step) <= max(BAUTIN_SETTINGS.tolerance, error_along):
-                return hopf.as_bautin_point(hopf_point, 0, direction * (error_along + abs(step)))
-            last = hopf_point.relative_real_part
+            position_error = hopf_point.coefficients.landau_error / abs(slope)
+            if abs(step) <= max(BAUTIN_SETTINGS.tolerance, position_error):
+                return curve.as_bautin_point(hopf_point, 0, direction * (position_error + abs(step)))
+            last_real_part = hopf_point.relative_real_part
             previous_s = s
             s = s + step
         raise Unsolvable("no generalised Hopf point is found near the predicted point")
@@ -186,16 +188,16 @@ class BautinProblem:
 def bautin_curve(problem: BautinProblem, start: BautinCurvePoint) -> BautinCurve:
     """The curve of generalised Hopf points through `start`, followed in both directions."""
     start_point = _CurvePoint(problem.scaled_coordinates(start.values, start.frequency), start)
-    backward, first = _half_curve(replace(problem, direction=-1.0), start_point)
-    if first is BautinEndReason.closed:
-        return BautinCurve(tuple(point.point for point in backward), (first, first))
-    forward, end_reason = _half_curve(problem, start_point)
+    backward, first_reason = _half_curve(replace(problem, direction=-1.0), start_point)
+    if first_reason is BautinEndReason.closed:
+        return BautinCurve(tuple(point.point for point in backward), (first_reason, first_reason))
+    forward, reason = _half_curve(problem, start_point)
     # Both lists begin with the start, which is taken once.
-    return BautinCurve(tuple(point.point for point in [*backward[:0:-1], *forward]), (first, end_reason))
+    return BautinCurve(tuple(point.point for point in [*backward[:0:-1], *forward]), (first_reason, reason))
 
 
 def as_curve_point(point: BautinPoint, value: float) -> BautinCurvePoint:
-    """A generalised Hopf point of a plane as a point of a curve. value: of the third parameter."""
+    """A generalised Hopf point of a plane as a point of a curve. value: value of the third parameter."""
     return BautinCurvePoint(
         values=np.array([*point.values, value]),
         errors=np.array([*point.errors, 0.0]),
@@ -205,15 +207,15 @@ def as_curve_point(point: BautinPoint, value: float) -> BautinCurvePoint:
 
 
 def lies_on_curve(problem: BautinProblem, point: BautinCurvePoint, curve: BautinCurve) -> bool:
-    """Whether `point`, at a requested third parameter, equals a point of `curve`."""
+    """Whether `point`, at a requested value of the third parameter, equals a point of `curve`."""
     v = problem.scaled_coordinates(point.values, point.frequency)
-    others = [problem.scaled_coordinates(other.values, other.frequency) for other in curve.points]
-    return any(float(np.abs(v - other).max()) < BAUTIN_SETTINGS.same_point_distance for other in others)
+    v_of_points = [problem.scaled_coordinates(other.values, other.frequency) for other in curve.points]
+    return any(float(np.abs(v - other).max()) < BAUTIN_SETTINGS.same_point_distance for other in v_of_points)
 
 
 def _half_curve(problem: BautinProblem, start: _CurvePoint) -> tuple[list[_CurvePoint], BautinEndReason]:
-    """(points from `start` in the direction `problem.direction` of the third parameter, including points
-    at its requested values; reason for the end of the curve)."""
+    """Returns (points, end_reason). points: points of the curve from `start` on, at first in the direction
+    `problem.direction` of the third parameter, including points at the requested values of this parameter."""
     if not 0 < start.v[2] + problem.direction * BAUTIN_STEP_CONTROL.min_length < 1:
         return [start], BautinEndReason.range_end
 
@@ -234,10 +236,11 @@ def _half_curve(problem: BautinProblem, start: _CurvePoint) -> tuple[list[_Curve
 
 
 def _requested_points(problem: BautinProblem, first: _CurvePoint, second: _CurvePoint) -> list[_CurvePoint]:
-    """Points at requested third parameters between `first` and `second`; raises Unsolvable, ValueError."""
+    """Points at the requested values of the third parameter between `first` and `second`; raises Unsolvable,
+    ValueError."""
     a, b = first.v[2], second.v[2]
-    requested = map(problem.axes[2].coordinate, problem.requested_values)
-    inner_z = [z for z in requested if min(a, b) < z < max(a, b)]
+    requested_z = map(problem.axes[2].coordinate, problem.requested_values)
+    inner_z = [z for z in requested_z if min(a, b) < z < max(a, b)]
     points = []
     for z in sorted(inner_z, reverse=bool(a > b)):
         if min(abs(z - a), abs(z - b)) > BAUTIN_SETTINGS.same_point_distance:

@@ -32,7 +32,8 @@ class BautinPointSettings:
     coarsest_accuracy: float = 1e-10
     """Coarsest relative accuracy of c for locating generalised Hopf points, themselves accurate to 1e-9."""
     first_sign_accuracy: float = 1e-5
-    """Relative accuracy of c at first; if the sign of Re c is undecided, c is recomputed as requested."""
+    """Relative accuracy of c at first; if the sign of Re c is undecided, c is recomputed with the requested
+    accuracy."""
     tolerance: float = 1e-13
     """Tolerance of Brent's method, as a fraction of the distance between two neighbours."""
     relative_difference_step: float = 1e-3
@@ -92,18 +93,18 @@ def curve_criticality(plane: ParameterPlane, curve: BoundaryCurve, accuracy: flo
 
     accuracy: relative accuracy of c, reduced to `BAUTIN_POINT_SETTINGS.coarsest_accuracy` if larger. If
     the normal form fails at a point, the sign is NaN at this point only."""
-    hopf = HopfCurve(
+    hopf_curve = HopfCurve(
         StabilityBoundary(plane, curve.eigenvalue_sign),
         curve.scaled_points,
         min(accuracy, BAUTIN_POINT_SETTINGS.coarsest_accuracy),
     )
-    signs = np.array([hopf.criticality_at(i) for i in range(len(curve.scaled_points))])
+    signs = np.array([hopf_curve.criticality_at(i) for i in range(len(curve.scaled_points))])
     points = []
     unlocated_count = 0
     decided_indices = np.flatnonzero(signs != 0)  # the sign may change within the error of a point
-    for a, b in zip(decided_indices[:-1], decided_indices[1:], strict=True):
-        if signs[a] * signs[b] < 0:
-            bautin_point = hopf.bautin_point_between(int(a), int(b))
+    for first_index, last_index in zip(decided_indices[:-1], decided_indices[1:], strict=True):
+        if signs[first_index] * signs[last_index] < 0:
+            bautin_point = hopf_curve.bautin_point_between(int(first_index), int(last_index))
             points += [bautin_point] if bautin_point else []
             unlocated_count += bautin_point is None
     return CurveCriticality(signs, tuple(points), unlocated_count)
@@ -121,8 +122,12 @@ class HopfCurve:
 
     def criticality_at(self, i: int) -> float:
         """Sign of Re c at the stored point with the index i: -1 or 1; 0 if undecided, NaN after a failure."""
-        points = len(self.scaled)
-        report(lambda: SolvePosition(f"criticality of a Hopf curve, point {i + 1} of {points}", i / points))
+        point_count = len(self.scaled)
+        report(
+            lambda: SolvePosition(
+                f"criticality of a Hopf curve, point {i + 1} of {point_count}", i / point_count
+            )
+        )
         try:
             v = self.scaled[i]
             normal = self.boundary.tangent(v)
@@ -145,10 +150,10 @@ class HopfCurve:
         w = complex(0.0, math.exp(h))
         slope = path_problem(ParameterPath(rod, "F")).eigenvalue(w, rod.F)[1]
         value = self.boundary.plane.determinant(w, x, y)
-        # The normal form has only the force as its parameter: convert the point's error into one of F.
-        error = solution.error * (abs(value.D_x) + abs(value.D_y)) / abs(slope * value.D_w)
+        # The force is the only parameter of the normal form: convert the point's error into an error of F.
+        force_error = solution.error * (abs(value.D_x) + abs(value.D_y)) / abs(slope * value.D_w)
         hopf = Threshold(
-            rod.F, ThresholdKind.hopf, w.imag, 0.0, error, frequency_error=solution.error * w.imag
+            rod.F, ThresholdKind.hopf, w.imag, 0.0, force_error, frequency_error=solution.error * w.imag
         )
         return _HopfNormalForm(solution, hopf_coefficients(rod, hopf, accuracy))
 
@@ -168,26 +173,26 @@ class HopfCurve:
 
         try:
             s = float(brentq(lambda s: on_chord(s).relative_real_part, 0.0, 1.0, xtol=settings.tolerance))
-            hopf_point, start_values, beyond_values = (
+            hopf_point, point_before, point_after = (
                 on_chord(s + side * settings.relative_difference_step) for side in (0, -1, 1)
             )
         except (*FAILURES, ValueError):
             return None
-        slope = (beyond_values.relative_real_part - start_values.relative_real_part) / (
+        slope = (point_after.relative_real_part - point_before.relative_real_part) / (
             2 * settings.relative_difference_step
         )
         if abs(hopf_point.relative_real_part) > settings.max_relative_real_part or slope == 0:
             return None
         # Points of undecided sign may lie between the two points, on both sides of the zero.
         is_passed = (self.scaled[first_index + 1 : last_index] - start) @ chord <= s * (chord @ chord)
-        error_along = hopf_point.coefficients.landau_error / abs(slope) + settings.tolerance
-        return self.as_bautin_point(hopf_point, first_index + int(is_passed.sum()), chord * error_along)
+        position_error = hopf_point.coefficients.landau_error / abs(slope) + settings.tolerance
+        return self.as_bautin_point(hopf_point, first_index + int(is_passed.sum()), chord * position_error)
 
     def as_bautin_point(
         self, hopf_point: _HopfNormalForm, index_before: int, position_error: Array
     ) -> BautinPoint:
-        """The generalised Hopf point at `hopf_point`, with errors of both parameters. index_before: stored
-        point before it. position_error: position error along the chord, (3,)."""
+        """The generalised Hopf point at `hopf_point`, with errors of both parameters. index_before: index of
+        the last stored point before it. position_error: error of the position along the chord, (3,)."""
         solution = hopf_point.boundary_point
         axes = self.boundary.plane.axes
         tangent = solution.tangent

@@ -33,7 +33,8 @@ class CriticalityRequest:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Criticality:
     """Result for one rod: all Hopf points up to the force `end`. search_result: result of the search for Hopf
-    points. coefficients: of the first Hopf points, at most as many as requested. seconds: computing time."""
+    points. coefficients: normal form coefficients of the first Hopf points, at most as many as requested.
+    seconds: computing time."""
 
     status: CriticalityStatus
     search_result: ThresholdSearchResult
@@ -114,7 +115,7 @@ def _status_and_message(
         max(c.landau_error, c.growth_slope_error) > request.accuracy for c in known_coefficients
     )
     # From the most to the least serious.
-    verdicts = {
+    applies_by_status = {
         CriticalityStatus.ended_early: hopf_points.ended_early,
         CriticalityStatus.coefficients_failed: bool(failures),
         CriticalityStatus.window_open: not math.isnan(hopf_points.open_range[0]),
@@ -123,5 +124,5 @@ def _status_and_message(
         CriticalityStatus.accuracy_not_reached: is_inaccurate,
         CriticalityStatus.not_certified: request.certify and not hopf_points.proved,
     }
-    status = next((status for status, applies in verdicts.items() if applies), CriticalityStatus.ok)
+    status = next((status for status, applies in applies_by_status.items() if applies), CriticalityStatus.ok)
     return status, "; ".join(filter(None, (failures, hopf_points.doubt_text)))

@@ -36,7 +36,8 @@ class HopfCoefficientSettings:
     max_refinements: int = 4
     """Maximum number of meshes after the first."""
     coarsest_accuracy: float = 1e-2
-    """Coarsest relative accuracy for which the first mesh is chosen: it must identify the eigenvalue."""
+    """Coarsest relative accuracy for which the first mesh is chosen: the mesh must identify the
+    eigenvalue."""
     landau_rounding_per_condition_number: float = 1.5e-14
     """Relative rounding error of c, divided by the condition number of the eigenvalue. Most rods have 1e-15;
     the largest measured value is 9e-15, for nearly crushed rods that are soft in stretch and shear."""
@@ -96,29 +97,31 @@ def hopf_coefficients(rod: Rod, hopf: Threshold, accuracy: float) -> HopfCoeffic
     `accuracy`, or if the finest mesh does not suffice."""
     settings = HOPF_COEFFICIENT_SETTINGS
     w = complex(0.0, hopf.frequency)
-    # Undo the worst-case factor of the mesh rule: here the second mesh measures the actual error.
-    start = elements_for_landau_coefficient(
+    # The worst-case factor of the mesh rule is not needed: here the second mesh measures the actual error.
+    first_elements = elements_for_landau_coefficient(
         rod,
         w,
         min(accuracy / NORMAL_FORM_SETTINGS.mesh_accuracy_ratio, settings.coarsest_accuracy),
     )
-    fine_form = normal_form_on(start, rod, w, settings.coarsest_accuracy)
-    change = math.inf
-    rounding = 0.0
-    for number in range(settings.max_refinements):
+    fine_form = normal_form_on(first_elements, rod, w, settings.coarsest_accuracy)
+    landau_change = math.inf
+    rounding_error = 0.0
+    for refinement in range(settings.max_refinements):
         elements = Elements(fine_form.form.mesh.edges, fine_form.form.mesh.order)
         finer_elements = (
             elements_with_third_more_unknowns(elements)
-            if number
+            if refinement
             else Elements(elements.edges, elements.order + settings.order_increase)
         )
         coarse_form = fine_form
         fine_form = normal_form_on(finer_elements, rod, w, accuracy)
-        change = abs(fine_form.landau - coarse_form.landau) / abs(fine_form.landau)
+        landau_change = abs(fine_form.landau - coarse_form.landau) / abs(fine_form.landau)
         # The rounding error of c follows from the condition number of the eigenvalue.
-        sizes = straight_matrices(fine_form.form, TRANSVERSE).product_magnitude(fine_form.p, fine_form.q)
-        rounding = settings.landau_rounding_per_condition_number * sizes / abs(fine_form.w)
-        if change <= max(accuracy, rounding):
+        product_sizes = straight_matrices(fine_form.form, TRANSVERSE).product_magnitude(
+            fine_form.p, fine_form.q
+        )
+        rounding_error = settings.landau_rounding_per_condition_number * product_sizes / abs(fine_form.w)
+        if landau_change <= max(accuracy, rounding_error):
             break
     # The slope of the root of D has no error of a mesh.
     slope, second_derivative = _eigenvalue_derivatives(rod, w)
@@ -128,10 +131,10 @@ def hopf_coefficients(rod: Rod, hopf: Threshold, accuracy: float) -> HopfCoeffic
         slope = fine_form.eigenvalue_slope
         slope_difference = abs(fine_form.eigenvalue_slope - coarse_form.eigenvalue_slope) / abs(slope)
     # c was computed at the force of `hopf`: an error of this force changes c.
-    unit = second_derivative / abs(slope) + 1 / abs(rod.F) + 1 / abs(rod.crushing_force - rod.F)
-    force_effect = settings.max_force_sensitivity * hopf.error * unit
-    landau_error = max(change, rounding) + force_effect
-    slope_error = max(slope_difference, rounding) + hopf.error * second_derivative / abs(slope)
+    sensitivity_unit = second_derivative / abs(slope) + 1 / abs(rod.F) + 1 / abs(rod.crushing_force - rod.F)
+    force_effect = settings.max_force_sensitivity * hopf.error * sensitivity_unit
+    landau_error = max(landau_change, rounding_error) + force_effect
+    slope_error = max(slope_difference, rounding_error) + hopf.error * second_derivative / abs(slope)
     return _coefficients_with_errors(
         replace(fine_form, eigenvalue_slope=slope), landau_error, slope_error, hopf.error / abs(rod.F)
     )
@@ -140,17 +143,19 @@ def hopf_coefficients(rod: Rod, hopf: Threshold, accuracy: float) -> HopfCoeffic
 def _coefficients_with_errors(
     normal: NormalForm, landau_error: float, slope_error: float, force_error: float
 ) -> HopfCoefficients:
-    """The coefficients of `normal` with relative errors, from three relative errors: `landau_error` of c,
-    `slope_error` of dw/dF, and `force_error` of F; also the mesh."""
+    """The coefficients of the normal form `normal` and their relative errors, from three relative errors:
+    `landau_error` of c, `slope_error` of dw/dF, and `force_error` of F."""
     c = normal.landau
     slope = normal.eigenvalue_slope
-    slope_off = slope_error * abs(slope)
-    c_off = landau_error * abs(c)
-    ratio = c.imag / c.real
+    absolute_slope_error = slope_error * abs(slope)
+    absolute_c_error = landau_error * abs(c)
+    frequency_ratio = c.imag / c.real
     a = normal.amplitude_coefficient
     b = normal.frequency_slope
     # b = Im w' - ratio Re w': an error d of w' changes b by Im d - ratio Re d, at most |d| hypot(1, ratio).
-    b_off = math.hypot(1, ratio) * (slope_off + abs(slope.real / c.real) * c_off)
+    absolute_b_error = math.hypot(1, frequency_ratio) * (
+        absolute_slope_error + abs(slope.real / c.real) * absolute_c_error
+    )
     return HopfCoefficients(
         growth_slope=slope,
         growth_slope_error=slope_error,
@@ -158,16 +163,19 @@ def _coefficients_with_errors(
         landau_error=landau_error,
         amplitude_coefficient=a,
         # Half of the sum, because a is a square root.
-        amplitude_coefficient_error=(slope_off / abs(slope.real) + c_off / abs(c.real) + force_error) / 2,
+        amplitude_coefficient_error=(
+            absolute_slope_error / abs(slope.real) + absolute_c_error / abs(c.real) + force_error
+        )
+        / 2,
         frequency_slope=b,
-        frequency_slope_error=b_off / abs(b) if b else math.inf,
+        frequency_slope_error=absolute_b_error / abs(b) if b else math.inf,
         elements=normal.form.mesh.element_count,
         order=normal.form.mesh.order,
     )
 
 
 def _eigenvalue_derivatives(rod: Rod, w: complex) -> tuple[complex, float]:
-    """(dw/dF, |d^2w/dF^2|) of the root near w of the determinant D of `rod`."""
+    """Returns (dw/dF, |d^2w/dF^2|) of the root near w of the determinant D of `rod`."""
     step = HOPF_COEFFICIENT_SETTINGS.relative_force_step * abs(rod.F)
     problem = path_problem(ParameterPath(rod, "F"))
     _, slope, _ = problem.eigenvalue(w, rod.F)

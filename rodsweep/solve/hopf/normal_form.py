@@ -47,7 +47,7 @@ class NormalFormSettings:
     mesh_accuracy_ratio: float = 0.1
     """The mesh rule, made for eigenvalues, is applied with the requested accuracy of c times this factor: the
     error of c may be five times the error of the eigenvalue."""
-    largest_order: int = 20
+    max_order: int = 20
     """Largest element order chosen by the mesh rule; an additional element costs less than a higher order."""
     max_nodes: int = 2000
     """Maximum number of nodes for a uniform rod; Unsolvable is raised for a rod that needs more nodes."""
@@ -98,8 +98,8 @@ class NormalForm:
     def amplitude_coefficient(self) -> float:
         """Amplitude coefficient a, in L, of a Hopf point at the force F: the cycle at a nearby force F' has a
         largest tip y of |a| sqrt(|F' - F|/|F|). a < 0 if the cycles exist at F' < F, otherwise a > 0."""
-        squared = -self.eigenvalue_slope.real / self.landau.real
-        return float(np.sign(squared) * abs(self.F * squared) ** 0.5)
+        squared_amplitude = -self.eigenvalue_slope.real / self.landau.real
+        return float(np.sign(squared_amplitude) * abs(self.F * squared_amplitude) ** 0.5)
 
     @property
     def frequency_slope(self) -> float:
@@ -109,10 +109,11 @@ class NormalForm:
 
     def squared_y_and_frequency(self, F: float) -> tuple[float, float]:
         """(squared largest tip y in L^2, frequency in 1/tau2) of the cycle at a force F near `self.F`. The
-        eigenvalue at F is taken as w + eigenvalue_slope (F - self.F). A negative square: no cycle."""
+        eigenvalue at F is taken as w + eigenvalue_slope (F - self.F). If the square is negative, no cycle
+        exists."""
         w = self.w + self.eigenvalue_slope * (F - self.F)
-        squared = -w.real / self.landau.real
-        return squared, w.imag + self.landau.imag * squared
+        squared_y = -w.real / self.landau.real
+        return squared_y, w.imag + self.landau.imag * squared_y
 
     def cycle_states(self, amplitude: float, phases: Array) -> Array:
         """State X of a cycle, to second order in `amplitude`, at `phases`, (n,), in rad: shape (n, unknowns).
@@ -148,15 +149,16 @@ def elements_for_landau_coefficient(rod: Rod, w: complex, accuracy: float) -> El
     """Elements on which the Landau coefficient c at the eigenvalue w has the relative accuracy `accuracy`, by
     the mesh rule for eigenvalues."""
     accuracy *= NORMAL_FORM_SETTINGS.mesh_accuracy_ratio
-    waves = HARMONIC_WAVE_NUMBER_RATIO * wave_number(rod, w)
+    wave_number_of_harmonics = HARMONIC_WAVE_NUMBER_RATIO * wave_number(rod, w)
     if not rod.is_uniform_and_linear:
-        return arm_elements(rod, waves, accuracy, NORMAL_FORM_SETTINGS.largest_order)
-    resolution = resolution_for(waves, accuracy, NORMAL_FORM_SETTINGS.largest_order)
+        return arm_elements(rod, wave_number_of_harmonics, accuracy, NORMAL_FORM_SETTINGS.max_order)
+    resolution = resolution_for(wave_number_of_harmonics, accuracy, NORMAL_FORM_SETTINGS.max_order)
     return with_odd_order(Elements(equal_edges(resolution.element_count), resolution.order))
 
 
 def with_odd_order(elements: Elements) -> Elements:
-    """The same elements, of an odd order: elements of even order cannot be eliminated one by one."""
+    """The same elements with an odd order, increased by 1 if even: elements of even order cannot be
+    eliminated one by one."""
     return Elements(elements.edges, elements.order | 1)
 
 
@@ -179,13 +181,14 @@ def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) ->
     `accuracy` and `NORMAL_FORM_SETTINGS.converged_distance`, if the mesh has too many nodes, or for the
     reasons of `normal_form`.
     """
-    nodes = elements.node_count
-    limit = (
+    node_count = elements.node_count
+    max_node_count = (
         NORMAL_FORM_SETTINGS.max_nodes if rod.is_uniform_and_linear else NORMAL_FORM_SETTINGS.max_arm_nodes
     )
-    if nodes > limit:
+    if node_count > max_node_count:
         raise Unsolvable(
-            f"the normal form at F = {rod.F:g} needs {nodes} mesh nodes, more than the {limit} allowed"
+            f"the normal form at F = {rod.F:g} needs {node_count} mesh nodes, more than the "
+            f"{max_node_count} allowed"
         )
     normal = normal_form(MixedForm(rod, mesh_with_edges(elements.edges, elements.order)), w)
     if not abs(normal.w - w) <= max(accuracy, NORMAL_FORM_SETTINGS.converged_distance) * abs(w):

@@ -59,8 +59,8 @@ def subcritical_hopf_near(rod: Rod) -> SubcriticalHopf | None:
     nearest_crossings = crossings_above[:1] + crossings_below[-1:]
     for hopf in sorted(nearest_crossings, key=lambda one: abs(one.value - rod.F)):
         coefficients = hopf_coefficients(replace(rod, F=hopf.value), hopf, SUBCRITICAL_HOPF_SETTINGS.accuracy)
-        y = abs(coefficients.amplitude_coefficient) * abs(rod.F / hopf.value - 1) ** 0.5
+        unstable_y = abs(coefficients.amplitude_coefficient) * abs(rod.F / hopf.value - 1) ** 0.5
         # A positive criticality means subcritical.
-        if coefficients.criticality > 0 and y <= SUBCRITICAL_HOPF_SETTINGS.max_unstable_y:
-            return SubcriticalHopf(hopf.value, y)
+        if coefficients.criticality > 0 and unstable_y <= SUBCRITICAL_HOPF_SETTINGS.max_unstable_y:
+            return SubcriticalHopf(hopf.value, unstable_y)
     return None

@@ -26,7 +26,8 @@ class ModeMeshSettings:
     """Settings of the meshes on which modes and condition numbers are computed."""
 
     order_increase: int = 4
-    """Increase of the element order from the first mesh to the second; the modes' error falls by 100."""
+    """Increase of the element order from the first mesh to the second; the errors of the modes fall by a
+    factor of 100."""
     max_meshes: int = 4
     """Maximum number of meshes after the first, each finer than its predecessor."""
     max_unknowns: int = 1500
@@ -47,12 +48,12 @@ def mesh_accuracy_for_modes(accuracy: float) -> float:
 
 
 def converged_modes(
-    rod: Rod, eigenvalues: Complex, points: Array, wave: float, accuracy: float
+    rod: Rod, eigenvalues: Complex, points: Array, max_q: float, accuracy: float
 ) -> ModeVectors | None:
     """Modes of `eigenvalues`, (modes,), at `points` in [0, 1], (n,), from the mesh with the smallest error
-    estimate; None if even the second mesh has more than `ModeMeshSettings.max_unknowns` unknowns. wave: wave
+    estimate; None if even the second mesh has more than `ModeMeshSettings.max_unknowns` unknowns. max_q: wave
     number that the mesh must resolve. accuracy: requested relative accuracy, at which the refinement ends."""
-    mesh = mesh_for(rod, wave, mesh_accuracy_for_modes(accuracy))
+    mesh = mesh_for(rod, max_q, mesh_accuracy_for_modes(accuracy))
     separations = np.array([eigenvalue_separation(rod, complex(w)) for w in eigenvalues])
     coarse_modes = mode_vectors(rod, pencil_on(mesh), eigenvalues, points)
     best_modes: ModeVectors | None = None
@@ -79,28 +80,30 @@ def converged_modes(
 
 
 def _with_errors_from_coarse(coarse: ModeVectors, fine: ModeVectors, separations: Array) -> ModeVectors:
-    """The modes `fine` with their differences from the modes `coarse` as errors; rounding is added to the
+    """`fine` with their differences from `coarse` as errors; rounding errors are added to the
     errors of the condition numbers. separations: distance to the nearest other eigenvalue, (modes,)."""
-    error = np.zeros(len(fine.condition))
+    mode_error = np.zeros(len(fine.condition))
     pairs = (
         (coarse.right_modes, fine.right_modes),
         (coarse.mode_strains, fine.mode_strains),
         (coarse.left_modes, fine.left_modes),
     )
     for coarse_field, fine_field in pairs:
-        size = np.abs(fine_field).max(axis=2)
-        change = np.abs(fine_field - coarse_field).max(axis=2)
-        relative_change = np.where(size > 0, change / np.where(size > 0, size, 1.0), change)
-        error = np.maximum(error, relative_change.max(axis=0))
-    # Rounding turns no eigenvector of a normal operator, whose condition numbers are 1.
-    angles = (
+        field_size = np.abs(fine_field).max(axis=2)
+        field_change = np.abs(fine_field - coarse_field).max(axis=2)
+        relative_change = np.where(
+            field_size > 0, field_change / np.where(field_size > 0, field_size, 1.0), field_change
+        )
+        mode_error = np.maximum(mode_error, relative_change.max(axis=0))
+    # Rounding does not turn the eigenvectors of a normal operator, whose condition numbers are 1.
+    rotation_by_rounding = (
         MODE_MESH_SETTINGS.condition_rounding_factor
         * (1 - 1 / fine.condition**2)
         * fine.rounding
         / np.maximum(separations, EXPONENT_SETTINGS.min_divisor)
     )
     condition_change = np.abs(coarse.condition / fine.condition - 1)
-    return replace(fine, mode_error=error, condition_error=condition_change + angles)
+    return replace(fine, mode_error=mode_error, condition_error=condition_change + rotation_by_rounding)
 
 
 def eigenvalue_separation(rod: Rod, w: complex) -> float:

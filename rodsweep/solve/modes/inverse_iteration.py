@@ -33,8 +33,8 @@ MODE_ITERATION_SETTINGS = ModeIterationSettings()
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ModeVectors:
-    """Right and left modes computed on one mesh, at given points of the rod, with errors. resolution: the
-    mesh. The fields of modes are complex, (2, modes, points), NaN if the tip does not move."""
+    """Right and left modes computed on the mesh `resolution`, at given points of the rod, with errors. The
+    fields of modes are complex, (2, modes, points), NaN if the tip does not move."""
 
     resolution: Resolution
     right_modes: Complex
@@ -54,7 +54,8 @@ class ModeVectors:
     """Rounding errors of the eigenvalues w of the mesh, estimated from the rounding of (A - w B) x for the
     right mode x, in 1/tau2, (modes,)."""
     mode_error: Array
-    """Largest error of Y, Theta, h2, Pi, Y+ and Theta+, each over the field's largest value, (modes,)."""
+    """Largest relative error of Y, Theta, h2, Pi, Y+ and Theta+, (modes,): error divided by the field's
+    largest value."""
     condition_error: Array
     """Relative error of `condition`, (modes,); NaN, like `mode_error`, until two meshes are compared."""
 
@@ -67,7 +68,7 @@ class ModeVectors:
 def mode_vectors(rod: Rod, pencil: AnyPencil, eigenvalues: Complex, points: Array) -> ModeVectors:
     """Right and left modes of `eigenvalues` on the mesh of `pencil`, at `points` in [0, 1], (n,)."""
     form = dense_eigenproblem(rod, pencil)
-    X, Z, rounding = _eigenvectors(form, eigenvalues)
+    X, Z, rounding_errors = _eigenvectors(form, eigenvalues)
     evaluation = form.mesh.evaluation_matrix(points)
     B = form.B[:, None]
     pairing = (B * Z * X).sum(axis=0)
@@ -79,25 +80,25 @@ def mode_vectors(rod: Rod, pencil: AnyPencil, eigenvalues: Complex, points: Arra
         left_modes=np.stack([(evaluation @ field).T for field in form.displacements(Z.conj())]),
         pairing=pairing,
         condition=norms[0] * norms[1] / np.abs(pairing),
-        rounding=rounding,
+        rounding=rounding_errors,
     )
 
 
 def nan_mode_vectors(resolution: Resolution, mode_count: int, point_count: int) -> ModeVectors:
-    """Placeholder for modes that were not computed: all entries NaN. mode_count, point_count: their
-    numbers."""
-    shape = np.full((2, mode_count, point_count), COMPLEX_NAN)
-    numbers = np.full(mode_count, np.nan)
+    """Placeholder for modes that were not computed: all entries NaN. mode_count, point_count: numbers of
+    modes and of points."""
+    nan_modes = np.full((2, mode_count, point_count), COMPLEX_NAN)
+    nan_per_mode = np.full(mode_count, np.nan)
     return ModeVectors(
         resolution=resolution,
-        right_modes=shape,
-        mode_strains=shape,
-        left_modes=shape,
+        right_modes=nan_modes,
+        mode_strains=nan_modes,
+        left_modes=nan_modes,
         pairing=np.full(mode_count, COMPLEX_NAN),
-        condition=numbers,
-        rounding=numbers,
-        mode_error=numbers,
-        condition_error=numbers,
+        condition=nan_per_mode,
+        rounding=nan_per_mode,
+        mode_error=nan_per_mode,
+        condition_error=nan_per_mode,
     )
 
 
@@ -107,9 +108,9 @@ def _eigenvectors(form: DenseEigenproblem, eigenvalues: Complex) -> tuple[Comple
     settings = MODE_ITERATION_SETTINGS
     A = form.A
     B = form.B
-    m = len(eigenvalues)
-    X = np.empty((len(B), m), complex)
-    Z = np.empty((len(B), m), complex)
+    mode_count = len(eigenvalues)
+    X = np.empty((len(B), mode_count), complex)
+    Z = np.empty((len(B), mode_count), complex)
     for i, w in enumerate(eigenvalues):
         if i and w.imag < 0 and abs(w - eigenvalues[i - 1].conj()) <= settings.conjugate_tolerance * abs(w):
             X[:, i] = X[:, i - 1].conj()
@@ -117,8 +118,8 @@ def _eigenvectors(form: DenseEigenproblem, eigenvalues: Complex) -> tuple[Comple
         else:
             X[:, i], Z[:, i] = null_vectors(A, B, complex(w))
     # Random rounding errors of the entries of A add up in squares: an rms estimate, not a bound.
-    squares = (np.abs(Z) ** 2 * (np.abs(A) ** 2 @ np.abs(X) ** 2)).sum(axis=0)
-    rounding = ROUND_OFF * np.sqrt(squares) / np.abs((B[:, None] * Z * X).sum(axis=0))
+    squared_rounding = (np.abs(Z) ** 2 * (np.abs(A) ** 2 @ np.abs(X) ** 2)).sum(axis=0)
+    rounding = ROUND_OFF * np.sqrt(squared_rounding) / np.abs((B[:, None] * Z * X).sum(axis=0))
     right_vectors, left_vectors = (V * factors_to_unit_tip(*form.displacements(V)) for V in (X, Z))
     return right_vectors, left_vectors, rounding
 
@@ -149,5 +150,5 @@ def _null_vector(inverse: NDArray, B: NDArray) -> NDArray:
         x = inverse @ (B * x)
         growth = float(np.abs(x).max())
         x = x / growth
-    # Growth falls once rounding errors of the iterate dominate.
+    # The growth falls once rounding errors of the iterate dominate.
     return x if growth >= previous_growth else previous_vector

@@ -119,9 +119,9 @@ def _with_modes(rod: Rod, request: ModesRequest, outcome: Modes) -> Modes:
     """`outcome` with modes and, if requested, transient growth. The status changes if no mesh small enough
     resolves the modes, or if the largest error exceeds the accuracy."""
     spectrum = outcome.spectrum
-    wave = max(wave_number(rod, complex(w)) for w in spectrum.eigenvalues)
+    max_q = max(wave_number(rod, complex(w)) for w in spectrum.eigenvalues)
     points = lobatto_points(request.node_count)
-    vectors = converged_modes(rod, spectrum.eigenvalues, points, wave, request.accuracy)
+    vectors = converged_modes(rod, spectrum.eigenvalues, points, max_q, request.accuracy)
     if vectors is None:
         return replace(
             outcome,
@@ -132,19 +132,21 @@ def _with_modes(rod: Rod, request: ModesRequest, outcome: Modes) -> Modes:
     result = replace(outcome, vectors=vectors)
     errors = vectors.errors_by_name()
     if request.computes_growth:
-        rate = float(abs(spectrum.eigenvalues[0]))
-        mesh = mesh_for(rod, max(wave, LEADING_MODE_SETTINGS.min_growth_wave_number), request.accuracy)
+        abs_w = float(abs(spectrum.eigenvalues[0]))
+        mesh = mesh_for(rod, max(max_q, LEADING_MODE_SETTINGS.min_growth_wave_number), request.accuracy)
         is_growing = (
             spectrum.eigenvalues.real
             > LEADING_MODE_SETTINGS.min_growth_rate_over_error * spectrum.error_estimate
         ).any()
         is_proved = spectrum.status != SpectrumStatus.undecided
-        stable = True if is_proved else None
+        is_stable = True if is_proved else None
         if is_growing or spectrum.unstable_count > 0:
-            stable = False
-        growth = growth_of(rod, mesh, request.accuracy, stable, rate)
-        errors |= growth.errors_by_name(rate)
-        result = replace(result, growth=growth if stable is not None else replace(growth, growth_error=nan))
+            is_stable = False
+        growth = growth_of(rod, mesh, request.accuracy, is_stable, abs_w)
+        errors |= growth.errors_by_name(abs_w)
+        result = replace(
+            result, growth=growth if is_stable is not None else replace(growth, growth_error=nan)
+        )
     quantity, error = max(errors.items(), key=lambda item: item[1])
     if error <= request.accuracy:
         return result

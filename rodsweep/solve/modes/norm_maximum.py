@@ -13,6 +13,7 @@ largest value found.
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -29,7 +30,8 @@ class NormMaximumSettings:
     max_halvings: int = 40
     """Maximum number of halvings of a time interval; after that the bound is not improved further."""
     max_open_intervals: int = 4000
-    """Maximum number of intervals in which a larger norm is possible; with more, the bound stays."""
+    """Maximum number of intervals in which a larger norm is possible; with more intervals, the bound is not
+    improved further."""
     times_per_batch: int = 128
     """Number of times at which the propagator is evaluated in one call; limits the memory."""
     max_exponent: float = 300.0
@@ -44,37 +46,50 @@ class NormMaximumSettings:
 NORM_MAXIMUM_SETTINGS = NormMaximumSettings()
 
 
-def largest_propagator_norm(
-    propagator: Propagator, span: tuple[float, float], abscissa: float, floor: float, tolerance: float
-) -> tuple[tuple[float, float], float]:
-    """Returns ((maximum of |exp(L t)|, time of the maximum), upper bound of |exp(L t)|) for times from
-    span[0] to span[1], in tau2. tolerance: relative tolerance of the bound. floor: norms below this are not
-    searched for. abscissa: upper bound, at least 0, of the numerical abscissa."""
+class NormMaximum(NamedTuple):
+    """Maximum of the norm |exp(L t)| in a range of times, its time in tau2, and an upper bound of the
+    norm."""
+
+    norm: float
+    time: float
+    upper_bound: float
+
+
+def maximum_propagator_norm(
+    propagator: Propagator,
+    time_range: tuple[float, float],
+    abscissa: float,
+    min_norm: float,
+    tolerance: float,
+) -> NormMaximum:
+    """The maximum of |exp(L t)| for times from time_range[0] to time_range[1], in tau2. tolerance: relative
+    tolerance of the bound. min_norm: maxima below this norm are not searched for. abscissa: upper bound, at
+    least 0, of the numerical abscissa."""
     settings = NORM_MAXIMUM_SETTINGS
-    low, high = span
-    count = max(2, int(np.ceil(np.log(high / low) / np.log(settings.first_grid_ratio))) + 1)
-    times = np.geomspace(low, high, count, dtype=np.float64)
-    times[[0, -1]] = span
-    squares, bends = _squared_norms_and_curvature_bounds(propagator, times)
-    i = int(squares.argmax())
-    maximum = _local_maximum(propagator, times[max(i - 1, 0)], times[min(i + 1, count - 1)])
+    low, high = time_range
+    time_count = max(2, int(np.ceil(np.log(high / low) / np.log(settings.first_grid_ratio))) + 1)
+    times = np.geomspace(low, high, time_count, dtype=np.float64)
+    times[[0, -1]] = time_range
+    squared_norms, curvatures = _squared_norms_and_curvature_bounds(propagator, times)
+    i = int(squared_norms.argmax())
+    maximum = _local_maximum(propagator, times[max(i - 1, 0)], times[min(i + 1, time_count - 1)])
     t = times[:-1]
     h = np.diff(times)
-    left = squares[:-1]
-    right = squares[1:]
-    bend = bends[:-1]
+    left = squared_norms[:-1]
+    right = squared_norms[1:]
+    curvature = curvatures[:-1]
     upper_bound = maximum[0]
     for halving in range(settings.max_halvings + 1):
-        bound = np.sqrt(_squared_norm_bound(h, left, right, bend, abscissa))
-        sufficient_bound = max(maximum[0], floor) * (1 + tolerance)
+        bound = np.sqrt(_squared_norm_bound(h, left, right, curvature, abscissa))
+        sufficient_bound = max(maximum[0], min_norm) * (1 + tolerance)
         is_open = bound > sufficient_bound
         is_abandoned = halving == settings.max_halvings or int(is_open.sum()) > settings.max_open_intervals
         upper_bound = max(upper_bound, bound[~is_open | is_abandoned].max(initial=0.0))
         if is_abandoned or not is_open.any():
             break
-        # Only intervals in which a larger norm may hide are halved.
-        t, h, left, right, bend = (x[is_open] for x in (t, h / 2, left, right, bend))
-        middle, middle_bends = _squared_norms_and_curvature_bounds(propagator, t + h)
+        # Only intervals in which a larger norm is possible are halved.
+        t, h, left, right, curvature = (x[is_open] for x in (t, h / 2, left, right, curvature))
+        middle, middle_curvatures = _squared_norms_and_curvature_bounds(propagator, t + h)
         i = int(middle.argmax())
         if middle[i] > maximum[0] ** 2:
             maximum = max(maximum, _local_maximum(propagator, t[i], t[i] + 2 * h[i]))
@@ -82,8 +97,8 @@ def largest_propagator_norm(
         h = np.concatenate([h, h])
         left = np.concatenate([left, middle])
         right = np.concatenate([middle, right])
-        bend = np.concatenate([bend, middle_bends])
-    return maximum, max(upper_bound, maximum[0])
+        curvature = np.concatenate([curvature, middle_curvatures])
+    return NormMaximum(*maximum, max(upper_bound, maximum[0]))
 
 
 def _squared_norms_and_curvature_bounds(propagator: Propagator, times: Array) -> tuple[Array, Array]:
@@ -95,17 +110,19 @@ def _squared_norms_and_curvature_bounds(propagator: Propagator, times: Array) ->
     return np.concatenate([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
 
 
-def _squared_norm_bound(h: Array, left: Array, right: Array, bend: Array, abscissa: float) -> Array:
-    """Upper bound of N^2, N = |exp(L t)|, in intervals of width `h`, from N^2 at both ends and the curvature
-    bound c (`bend`) at the left ends; all (intervals,). abscissa: as in `largest_propagator_norm`."""
+def _squared_norm_bound(h: Array, left: Array, right: Array, curvature: Array, abscissa: float) -> Array:
+    """Upper bound of N^2, N = |exp(L t)|, in intervals of width `h`, from N^2 at both ends, `left` and
+    `right`, and the curvature bound c at the left ends, `curvature`; all (intervals,). abscissa: upper bound,
+    at least 0, of the numerical abscissa."""
     growth = np.exp(np.minimum(2 * abscissa * h, NORM_MAXIMUM_SETTINGS.max_exponent))
     # Two bounds: growth at the rate of the abscissa, and the chord plus the largest curvature below it.
-    return np.minimum(left * growth, np.maximum(left, right) + h**2 / 8 * bend * growth)
+    return np.minimum(left * growth, np.maximum(left, right) + h**2 / 8 * curvature * growth)
 
 
 def _local_maximum(propagator: Propagator, low: float, high: float) -> tuple[float, float]:
     """Returns (|exp(L t)|, t) at a maximum between the times `low` and `high`: the zero of the derivative, by
-    the Illinois regula falsi; the end with the larger norm if the derivatives show no maximum between."""
+    the Illinois regula falsi; the end with the larger norm if the derivatives show no maximum between the two
+    times."""
     low_norm, rate_low = propagator.norm_and_log_slope(low)
     high_norm, rate_high = propagator.norm_and_log_slope(high)
     if rate_low <= 0 or rate_high >= 0:
@@ -113,8 +130,8 @@ def _local_maximum(propagator: Propagator, low: float, high: float) -> tuple[flo
     maximum = (0.0, low)
     for _ in range(NORM_MAXIMUM_SETTINGS.max_regula_falsi_steps):
         t = (low * rate_high - high * rate_low) / (rate_high - rate_low)
-        value, rate = propagator.norm_and_log_slope(t)
-        maximum = max(maximum, (value, t))
+        norm, rate = propagator.norm_and_log_slope(t)
+        maximum = max(maximum, (norm, t))
         if abs(rate) * (high - low) <= NORM_MAXIMUM_SETTINGS.max_relative_rise_in_bracket:
             break
         if rate > 0:

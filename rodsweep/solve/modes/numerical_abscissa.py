@@ -19,8 +19,9 @@ class NumericalAbscissaSettings:
     """Settings of the shifts with which the numerical abscissa is computed from above."""
 
     max_shifts: int = 60
-    """Maximum number of shifts; after one below the numerical abscissa, the next is about twice as large."""
-    final_shift_distance: float = 0.05
+    """Maximum number of shifts; a shift below the numerical abscissa is followed by a shift about twice as
+    large."""
+    final_shift_distance_ratio: float = 0.05
     """Distance of the next shift above the current estimate a of the numerical abscissa, divided by 1 + |a|:
     so small that shift + 1/eigenvalue loses no digits by cancellation. An estimate is final if its shift was
     at most twice this distance above it."""
@@ -49,14 +50,19 @@ def numerical_abscissa(rod: Rod, pencil: AnyPencil) -> float:
     shift = bound + 1 if bound < inf else rod.F**2 + 1
     for _ in range(settings.max_shifts):
         H = shifted_inverse(A, B, shift)
-        values = np.linalg.eigvalsh((H + H.T) / 2)
-        if values[-1] > -settings.min_positive_ratio * values[0]:  # an eigenvalue lies above the shift
+        eigenvalues = np.linalg.eigvalsh((H + H.T) / 2)
+        # A positive eigenvalue: an eigenvalue of the operator lies above the shift.
+        if eigenvalues[-1] > -settings.min_positive_ratio * eigenvalues[0]:
             shift = 2 * abs(shift) + 1
             continue
         # Eigenvalues of the inverse of (L + L+)/2 - shift, all negative above the abscissa; the most negative
         # is nearest.
-        abscissa = shift + 1 / float(values[0])
-        is_close = abscissa + settings.final_shift_distance * abs(abscissa) + settings.final_shift_distance
+        abscissa = shift + 1 / float(eigenvalues[0])
+        is_close = (
+            abscissa
+            + settings.final_shift_distance_ratio * abs(abscissa)
+            + settings.final_shift_distance_ratio
+        )
         if shift - abscissa <= 2 * (is_close - abscissa):
             return abscissa
         # A shift far above the abscissa cancels in shift + 1/value: one more solve close to it restores the

@@ -46,9 +46,9 @@ def shifted_inverse(A: Array, B: Array, shift: float) -> Array:
     gamma3 = 0 state and norm contain y alone.
     """
     has_derivative = B > 0
-    root = np.sqrt(B[has_derivative])
+    sqrt_B = np.sqrt(B[has_derivative])
     inverse = np.linalg.inv(A - np.diag(shift * B))[np.ix_(has_derivative, has_derivative)]
-    return root[:, None] * inverse * root
+    return sqrt_B[:, None] * inverse * sqrt_B
 
 
 class Propagator:
@@ -66,8 +66,8 @@ class Propagator:
         finite = np.nonzero(
             np.abs(values) > PROPAGATOR_SETTINGS.infinite_eigenvalue_ratio * np.abs(values).max()
         )[0]
-        # G is the inverse of L: its eigenvalues near 0 are the infinite ones of the pencil, which carry no
-        # dynamics.
+        # G is the inverse of L: its eigenvalues near 0 are the infinite eigenvalues of the pencil, which
+        # carry no dynamics.
         w = 1 / values[finite]
         order = np.lexsort((-w.imag, -w.real))
         self.w: Complex = w[order].astype(complex)
@@ -104,17 +104,21 @@ class Propagator:
     def norm_and_log_slope(self, time: float) -> tuple[float, float]:
         """Returns (norm |exp(L t)|, derivative of its logarithm) at `time`, in tau2."""
         # d|E|/dt = u . dE/dt v = |E| u . L u, with u the left singular vector.
-        u, sizes, _ = np.linalg.svd(self.propagators_at(np.array([time]))[0])
-        return float(sizes[0]), float(u[:, 0] @ self.generator @ u[:, 0])
+        u, singular_values, _ = np.linalg.svd(self.propagators_at(np.array([time]))[0])
+        return float(singular_values[0]), float(u[:, 0] @ self.generator @ u[:, 0])
 
     def squared_norms_and_curvature_bounds(self, times: Array) -> tuple[Array, Array]:
         """Returns (N^2, c), (times,) each, at each of `times`, in tau2. N = |exp(L t)|. c bounds a curvature:
         f'' >= -c for f = |exp(L t) v|^2 with any |v| = 1."""
         E = self.propagators_at(times)
-        first = self.generator @ E
-        half = np.swapaxes(E, 1, 2) @ (self.generator @ first) + np.swapaxes(first, 1, 2) @ first
-        size = np.asarray(np.linalg.eigvalsh(np.swapaxes(E, 1, 2) @ E)[:, -1], np.float64)
-        return size, np.maximum(-np.linalg.eigvalsh(half + np.swapaxes(half, 1, 2))[:, 0], 0.0)
+        rate_of_E = self.generator @ E
+        half_second_derivative = (
+            np.swapaxes(E, 1, 2) @ (self.generator @ rate_of_E) + np.swapaxes(rate_of_E, 1, 2) @ rate_of_E
+        )
+        squared_norms = np.asarray(np.linalg.eigvalsh(np.swapaxes(E, 1, 2) @ E)[:, -1], np.float64)
+        return squared_norms, np.maximum(
+            -np.linalg.eigvalsh(half_second_derivative + np.swapaxes(half_second_derivative, 1, 2))[:, 0], 0.0
+        )
 
     def truncation_contribution(self, m: int, time: float) -> float:
         """|exp(L t) (P_k - P_m)|, of the modes m + 1 to k at `time`; m < k must not split a complex pair."""
@@ -127,17 +131,17 @@ def _orthonormal_basis(vectors: NDArray, w: NDArray) -> Array:
     """Real orthonormal basis, (n, k), of the invariant subspace of the eigenvalues w, (k,), with eigenvectors
     `vectors`, (n, k); the first columns span the subspaces of the first eigenvalues."""
     columns = np.hstack([vectors.real[:, w.imag >= 0], vectors.imag[:, w.imag > 0]])
-    column = np.concatenate([np.nonzero(w.imag >= 0)[0], np.nonzero(w.imag > 0)[0] + 1])
-    return np.linalg.qr(columns[:, np.argsort(column)])[0]
+    column_order = np.concatenate([np.nonzero(w.imag >= 0)[0], np.nonzero(w.imag > 0)[0] + 1])
+    return np.linalg.qr(columns[:, np.argsort(column_order)])[0]
 
 
 def matrix_exponential(matrices: Array) -> Array:
     """exp of one small matrix or a stack of matrices, (..., k, k), by Taylor series, scaling and squaring.
     The function squares exp - 1 instead of exp: in a block triangular matrix with slow and fast blocks, the
     slow blocks then keep their digits, however many squarings the fast blocks need."""
-    size = float(np.abs(matrices).sum(axis=-2).max())
-    squarings = max(0, int(np.ceil(np.log2(size))) + 1) if size > 0 else 0
-    scaled_matrices = matrices / 2.0**squarings
+    norm = float(np.abs(matrices).sum(axis=-2).max())
+    squaring_count = max(0, int(np.ceil(np.log2(norm))) + 1) if norm > 0 else 0
+    scaled_matrices = matrices / 2.0**squaring_count
     identity = np.eye(matrices.shape[-1])
     powers = [identity, scaled_matrices, scaled_matrices @ scaled_matrices]
     powers += [powers[2] @ scaled_matrices, powers[2] @ powers[2]]
@@ -146,6 +150,6 @@ def matrix_exponential(matrices: Array) -> Array:
     for order in range(PROPAGATOR_SETTINGS.taylor_terms - 4, -1, -4):  # four terms a product
         terms = sum(powers[i] / float(factorial(order + i)) for i in range(4) if order + i > 0)
         result = terms + powers[4] @ result
-    for _ in range(squarings):
+    for _ in range(squaring_count):
         result = 2 * result + result @ result
     return result + identity

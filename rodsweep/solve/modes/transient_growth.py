@@ -18,7 +18,7 @@ import numpy as np
 from ...discretization.straight.dense_eigenproblem import AnyPencil, dense_eigenproblem
 from ...discretization.straight.transverse_mesh import AnyMesh, pencil_on
 from ...model.rod import Rod
-from .norm_maximum import NORM_MAXIMUM_SETTINGS, largest_propagator_norm
+from .norm_maximum import NORM_MAXIMUM_SETTINGS, maximum_propagator_norm
 from .numerical_abscissa import numerical_abscissa
 from .propagator import Propagator, shifted_inverse
 
@@ -34,13 +34,14 @@ class GrowthSettings:
     truncation_exponent: float = 4.0
     """The omitted modes contribute at most exp(-`truncation_exponent`) times the accuracy."""
     search_tolerance_ratio: float = 0.25
-    """Tolerance of `largest_propagator_norm`, as a fraction of the requested accuracy."""
+    """Tolerance of `maximum_propagator_norm`, as a fraction of the requested accuracy."""
     min_search_tolerance: float = 2e-13
-    """Smallest tolerance of `largest_propagator_norm`: rounding error of the norm."""
+    """Smallest tolerance of `maximum_propagator_norm`: rounding error of the norm."""
     order_increase: int = 4
     """Increase of the element order from the first mesh to the second."""
     further_order_ratio: float = 1.4
-    """Element order of a further mesh over the order before; boundary layers at the tip need high orders."""
+    """Element order of a further mesh, divided by the order before; boundary layers at the tip need high
+    orders."""
     max_meshes: int = 5
     """Maximum number of meshes after the first, each finer than its predecessor."""
     max_unknowns: int = 400
@@ -67,10 +68,10 @@ class TransientGrowth:
     abscissa_error: float = nan
     """Absolute error of `numerical_abscissa`."""
 
-    def errors_by_name(self, rate: float) -> dict[str, float]:
+    def errors_by_name(self, abs_w: float) -> dict[str, float]:
         """Relative errors of the growth and of the numerical abscissa, by name. The error of the abscissa is
-        divided by the larger of |abscissa| and `rate`, in 1/tau2."""
-        scale = max(abs(self.numerical_abscissa), rate)
+        divided by the larger of |abscissa| and `abs_w`, in 1/tau2."""
+        scale = max(abs(self.numerical_abscissa), abs_w)
         return {"transient growth": self.growth_error, "numerical abscissa": self.abscissa_error / scale}
 
 
@@ -79,15 +80,18 @@ GROWTH_BY_STABILITY = {
     False: TransientGrowth(transient_growth=inf, transient_time=inf, growth_error=0.0),
     None: TransientGrowth(growth_error=0.0),
 }
-"""`TransientGrowth` by stability (True, False, None if undecided); None for a stable rod: to be computed."""
+"""`TransientGrowth` by stability (True, False, None if undecided); None for a stable rod, whose growth must
+be computed."""
 UNKNOWN_GROWTH = TransientGrowth(growth_error=inf)
 """Growth after a failed computation: NaN with infinite error."""
 
 
-def growth_of(rod: Rod, mesh: AnyMesh, accuracy: float, stable: bool | None, rate: float) -> TransientGrowth:
+def growth_of(
+    rod: Rod, mesh: AnyMesh, accuracy: float, is_stable: bool | None, abs_w: float
+) -> TransientGrowth:
     """Numerical abscissa and transient growth of a rod, from `mesh` and finer meshes. accuracy: requested
-    relative accuracy. rate: modulus of the leading eigenvalue, in 1/tau2. stable: whether the rod is stable,
-    None if undecided. The growth is inf for an unstable rod, NaN if undecided."""
+    relative accuracy. abs_w: modulus of the leading eigenvalue, in 1/tau2. is_stable: whether the
+    rod is stable, None if undecided. The growth is inf for an unstable rod, NaN if undecided."""
     best_growth = UNKNOWN_GROWTH
     min_error = inf
     abscissa = numerical_abscissa(rod, pencil_on(mesh))
@@ -98,25 +102,27 @@ def growth_of(rod: Rod, mesh: AnyMesh, accuracy: float, stable: bool | None, rat
             if step == 0
             else ceil(GROWTH_SETTINGS.further_order_ratio * mesh.order)
         )
-        last = mesh
+        previous_mesh = mesh
         mesh = replace(mesh, order=order)
         if step and mesh.unknown_count > GROWTH_SETTINGS.max_unknowns:
             break
         pencil = pencil_on(mesh)
         previous_abscissa = abscissa
         abscissa = numerical_abscissa(rod, pencil)
-        change = abs(abscissa - previous_abscissa)
-        growth = GROWTH_BY_STABILITY[stable]
+        abscissa_change = abs(abscissa - previous_abscissa)
+        growth = GROWTH_BY_STABILITY[is_stable]
         # Without growth at t = 0+ there is no later growth: the norm of exp(L t) decreases from 1.
-        if growth is None and abscissa + change <= 0:
+        if growth is None and abscissa + abscissa_change <= 0:
             growth = TransientGrowth(transient_growth=1.0, transient_time=0.0, growth_error=0.0)
         if growth is None:
-            coarse_propagator = coarse_propagator or propagator_of(rod, pencil_on(last))
+            coarse_propagator = coarse_propagator or propagator_of(rod, pencil_on(previous_mesh))
             fine_propagator = propagator_of(rod, pencil)
-            growth = transient_growth(coarse_propagator, fine_propagator, abscissa + change, accuracy)
+            growth = transient_growth(
+                coarse_propagator, fine_propagator, abscissa + abscissa_change, accuracy
+            )
             coarse_propagator = fine_propagator
-        result = replace(growth, numerical_abscissa=abscissa, abscissa_error=change)
-        error = max(inf if isnan(error) else error for error in result.errors_by_name(rate).values())
+        result = replace(growth, numerical_abscissa=abscissa, abscissa_error=abscissa_change)
+        error = max(inf if isnan(error) else error for error in result.errors_by_name(abs_w).values())
         has_improved = error < min_error / 2
         if error < min_error or step == 0:
             best_growth = result
@@ -135,10 +141,10 @@ def propagator_of(rod: Rod, pencil: AnyPencil) -> Propagator:
 def transient_growth(
     coarse: Propagator, fine: Propagator, abscissa: float, accuracy: float
 ) -> TransientGrowth:
-    """Largest growth from the propagator `fine`; the error is estimated with the propagator `coarse` of a
-    coarser mesh. abscissa: an upper bound > 0 of the numerical abscissa. accuracy: requested relative
-    accuracy. `UNKNOWN_GROWTH` if `abscissa` is NaN, if the mesh has an eigenvalue with Re w >= 0, or if
-    rounding hides all modes beside the leading modes, as under a strong pull."""
+    """Largest growth from the propagator `fine`; the error is estimated with the propagator
+    `coarse` of a coarser mesh. abscissa: an upper bound > 0 of the numerical abscissa. accuracy:
+    requested relative accuracy. `UNKNOWN_GROWTH` if `abscissa` is NaN, if the mesh has an eigenvalue with Re
+    w >= 0, or if rounding errors hide all modes but the leading modes, as under a strong pull."""
     leading_count = 2 if fine.w[0].imag else 1
     if isnan(abscissa) or not fine.w[0].real < 0:  # a spurious eigenvalue of the mesh
         return UNKNOWN_GROWTH
@@ -148,31 +154,33 @@ def transient_growth(
     tolerance = max(GROWTH_SETTINGS.search_tolerance_ratio * accuracy, GROWTH_SETTINGS.min_search_tolerance)
     maximum = (1.0, 0.0)
     upper_bound = 1.0
-    excess = end = 0.0
-    k = GROWTH_SETTINGS.min_modes
+    later_excess = end_time = 0.0
+    mode_count = GROWTH_SETTINGS.min_modes
     while True:
-        k = fine.use_leading_modes(k)
+        mode_count = fine.use_leading_modes(mode_count)
         # After this time the omitted modes have decayed to the accuracy; before, more modes are needed.
-        first = decay_exponent / abs(fine.w[min(k, len(fine.w) - 1)].real)
-        if not end:
-            end, excess = _end_of_growth(fine, first, decay_exponent)
-        if end > first and fine.norm_and_log_slope(first)[0] >= 1:
-            peak, bound = largest_propagator_norm(fine, (first, end), abscissa, maximum[0], tolerance)
-            maximum = max(maximum, peak)
-            upper_bound = max(upper_bound, bound)
-        end = first
+        first_time = decay_exponent / abs(fine.w[min(mode_count, len(fine.w) - 1)].real)
+        if not end_time:
+            end_time, later_excess = _end_of_growth(fine, first_time, decay_exponent)
+        if end_time > first_time and fine.norm_and_log_slope(first_time)[0] >= 1:
+            peak = maximum_propagator_norm(fine, (first_time, end_time), abscissa, maximum[0], tolerance)
+            maximum = max(maximum, (peak.norm, peak.time))
+            upper_bound = max(upper_bound, peak.upper_bound)
+        end_time = first_time
         # |exp(L t)| <= exp(abscissa t) bounds the growth over the early times that the modes do not resolve.
-        early_bound = exp(min(abscissa * first, NORM_MAXIMUM_SETTINGS.max_exponent))
-        if early_bound <= maximum[0] * (1 + tolerance) or k == len(fine.w):
+        early_bound = exp(min(abscissa * first_time, NORM_MAXIMUM_SETTINGS.max_exponent))
+        if early_bound <= maximum[0] * (1 + tolerance) or mode_count == len(fine.w):
             break
-        k = min(int((1 + GROWTH_SETTINGS.mode_increase_ratio) * k), len(fine.w))
-    error = max(upper_bound, early_bound) / maximum[0] - 1 + excess
+        mode_count = min(int((1 + GROWTH_SETTINGS.mode_increase_ratio) * mode_count), len(fine.w))
+    error = max(upper_bound, early_bound) / maximum[0] - 1 + later_excess
     if maximum[0] > 1:
         # The meshes are compared at the peak and at the geometric mean of the peak's time and the earliest
         # time that may matter; the coarser mesh uses more modes if possible.
-        coarse.use_leading_modes(int((1 + GROWTH_SETTINGS.mode_increase_ratio) * k))
-        times = maximum[1], sqrt(maximum[1] * max(first, log(maximum[0]) / abscissa))
-        error += max(abs(coarse.norm_and_log_slope(t)[0] / fine.norm_and_log_slope(t)[0] - 1) for t in times)
+        coarse.use_leading_modes(int((1 + GROWTH_SETTINGS.mode_increase_ratio) * mode_count))
+        compared_times = maximum[1], sqrt(maximum[1] * max(first_time, log(maximum[0]) / abscissa))
+        error += max(
+            abs(coarse.norm_and_log_slope(t)[0] / fine.norm_and_log_slope(t)[0] - 1) for t in compared_times
+        )
     return TransientGrowth(transient_growth=maximum[0], transient_time=maximum[1], growth_error=error)
 
 
@@ -188,11 +196,11 @@ def _end_of_growth(propagator: Propagator, earliest_end: float, decay_exponent: 
     than the fraction 2 r.
     """
     w = propagator.w[: len(propagator.generator)]
-    m = 2 if w[0].imag else 1
-    gap = w[0].real - w[m].real
+    leading_count = 2 if w[0].imag else 1
+    rate_gap = w[0].real - w[leading_count].real
     # Norm of the projection onto the leading modes: how large non-normal modes may become before they decay.
-    norm = 1 / np.linalg.svd(propagator.overlap[:m, :m], compute_uv=False)[-1]
-    pair_only_time = (decay_exponent + log(norm)) / gap if gap > 0 else inf
+    norm = 1 / np.linalg.svd(propagator.overlap[:leading_count, :leading_count], compute_uv=False)[-1]
+    pair_only_time = (decay_exponent + log(norm)) / rate_gap if rate_gap > 0 else inf
     end = earliest_end
     while end < pair_only_time:
         if propagator.norm_and_log_slope(end)[0] < 1:
@@ -200,6 +208,6 @@ def _end_of_growth(propagator: Propagator, earliest_end: float, decay_exponent: 
         end *= 2
     pair_only_time = max(pair_only_time, earliest_end)
     # The norm of a decaying pair repeats with half its period, so a maximum may be half a period later.
-    return pair_only_time + (pi / w[0].imag if m == 2 else 0.0), 2 * propagator.truncation_contribution(
-        m, pair_only_time
-    )
+    return pair_only_time + (
+        pi / w[0].imag if leading_count == 2 else 0.0
+    ), 2 * propagator.truncation_contribution(leading_count, pair_only_time)

@@ -57,7 +57,7 @@ from .step_record import take_steps
 
 @c_function(POINTER, types.float64, POINTER, POINTER, POINTER, POINTER)
 def residual(ts: int, t: float, U: int, Udot: int, R: int, context: int) -> int:
-    """PETSc's implicit function R = Udot - f(U), or R = Udot if `without_rate` is set in the context. U,
+    """PETSc's implicit function R = Udot - f(U), or R = Udot if the context field `without_rate` is set. U,
     Udot, R: handles of vectors. context: address of the context record."""
     c = record_at(context, CONTEXT_DTYPE)
     n = c.unknowns
@@ -156,10 +156,11 @@ class CallbackWorkspace:
         for name, value in values.items():
             self.context[name] = value
 
-    def set_rod_and_tolerances(self, system: ExplicitSystem, error: float, floor: float) -> None:
+    def set_rod_and_tolerances(self, system: ExplicitSystem, tolerance: float, rounding_size: float) -> None:
         """Sets the rod and the two tolerances of Newton's method, both rms values over the unknowns of a
-        stage. error: Newton's method stops when the estimated error of a stage is at most this. floor: if the
-        Newton steps stagnate below this size, the stagnation is attributed to rounding errors."""
+        stage. tolerance: Newton's method stops when the estimated error of a stage is at most this.
+        rounding_size: if the Newton steps stagnate below this size, the stagnation is attributed to rounding
+        errors."""
         self._rod_arrays = rod_arrays_by_field(system)  # the callbacks read these arrays by address as well
         self._set_context_fields({name: array.ctypes.data for name, array in self._rod_arrays.items()})
         self._set_context_fields(
@@ -167,7 +168,7 @@ class CallbackWorkspace:
         )
         self._set_context_fields({"jump_count": len(system.nodal_rod.jumps)})
         # Steps are measured as 2-norms, errors as rms.
-        root = system.layout.unknown_count**0.5
+        norm_per_rms = system.layout.unknown_count**0.5
         initial_values = {
             "matrix_due": AT_BASE,
             "shift": 0.0,
@@ -176,7 +177,9 @@ class CallbackWorkspace:
             "measured": 0,
         }
         self._set_context_fields(initial_values | dict.fromkeys(("growing", "stages", "steps", "left"), 0))
-        self._set_context_fields({"small_error": error * root, "rounding": floor * root})
+        self._set_context_fields(
+            {"small_error": tolerance * norm_per_rms, "rounding": rounding_size * norm_per_rms}
+        )
         take_steps(self.context)
 
     def set_extrapolation_points(self, variant: str) -> None:

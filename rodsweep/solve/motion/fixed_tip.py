@@ -25,8 +25,9 @@ from ...discretization.explicit_system import ExplicitSystem
 class FixedTipSettings:
     """Settings of the rod that is bent until its tip is at a given point."""
 
-    max_tip_distance: float = 0.98
-    """Largest distance of the tip from the clamp over the straight length: at 1 the rod cannot be bent."""
+    max_tip_distance_ratio: float = 0.98
+    """Largest distance of the tip from the clamp, divided by the straight length: at 1 the rod cannot be
+    bent."""
     start_angle: float = 0.8
     """Angle theta of the tip, in rad, at the start of the path of targets; not 0, because the tip of a
     straight rod cannot move towards the clamp."""
@@ -47,25 +48,27 @@ FIXED_TIP_SETTINGS = FixedTipSettings()
 
 def bent_state_with_tip_at(system: ExplicitSystem, x: float, y: float) -> Array:
     """The state z, (unknowns,), of the rod bent until the tip is at (x, y), in L. A target beyond
-    `FixedTipSettings.max_tip_distance` is moved towards the clamp. If Newton's method fails on the path of
-    targets, the state for the last target reached is returned."""
+    `FixedTipSettings.max_tip_distance_ratio` is moved towards the clamp. If Newton's method fails on the path
+    of targets, the state for the last target reached is returned."""
     bending = _BentRod(system)
-    side = -1.0 if y < 0 else 1.0
+    sign_of_y = -1.0 if y < 0 else 1.0
     # The curvature falls to 0 at the free tip, as under a force at the tip; its integral is the angle.
-    Pi = 2 * side * FIXED_TIP_SETTINGS.start_angle * (1 - system.mesh.node_positions)
-    first = bending.tip_position(Pi)
-    start = np.array([hypot(*first), atan2(first[1], first[0])])
+    Pi = 2 * sign_of_y * FIXED_TIP_SETTINGS.start_angle * (1 - system.mesh.node_positions)
+    first_tip = bending.tip_position(Pi)
+    start_radius_and_angle = np.array([hypot(*first_tip), atan2(first_tip[1], first_tip[0])])
     # At a distance equal to its length the rod would be straight, and the force not determined.
-    end = np.array([min(hypot(x, y), FIXED_TIP_SETTINGS.max_tip_distance * bending.length), atan2(y, x)])
+    end_radius_and_angle = np.array(
+        [min(hypot(x, y), FIXED_TIP_SETTINGS.max_tip_distance_ratio * bending.length), atan2(y, x)]
+    )
     force = np.zeros(2)
     solved_fraction = 0.0
-    step = FIXED_TIP_SETTINGS.first_step_fraction
-    while solved_fraction < 1 and step > FIXED_TIP_SETTINGS.min_step_fraction:
-        fraction = min(1.0, solved_fraction + step)
-        radius, angle = start + fraction * (end - start)
+    fraction_step = FIXED_TIP_SETTINGS.first_step_fraction
+    while solved_fraction < 1 and fraction_step > FIXED_TIP_SETTINGS.min_step_fraction:
+        fraction = min(1.0, solved_fraction + fraction_step)
+        radius, angle = start_radius_and_angle + fraction * (end_radius_and_angle - start_radius_and_angle)
         solution = bending.newton_to_target(Pi, force, radius * np.array([np.cos(angle), np.sin(angle)]))
         if solution is None:
-            step /= 2
+            fraction_step /= 2
         else:
             solved_fraction = fraction
             (Pi, force) = solution

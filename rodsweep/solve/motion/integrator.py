@@ -43,7 +43,8 @@ class IntegratorSettings:
     relaxation_duration_ratio: float = 1e-3
     """Duration of the run in `relax_fast_components`, as a fraction of the period."""
     relaxation_steps_per_period: float = 1e5
-    """Period over the first time step in `relax_fast_components`; fast components decay within ten steps."""
+    """Period divided by the first time step in `relax_fast_components`; fast components decay within ten
+    steps."""
     relaxation_tolerance: float = 1e-3
     """Relative local error per time step in `relax_fast_components`."""
     max_pooled_integrators: int = 8
@@ -137,7 +138,8 @@ class Integrator:
         return ts
 
     def _stop_at_limit(self, ts: "PETSc.TS") -> None:
-        """Post-step function of a run with a `RunLimit.is_reached`: stores the step; ends the run at it."""
+        """Post-step function of a run with a `RunLimit.is_reached`: stores the step; ends the run if the
+        limit is reached."""
         end_step.ctypes(ts.handle)
         if self._limit.is_reached is not None and self._limit.is_reached(self.vector.array_r.copy()):
             ts.setConvergedReason(PETSc.TS.ConvergedReason.CONVERGED_USER)
@@ -147,29 +149,31 @@ class Integrator:
         system: ExplicitSystem,
         z: Array,
         duration: float,
-        step: float = 0.0,
+        first_step: float = 0.0,
         limit: RunLimit = DEFAULT_RUN_LIMIT,
     ) -> Trajectory:
         """Integrates from the state z, (unknowns,), over `duration`, in tau2, or to the limit. A failure is
-        returned as a `EndReason`, never raised.
+        returned as an `EndReason`, never raised.
 
-        step: the first time step, or every time step of a scheme with equal steps, in tau2; 0 for the
+        first_step: the first time step, or every time step of a scheme with equal steps, in tau2; 0 for the
         default. Tolerances are relative to the largest component of z, so that small and large motions are
         integrated with the same relative accuracy.
         """
         ts = self.ts
         scheme = self.scheme
         self._limit = limit
-        size = float(np.abs(z).max()) or 1.0
+        state_size = float(np.abs(z).max()) or 1.0
         self.vector.array_w[:] = z
-        ts.setTolerances(rtol=0.0, atol=scheme.tolerance * size)
-        tolerance = scheme.newton_tolerance_ratio * scheme.tolerance * size
-        self.workspace.set_rod_and_tolerances(system, tolerance, INTEGRATOR_SETTINGS.stagnation_ratio * size)
+        ts.setTolerances(rtol=0.0, atol=scheme.tolerance * state_size)
+        tolerance = scheme.newton_tolerance_ratio * scheme.tolerance * state_size
+        self.workspace.set_rod_and_tolerances(
+            system, tolerance, INTEGRATOR_SETTINGS.stagnation_ratio * state_size
+        )
         ts.setTime(0.0)
         ts.setStepNumber(0)
         ts.setMaxTime(duration)
         ts.setMaxSteps(limit.max_steps)
-        ts.setTimeStep(step or INTEGRATOR_SETTINGS.first_step_ratio * duration)
+        ts.setTimeStep(first_step or INTEGRATOR_SETTINGS.first_step_ratio * duration)
         ts.restartStep()
         ts.setConvergedReason(PETSc.TS.ConvergedReason.CONVERGED_ITERATING)
         if limit.is_reached is None:
@@ -187,16 +191,16 @@ class Integrator:
         states = np.ascontiguousarray(rows[:, 1:])
         return Trajectory(self._run_ending(message, states[-1]), times, states, message)
 
-    def _run_ending(self, message: str, end: Array) -> EndReason:
-        """Reason why the run ended. message: PETSc's error message, or empty. end: last state."""
+    def _run_ending(self, message: str, end_state: Array) -> EndReason:
+        """Reason why the run ended. message: PETSc's error message, or empty. end_state: last state."""
         reason = self.ts.getConvergedReason()
         reasons = PETSc.TS.ConvergedReason
-        if message or reason < 0 or not np.isfinite(end).all():
+        if message or reason < 0 or not np.isfinite(end_state).all():
             return EndReason.failed
         if self.workspace.context["left"]:
             return EndReason.left_the_model
-        named = {reasons.CONVERGED_TIME: EndReason.reached, reasons.CONVERGED_USER: EndReason.stopped}
-        return named.get(reason, EndReason.too_many_steps)
+        end_reasons = {reasons.CONVERGED_TIME: EndReason.reached, reasons.CONVERGED_USER: EndReason.stopped}
+        return end_reasons.get(reason, EndReason.too_many_steps)
 
     @property
     def memory_bytes(self) -> int:
@@ -237,5 +241,5 @@ def relax_fast_components(system: ExplicitSystem, z: Array, period: float) -> Ar
     """
     duration = INTEGRATOR_SETTINGS.relaxation_duration_ratio * period
     step = period / INTEGRATOR_SETTINGS.relaxation_steps_per_period
-    run = integrator(system.mesh, RELAXATION_SCHEME).run(system, z, duration, step)
-    return run.states[-1] if run.ending == EndReason.reached else z
+    trajectory = integrator(system.mesh, RELAXATION_SCHEME).run(system, z, duration, step)
+    return trajectory.states[-1] if trajectory.ending == EndReason.reached else z

@@ -35,14 +35,14 @@ def leading_mode(system: ExplicitSystem) -> LeadingMode:
     layout = system.layout
     rest_state = np.zeros(layout.unknown_count)
     J = layout.transverse_unknowns(layout.transverse_unknowns(system.jacobian(rest_state)).T).T
-    values, vectors = np.linalg.eig(J)
+    eigenvalues, vectors = np.linalg.eig(J)
     # The second key selects the member of a complex pair with Im w > 0.
-    k = int(np.lexsort((values.imag, values.real))[-1])
+    leading_index = int(np.lexsort((eigenvalues.imag, eigenvalues.real))[-1])
     z = np.zeros(layout.unknown_count, complex)
-    layout.transverse_unknowns(z)[:] = vectors[:, k]
+    layout.transverse_unknowns(z)[:] = vectors[:, leading_index]
     # y is linear in z about the straight rod, so the 'velocity' along z is the deflection.
     real, imag = (system.transverse_velocities(rest_state, part) for part in (z.real, z.imag))
     tip = complex(real[-1], imag[-1])
     min_tip = float(np.hypot(real, imag).max()) / MAX_DEFLECTION
-    scale = tip if abs(tip) >= min_tip else min_tip * (tip / abs(tip) if tip else 1.0)
-    return LeadingMode(complex(values[k]), z / scale)
+    tip_scale = tip if abs(tip) >= min_tip else min_tip * (tip / abs(tip) if tip else 1.0)
+    return LeadingMode(complex(eigenvalues[leading_index]), z / tip_scale)

@@ -42,7 +42,8 @@ CONVERGED_USER = int(PETSc.TS.ConvergedReason.CONVERGED_USER)
 @compiled
 def store_step(c: Any, scratch: int, ts: int) -> int:
     """Stores time and state of `ts` as a row of the record, and returns PETSc's error code; ends the run if
-    h1 <= 0 at a node. c: context record (`CONTEXT_DTYPE`). scratch: address for outputs."""
+    h1 <= 0 at a node. c: context record (`CONTEXT_DTYPE`). scratch: address of scratch memory, into which
+    PETSc writes."""
     n = c.unknowns
     outputs = integers_at(scratch, 3)
     if c.stored == c.capacity:
@@ -94,8 +95,8 @@ def take_steps(context: Any) -> Array:
     """Rows (time, state) of the steps stored in `context`, (steps, 1 + unknowns); frees their memory."""
     address = int(context["rows"])
     row_count = int(context["stored"])
-    columns = int(context["unknowns"]) + 1
-    rows = _copied_rows(address, row_count, columns) if row_count else np.empty((0, columns))
+    column_count = int(context["unknowns"]) + 1
+    rows = _copied_rows(address, row_count, column_count) if row_count else np.empty((0, column_count))
     _free_address(address)
     context["rows"] = context["stored"] = context["capacity"] = 0
     return rows

@@ -58,16 +58,21 @@ class TimeScheme:
     def petsc_options(self, family: str) -> dict[str, str]:
         """PETSc options of this scheme, without prefix. family: TS type in use, which a user may have set in
         place of `self.family`; options of another family leave out `variant`."""
-        kind = {"bdf": "order"}.get(family, "type")
+        variant_option = {"bdf": "order"}.get(family, "type")
         options = {"ts_type": self.family}
         if family == self.family and self.variant:
-            options[f"ts_{family}_{kind}"] = self.variant
+            options[f"ts_{family}_{variant_option}"] = self.variant
         if family == "arkimex":
-            linear = (
+            linear_solver_options = (
                 "false" if self.variant in EXTRAPOLATION_POINTS else "true"
             )  # PETSc predicts for types without extrapolation points
-            options |= {"ts_arkimex_fully_implicit": "true", "ts_arkimex_initial_guess_extrapolate": linear}
-        adaptivity = {"ts_adapt_type": "none"} if self.equal_steps else {"ts_adapt_dsp_filter": "PI42"}
+            options |= {
+                "ts_arkimex_fully_implicit": "true",
+                "ts_arkimex_initial_guess_extrapolate": linear_solver_options,
+            }
+        adaptivity_options = (
+            {"ts_adapt_type": "none"} if self.equal_steps else {"ts_adapt_dsp_filter": "PI42"}
+        )
         return {
             "ksp_type": "preonly",
             "pc_type": "lu",
@@ -77,5 +82,5 @@ class TimeScheme:
             "snes_linesearch_type": "basic",
             "snes_max_it": "20" if self.equal_steps else "10",
             **options,
-            **adaptivity,
+            **adaptivity_options,
         }

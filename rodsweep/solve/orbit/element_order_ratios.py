@@ -38,10 +38,13 @@ def element_order_ratios(orbit: Orbit, order: int, max_tail: float) -> tuple[flo
     coefficients = coefficients_of_elements(orbit)
     if len(coefficients) == 1:
         return ()
-    scales = np.max([c.max(axis=1) for c in coefficients], axis=0)
-    scales = np.maximum(scales, EXPONENT_SETTINGS.min_divisor)
+    largest_coefficients = np.max([c.max(axis=1) for c in coefficients], axis=0)
+    largest_coefficients = np.maximum(largest_coefficients, EXPONENT_SETTINGS.min_divisor)
     orders = np.array(
-        [_needed_order((c / scales[:, None]).max(axis=0), max_tail, order) for c in coefficients]
+        [
+            _needed_order((c / largest_coefficients[:, None]).max(axis=0), max_tail, order)
+            for c in coefficients
+        ]
     )
     settings = ORDER_RATIO_SETTINGS
     orders = np.maximum(orders, settings.min_order)
@@ -51,8 +54,8 @@ def element_order_ratios(orbit: Orbit, order: int, max_tail: float) -> tuple[flo
 
 
 def _needed_order(c: Array, max_tail: float, order: int) -> int:
-    """Lowest order of an element at which it and the next order have coefficients of at most `max_tail`; at
-    most `order`. Two orders are tested, because one coefficient may vanish by parity. c: moduli of the
+    """Lowest order of an element whose coefficient, and that of the next order, is at most `max_tail`; not
+    above `order`. Two orders are tested, because one coefficient may vanish by parity. c: moduli of the
     coefficients of orders 0 to p, (p + 1,)."""
     small_indices = np.flatnonzero(np.maximum(c[:-1], c[1:]) <= max_tail)
     return int(small_indices[0]) if len(small_indices) else order

@@ -36,47 +36,50 @@ class LeastStretchSettings:
 LEAST_STRETCH_SETTINGS = LeastStretchSettings()
 
 
-def least_stretch_between_nodes(path: "CycleMotion", nodal_minimum: float) -> float:
+def least_stretch_between_nodes(motion: "CycleMotion", nodal_minimum: float) -> float:
     """Smallest h1 of a cycle over rod and period: the smallest nodal value `nodal_minimum` if it exceeds
     `safe_nodal_stretch`, else the smallest sampled value if it exceeds `safe_sampled_stretch`, else the
     minimum found by a search around the position of the smallest sampled value.
     """
     if not nodal_minimum <= LEAST_STRETCH_SETTINGS.safe_nodal_stretch:
         return nodal_minimum
-    return min(nodal_minimum, least_stretch(path, LEAST_STRETCH_SETTINGS.safe_sampled_stretch))
+    return min(nodal_minimum, least_stretch(motion, LEAST_STRETCH_SETTINGS.safe_sampled_stretch))
 
 
-def least_stretch(path: "CycleMotion", safe_stretch: float = inf) -> float:
+def least_stretch(motion: "CycleMotion", safe_stretch: float = inf) -> float:
     """Smallest h1 of a cycle over the whole rod and the whole period. safe_stretch: a smallest sampled value
     above `safe_stretch` is returned without a search between the sampled positions."""
     from scipy.optimize import minimize_scalar  # slow import: 0.1 s, for few runs
 
-    form = path.orbit.form
+    form = motion.orbit.form
     mesh = form.mesh
-    c = path.strain_coefficients[:, 0]
+    c = motion.strain_coefficients[:, 0]
 
-    def least_of(coefficients: Complex) -> Array:
+    def least_of_series(coefficients: Complex) -> Array:
         negated = -np.ascontiguousarray(coefficients)
         return -series_maxima(
             negated, series_samples(negated, LEAST_STRETCH_SETTINGS.times_per_harmonic * len(c))
         )
 
-    def least(u: Array) -> Array:
-        return least_of(c @ mesh.one_sided_evaluation_matrix(u).T)
+    def least_at(u: Array) -> Array:
+        return least_of_series(c @ mesh.one_sided_evaluation_matrix(u).T)
 
     left_indices = [index_before_jump(int(node), mesh.element_nodes) for node in form.nodal_rod.jumps]
     jump_minimum = float(
-        least_of(c[:, left_indices + [index + 1 for index in left_indices]]).min(initial=inf)
+        least_of_series(c[:, left_indices + [index + 1 for index in left_indices]]).min(initial=inf)
     )
     positions = np.linspace(0.0, 1.0, LEAST_STRETCH_SETTINGS.positions_per_node * len(mesh.node_positions))
-    values = least(positions)
-    best_index = int(np.argmin(values))
-    sampled_minimum = min(float(values[best_index]), jump_minimum)
+    sampled_stretch = least_at(positions)
+    best_index = int(np.argmin(sampled_stretch))
+    sampled_minimum = min(float(sampled_stretch[best_index]), jump_minimum)
     if sampled_minimum > safe_stretch:
         return sampled_minimum
-    ends = positions[max(best_index - 1, 0)], positions[min(best_index + 1, len(positions) - 1)]
+    search_interval = positions[max(best_index - 1, 0)], positions[min(best_index + 1, len(positions) - 1)]
     tolerance = {"xatol": LEAST_STRETCH_SETTINGS.position_tolerance}
     minimum = minimize_scalar(
-        lambda u: float(least(np.array([u]))[0]), bounds=ends, method="bounded", options=tolerance
+        lambda u: float(least_at(np.array([u]))[0]),
+        bounds=search_interval,
+        method="bounded",
+        options=tolerance,
     )
     return min(sampled_minimum, float(minimum.fun))

@@ -35,11 +35,11 @@ class CycleMeasures:
     """Scalar measures and harmonics of a cycle, with the names in the result file; NaN if unknown.
 
     period: in tau2. frequency: 2 pi/period. tip_...: extrema of the tip's x, y, in L; tip_theta_max: largest
-    |theta|, in rad, which is equal for a cycle and its mirror image.
-    harmonic_amplitude: amplitudes of the harmonics of the tip's y from the first, (harmonics,), in L.
-    injection_..., dissipation_...: mean of the power, and rms of its fluctuation, in k3/(L tau2).
-    energy_imbalance: mean injection/mean dissipation - 1. least_stretch: smallest h1 at the nodes, and
-    where it is small also between the nodes (`least_stretch_between_nodes`).
+    |theta|, in rad, which is equal for a cycle and its mirror image. harmonic_amplitude: amplitudes of the
+    harmonics of the tip's y from the first, (harmonics,), in L. injection_..., dissipation_...: mean of the
+    power, and rms of its fluctuation, in k3/(L tau2). energy_imbalance: mean injection/mean dissipation - 1.
+    least_stretch: smallest h1 at the nodes; if it is small, also between the nodes
+    (`least_stretch_between_nodes`).
     """
 
     period: float = nan
@@ -118,10 +118,10 @@ class CycleMotion:
         sizes: Array = np.linalg.norm(c[1:], axis=1)
         return sizes
 
-    def resampled_tip(self, count: int) -> Array:
-        """(x, y, theta) of the tip at `count` equidistant times of a period from the start of the orbit,
-        (count, 3)."""
-        return series_samples(self.tip_coefficients, count)
+    def resampled_tip(self, sample_count: int) -> Array:
+        """(x, y, theta) of the tip at `sample_count` equidistant times of a period from the start of the
+        orbit, (count, 3)."""
+        return series_samples(self.tip_coefficients, sample_count)
 
     @cached_property
     def extrema(self) -> dict[str, float]:
@@ -138,7 +138,8 @@ class CycleMotion:
 
     @cached_property
     def measures(self) -> "CycleMeasures":
-        """`measures_of` this path; the smallest stretch may take as long as a step of a branch."""
+        """Result of `measures_of` for this motion; the smallest stretch may take as long as a step of a
+        branch."""
         return measures_of(self)
 
     @property
@@ -169,40 +170,42 @@ class CycleMotion:
         period from `mean_crossing_time`, (3, samples)."""
         period = self.orbit.period
         # Factors of the time derivative of Fourier coefficients.
-        times = 2j * np.pi / period * np.arange(len(self.tip_coefficients))
+        derivative_factors = 2j * np.pi / period * np.arange(len(self.tip_coefficients))
         theta = self.tip_from_mean_crossing(sample_count)[2]
-        dx, dy, _ = self._series_from_mean_crossing(times[:, None] * self.tip_coefficients, sample_count).T
+        dx, dy, _ = self._series_from_mean_crossing(
+            derivative_factors[:, None] * self.tip_coefficients, sample_count
+        ).T
         # Power of the follower force: F along -e1 of the tip, times the tip's velocity.
         injection = -self.orbit.form.rod.F * (np.cos(theta) * dx + np.sin(theta) * dy)
         U = self.orbit.form.elastic_energy(self._equidistant_states)
-        power = np.empty((2, len(self._equidistant_states)))
-        write_powers(self._equidistant_states, power, self.orbit.orbit_equations)
-        rates = (power[0] - power[1]) * self._time_scales
+        powers = np.empty((2, len(self._equidistant_states)))
+        write_powers(self._equidistant_states, powers, self.orbit.orbit_equations)
+        energy_rates = (powers[0] - powers[1]) * self._time_scales
         if self.orbit.is_symmetric:
             # Energy and power are even under the reflection, so they repeat after half a period.
             U = np.tile(U, 2)
-            rates = np.tile(rates, 2)
-        c = self._in_time(hermite_coefficients(U, rates))
-        U, change = self._series_from_mean_crossing(
-            np.stack([c, times[: len(c)] * c], axis=1), sample_count
+            energy_rates = np.tile(energy_rates, 2)
+        c = self._in_time(hermite_coefficients(U, energy_rates))
+        U, energy_rate = self._series_from_mean_crossing(
+            np.stack([c, derivative_factors[: len(c)] * c], axis=1), sample_count
         ).T
         # The energy balance holds to rounding error: dissipation is injection minus dU/dt.
-        return np.stack([U, injection, injection - change])
+        return np.stack([U, injection, injection - energy_rate])
 
-    def shapes_from_mean_crossing(self, count: int, node_count: int) -> Array:
-        """(x, y, theta) of the rod at `count` equidistant times of a period from `mean_crossing_time` and at
-        `node_count` Lobatto nodes, (3, count, nodes)."""
-        strains = self._series_from_mean_crossing(self.strain_coefficients, count).swapaxes(0, 1)
+    def shapes_from_mean_crossing(self, time_count: int, node_count: int) -> Array:
+        """(x, y, theta) of the rod at `time_count` equidistant times of a period from `mean_crossing_time`
+        and at `node_count` Lobatto nodes, (3, count, nodes)."""
+        strains = self._series_from_mean_crossing(self.strain_coefficients, time_count).swapaxes(0, 1)
         mesh = self.orbit.form.mesh
         return shape_from_strains(
             mesh, np.ascontiguousarray(strains), np.zeros(3)
         ) @ _matrix_to_lobatto_nodes(mesh, node_count)
 
-    def _series_from_mean_crossing(self, c: Complex, count: int) -> Array:
-        """Re sum_k c_k exp(2 pi i k t) at `count` equidistant times t of a period from `mean_crossing_time`,
-        (count, ...). c: Fourier coefficients c_k, (coefficients, ...)."""
+    def _series_from_mean_crossing(self, c: Complex, sample_count: int) -> Array:
+        """Re sum_k c_k exp(2 pi i k t) at `sample_count` equidistant times t of a period from
+        `mean_crossing_time`, (count, ...). c: Fourier coefficients c_k, (coefficients, ...)."""
         phase_factors = np.exp(2j * np.pi * self.mean_crossing_time * np.arange(len(c)))
-        return series_samples(c * phase_factors.reshape(-1, *(1,) * (c.ndim - 1)), count)
+        return series_samples(c * phase_factors.reshape(-1, *(1,) * (c.ndim - 1)), sample_count)
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
@@ -212,22 +215,22 @@ def _matrix_to_lobatto_nodes(mesh: Mesh, node_count: int) -> Array:
     return mesh.evaluation_matrix(lobatto_points(node_count)).T
 
 
-def measures_of(path: CycleMotion) -> CycleMeasures:
-    """Scalar measures and harmonics of the orbit of `path`."""
-    orbit = path.orbit
-    y = path.tip_coefficients[:, 1]
-    mean = orbit.means
+def measures_of(motion: CycleMotion) -> CycleMeasures:
+    """Scalar measures and harmonics of the orbit of `motion`."""
+    orbit = motion.orbit
+    tip_y_coefficients = motion.tip_coefficients[:, 1]
+    means = orbit.means
     return CycleMeasures(
         period=orbit.period,
         frequency=2 * np.pi / orbit.period,
-        **path.extrema,
-        tip_y_min=path.tip_y_min,
-        harmonic_amplitude=np.abs(y[1:]),
-        energy_imbalance=mean.injection_mean / mean.dissipation_mean - 1,
-        **(mean._asdict() | {"least_stretch": least_stretch_between_nodes(path, mean.least_stretch)}),
+        **motion.extrema,
+        tip_y_min=motion.tip_y_min,
+        harmonic_amplitude=np.abs(tip_y_coefficients[1:]),
+        energy_imbalance=means.injection_mean / means.dissipation_mean - 1,
+        **(means._asdict() | {"least_stretch": least_stretch_between_nodes(motion, means.least_stretch)}),
     )
 
 
 def least_stretch_of_orbit(orbit: Orbit) -> float:
-    """Smallest h1 of an orbit over rod and period, also between the nodes where it is small."""
+    """Smallest h1 of an orbit over rod and period; if it is small at the nodes, also between the nodes."""
     return least_stretch_between_nodes(CycleMotion(orbit), orbit.form.least_stretch(orbit.all_states))

@@ -29,10 +29,10 @@ def mesh_from_tails(orbit: Orbit, accuracy: float, stage_count: int) -> OrbitMes
     current_mesh = mesh_of(orbit)
     tails = tails_of(orbit)
     max_space_tail = (
-        ORBIT_MESH_SETTINGS.accuracy_share * accuracy / ORBIT_MESH_SETTINGS.space_error_factor
+        ORBIT_MESH_SETTINGS.accuracy_fraction * accuracy / ORBIT_MESH_SETTINGS.space_error_factor
     ) ** 0.5
     max_time_tail = (
-        ORBIT_MESH_SETTINGS.accuracy_share * accuracy / ORBIT_MESH_SETTINGS.time_error_factor
+        ORBIT_MESH_SETTINGS.accuracy_fraction * accuracy / ORBIT_MESH_SETTINGS.time_error_factor
     ) ** 0.5
     # Below `min_tail` a tail is rounding error.
     order = current_mesh.order + ceil(
@@ -45,21 +45,21 @@ def mesh_from_tails(orbit: Orbit, accuracy: float, stage_count: int) -> OrbitMes
         edges = halve_elements(edges)
         ratios = ratios_of_halves(ratios)
     grading, interval_ratio = grading_and_interval_ratio(orbit, max_time_tail, stage_count)
-    intervals = ceil(current_mesh.interval_count * interval_ratio)
+    interval_count = ceil(current_mesh.interval_count * interval_ratio)
     order = min(
         max(order, ORBIT_MESH_SETTINGS.min_order), current_mesh.order + ORBIT_MESH_SETTINGS.max_order_increase
     )
-    intervals = min(
-        max(intervals, ORBIT_MESH_SETTINGS.min_intervals),
+    interval_count = min(
+        max(interval_count, ORBIT_MESH_SETTINGS.min_intervals),
         ORBIT_MESH_SETTINGS.max_interval_ratio * current_mesh.interval_count,
     )
-    return OrbitMesh(edges, order, intervals, stage_count, ratios, grading)
+    return OrbitMesh(edges, order, interval_count, stage_count, ratios, grading)
 
 
 def grading_and_interval_ratio(orbit: Orbit, max_tail: float, stage_count: int) -> tuple[TimeGrading, float]:
     """Returns (grading, ratio): the grading of the time intervals that needs the fewest intervals, and the
-    ratio of this number to the present number of `orbit`. max_tail: largest allowed tail in time. stages:
-    number of stages of an interval."""
+    ratio of this number to the present number of `orbit`. max_tail: largest allowed tail in time.
+    stage_count: number of stages of an interval."""
     # For a different number of stages the tail in an interval is about a power of the known tail.
     tails = np.maximum(tails_of_intervals(orbit), ORBIT_MESH_SETTINGS.min_tail) ** (
         stage_count / orbit.stage_count
@@ -70,34 +70,36 @@ def grading_and_interval_ratio(orbit: Orbit, max_tail: float, stage_count: int) 
     full_lengths = np.diff(edges) * (orbit.interval_count - 1)
     # A tail is proportional to (length of the interval)**stages.
     ratios = (tails / max_tail) ** (1 / stage_count) / full_lengths
-    candidates = {
+    interval_ratio_of_grading = {
         grading: float((ratios * grading.rates(grading.mesh_times(middles))).max())
         for grading in (orbit.grading, UNIFORM_TIME, fitted)
     }
-    best = min(candidates, key=lambda grading: candidates[grading])
-    return best, candidates[best]
+    best = min(interval_ratio_of_grading, key=lambda grading: interval_ratio_of_grading[grading])
+    return best, interval_ratio_of_grading[best]
 
 
 def regraded(mesh: OrbitMesh, orbit: Orbit) -> OrbitMesh:
-    """The mesh `mesh`, which has the grading of the solved `orbit`, with the best grading for this orbit and
-    fewer intervals, unless the present grading is almost as good."""
-    stages = orbit.stage_count
+    """`mesh` with the best grading of the time intervals for the solved `orbit` and fewer intervals; `mesh`
+    itself if its grading, that of `orbit`, is almost as good."""
+    stage_count = orbit.stage_count
     # The present grading needs as many intervals as the orbit has with its own largest tail.
-    grading, ratio = grading_and_interval_ratio(orbit, float(tails_of_intervals(orbit).max()), stages)
-    if ratio > ORBIT_MESH_SETTINGS.max_regraded_ratio or grading == mesh.grading:
+    grading, interval_ratio = grading_and_interval_ratio(
+        orbit, float(tails_of_intervals(orbit).max()), stage_count
+    )
+    if interval_ratio > ORBIT_MESH_SETTINGS.max_regraded_ratio or grading == mesh.grading:
         return mesh
-    intervals = max(ORBIT_MESH_SETTINGS.min_intervals, ceil(ratio * mesh.full_intervals) + 1)
-    return replace(mesh, interval_count=intervals, grading=grading)
+    interval_count = max(ORBIT_MESH_SETTINGS.min_intervals, ceil(interval_ratio * mesh.full_intervals) + 1)
+    return replace(mesh, interval_count=interval_count, grading=grading)
 
 
 def finer_mesh(mesh: OrbitMesh, target: OrbitMesh) -> OrbitMesh:
     """A mesh that is at least as fine as `target` and finer than the current mesh `mesh`."""
     order = max(target.order, mesh.order) if target.has_elements_of(mesh) else target.order
     # With another grading the target may be finer in time with fewer intervals.
-    min_intervals = mesh.interval_count if target.grading == mesh.grading else 0
-    intervals = max(target.interval_count, min_intervals)
-    stages = max(target.stage_count, mesh.stage_count)
-    refined = replace(target, order=order, interval_count=intervals, stage_count=stages)
+    min_interval_count = mesh.interval_count if target.grading == mesh.grading else 0
+    interval_count = max(target.interval_count, min_interval_count)
+    stage_count = max(target.stage_count, mesh.stage_count)
+    refined = replace(target, order=order, interval_count=interval_count, stage_count=stage_count)
     if refined != mesh:
         return refined
     return replace(

@@ -49,11 +49,11 @@ class NewtonMatrix(Protocol):
 
     @property
     def multipliers_over_solved_part(self) -> Complex:
-        """Multipliers over the solved part of the period, (rank,), with the trivial multiplier."""
+        """Multipliers over the solved part of the period, (multipliers,), with the trivial multiplier."""
 
     def multipliers(self) -> Complex:
-        """Floquet multipliers larger than rounding error, by descending modulus, (rank,), with the trivial
-        multiplier."""
+        """Floquet multipliers larger than rounding error, by descending modulus, (multipliers,), with the
+        trivial multiplier."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +82,7 @@ def newton(
     Newton steps decrease fast.
     """
     matrix = Linearisation(orbit, workspace, parameter_name)
-    distance = 0.0
+    matrix_distance = 0.0
     previous_change = np.inf
     step = matrix.step
     for iteration in range(1, ORBIT_NEWTON_SETTINGS.max_iterations + 1):
@@ -96,10 +96,10 @@ def newton(
         # A full step from a poor start may leave the neighbourhood of the orbit, so long steps are shortened.
         damping_factor = min(1.0, ORBIT_NEWTON_SETTINGS.max_relative_step / change) if change > 0 else 1.0
         orbit = orbit.plus_change(step, damping_factor)
-        distance += damping_factor * change
+        matrix_distance += damping_factor * change
         if not orbit.period > 0:
             raise Unsolvable("Newton's method for the cycle diverges: the period is not positive")
-        is_matrix_new = distance == damping_factor * change
+        is_matrix_new = matrix_distance == damping_factor * change
         # Expected error after this step: quadratic in the step if the matrix is new, otherwise by the ratio
         # of the last two steps.
         expected_error = (
@@ -108,11 +108,11 @@ def newton(
             else change * min(1.0, change / previous_change)
         )
         if expected_error <= tolerance:
-            return ConvergedOrbit(orbit, matrix, distance)
+            return ConvergedOrbit(orbit, matrix, matrix_distance)
         # A correction with the old factors is far cheaper than a new elimination.
         if change > ORBIT_NEWTON_SETTINGS.new_matrix_ratio * min(previous_change, 1.0):
             matrix = Linearisation(orbit, workspace, parameter_name)
-            distance = 0.0
+            matrix_distance = 0.0
             step = matrix.step
         else:
             step = matrix.correction(orbit)
@@ -127,8 +127,8 @@ def with_matrix_within_distance(
     solved: ConvergedOrbit, distance: float, parameter_name: str | None = None
 ) -> ConvergedOrbit:
     """The orbit `solved`, after one more Newton step if its matrix was assembled at a relative distance of
-    more than `distance` from the orbit. parameter_name: name of the parameter for
-    the `tangent` of the matrix, or None."""
+    more than `distance` from the orbit. parameter_name: name of the parameter for the `tangent` of the
+    matrix, or None."""
     if solved.matrix_distance <= distance:
         return solved
     return newton_step(solved, parameter_name)
@@ -144,13 +144,13 @@ def newton_step(solved: ConvergedOrbit, parameter_name: str | None = None) -> Co
 
 
 def multipliers_and_trivial_error(solved: ConvergedOrbit) -> tuple[Complex, float]:
-    """Returns (multipliers, distance): nontrivial Floquet multipliers by descending modulus, (rank - 1,), and
+    """Returns (multipliers, trivial_error): nontrivial Floquet multipliers by descending modulus, (m,), and
     the distance of the computed trivial multiplier from 1."""
-    values = solved.matrix.multipliers()
+    multipliers = solved.matrix.multipliers()
     # The time derivative of the orbit is an eigenvector with the exact multiplier 1.
-    trivial_index = int(np.argmin(np.abs(values - 1)))
-    nontrivial = np.concatenate([values[:trivial_index], values[trivial_index + 1 :]])
-    return nontrivial, float(abs(values[trivial_index] - 1))
+    trivial_index = int(np.argmin(np.abs(multipliers - 1)))
+    nontrivial = np.concatenate([multipliers[:trivial_index], multipliers[trivial_index + 1 :]])
+    return nontrivial, float(abs(multipliers[trivial_index] - 1))
 
 
 def largest_multiplier_difference(multipliers: Complex, other_multipliers: Complex) -> float:
@@ -164,10 +164,10 @@ def largest_multiplier_difference(multipliers: Complex, other_multipliers: Compl
     """
     if not (len(multipliers) and len(other_multipliers)):
         return 0.0
-    nearest = np.abs(other_multipliers - multipliers[0]).min()
+    nearest_distance = np.abs(other_multipliers - multipliers[0]).min()
     # The largest multiplier of a strongly unstable cycle may differ by a factor between meshes; the nearest
     # multiplier is then a different multiplier.
-    return float(max(nearest, abs(abs(other_multipliers[0]) - abs(multipliers[0]))))
+    return float(max(nearest_distance, abs(abs(other_multipliers[0]) - abs(multipliers[0]))))
 
 
 def relative_change(orbit: Orbit, step: Array) -> float:

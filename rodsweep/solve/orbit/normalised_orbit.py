@@ -50,8 +50,8 @@ def normalised_orbit_values(orbit: Orbit) -> Array:
 
 
 def normalised_tangent(orbit: Orbit, tangent: Array) -> Array:
-    """Derivative of the normalised values of an orbit with respect to a parameter, (N + 1,). tangent:
-    derivative of the orbit values, (N,)."""
+    """Derivative of `normalised_orbit_values`, (N + 1,), with respect to a parameter; last entry: derivative
+    of the squared size. tangent: derivative of the orbit values, (N,)."""
     slopes: Array = normalised_slopes(orbit.values, tangent, reflection_arrays(orbit))
     return slopes
 

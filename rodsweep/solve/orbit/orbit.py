@@ -176,8 +176,8 @@ def _orbit_equations(
     d = radau_method(stage_count).differentiation_matrix
     lengths = interval_lengths(interval_count, grading)
     S = symmetry.matrix(form.layout)
-    parts = float(symmetry.period_parts)
-    return OrbitEquations(form.nodal_rod, form.mesh.matrices, form.mass_diagonal, d, lengths, S, parts)
+    period_parts = float(symmetry.period_parts)
+    return OrbitEquations(form.nodal_rod, form.mesh.matrices, form.mass_diagonal, d, lengths, S, period_parts)
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_mesh_pairs)
@@ -225,13 +225,13 @@ def time_evaluation_matrix(source: TimeMesh, times: Array) -> csr_array:
     K, s, grading = source
     starts = interval_starts(K, grading)
     lengths = interval_lengths(K, grading)
-    k = np.searchsorted(starts, times, side="right") - 1
+    interval_indices = np.searchsorted(starts, times, side="right") - 1
     weights = np.empty((len(times), s + 1))
-    for interval in np.unique(k):
-        indices = k == interval
+    for interval in np.unique(interval_indices):
+        indices = interval_indices == interval
         fractions = (times[indices] - starts[interval]) / lengths[interval]
         weights[indices] = radau_method(s).evaluation_matrix(fractions)
-    first = k * s  # the end of the previous interval is the start of this interval
-    columns = first[:, None] + np.arange(s + 1)
-    rows = np.arange(0, weights.size + 1, s + 1)
-    return csr_array((weights.ravel(), columns.ravel(), rows), shape=(len(times), 1 + K * s))
+    first_nodes = interval_indices * s  # the end of the previous interval is the start of this interval
+    columns = first_nodes[:, None] + np.arange(s + 1)
+    row_starts = np.arange(0, weights.size + 1, s + 1)
+    return csr_array((weights.ravel(), columns.ravel(), row_starts), shape=(len(times), 1 + K * s))

@@ -28,7 +28,7 @@ class OrbitMeshSettings:
     """Predicted error of period and extrema due to the mesh in time, divided by the squared tail in time."""
     min_tail: float = 1e-15
     """Lower limit of the tails from which a mesh is chosen; smaller tails are rounding errors."""
-    accuracy_share: float = 1 / 3
+    accuracy_fraction: float = 1 / 3
     """The mesh in space and the mesh in time are each chosen for this fraction of the requested accuracy."""
     coarser_order_decrease: int = 2
     """Decrease of the element order from a mesh to its `coarser` mesh, whose errors are about ten times
@@ -136,10 +136,10 @@ class OrbitMesh:
     def from_array(cls, numbers: Array) -> "OrbitMesh":
         """The mesh from the array that the property `as_array` returns, (2 elements + 7,)."""
         counts, amplitudes, (harmonic,), positions = np.split(numbers, [3, 5, 6])
-        order, intervals, stages = map(int, counts)
+        order, interval_count, stage_count = map(int, counts)
         grading = TimeGrading(float(amplitudes[0]), float(amplitudes[1]), int(harmonic))
         edges, ratios = (tuple(part.tolist()) for part in np.split(positions, [len(positions) // 2 + 1]))
-        return cls(edges, order, intervals, stages, () if min(ratios) == 1 else ratios, grading)
+        return cls(edges, order, interval_count, stage_count, () if min(ratios) == 1 else ratios, grading)
 
     @property
     def coarser(self) -> "OrbitMesh":
@@ -149,23 +149,23 @@ class OrbitMesh:
             ORBIT_MESH_SETTINGS.min_order - ORBIT_MESH_SETTINGS.coarser_order_decrease,
             self.order - ORBIT_MESH_SETTINGS.coarser_order_decrease,
         )
-        intervals = max(
+        interval_count = max(
             ORBIT_MESH_SETTINGS.min_intervals - 1,
             round(ORBIT_MESH_SETTINGS.coarser_interval_ratio * self.interval_count),
         )
-        return replace(self, order=order, interval_count=intervals)
+        return replace(self, order=order, interval_count=interval_count)
 
     def with_order(self, order: int) -> "OrbitMesh":
         """This mesh with another largest order, `order`. The orders of all elements change by at least 1, so
         that the difference between cycles on both meshes contains the errors of every element."""
         if order == self.order or not self.order_ratios:
             return replace(self, order=order)
-        present = element_orders(self.element_count, self.order, self.order_ratios)
+        present_orders = element_orders(self.element_count, self.order, self.order_ratios)
         scaled_orders = element_orders(self.element_count, order, self.order_ratios)
         if order > self.order:
-            orders = [max(p + 1, q) for p, q in zip(present, scaled_orders, strict=True)]
+            orders = [max(p + 1, q) for p, q in zip(present_orders, scaled_orders, strict=True)]
         else:
-            orders = [min(p - 1, q) for p, q in zip(present, scaled_orders, strict=True)]
+            orders = [min(p - 1, q) for p, q in zip(present_orders, scaled_orders, strict=True)]
         # Half an order less, because `element_orders` rounds up: no rounding error can add an order.
         ratios = tuple(1.0 if p == order else (p - 1 / 2) / order for p in orders)
         return replace(self, order=order, order_ratios=ratios)
@@ -204,10 +204,10 @@ class OrbitMesh:
     def cost(self) -> float:
         """Relative cost of the elimination of Newton's matrix; the number of unknowns is rounded up to a
         multiple of `ORBIT_MESH_SETTINGS.doubles_per_vector`."""
-        unknowns = ORBIT_MESH_SETTINGS.doubles_per_vector * ceil(
+        padded_unknown_count = ORBIT_MESH_SETTINGS.doubles_per_vector * ceil(
             self.unknown_count / ORBIT_MESH_SETTINGS.doubles_per_vector
         )
-        return float(unknowns**3 * self.interval_count * self.stage_count**2)
+        return float(padded_unknown_count**3 * self.interval_count * self.stage_count**2)
 
     def interpolated_orbit(self, orbit: Orbit) -> Orbit:
         """The orbit `orbit` interpolated to this mesh."""

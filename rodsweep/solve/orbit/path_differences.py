@@ -13,8 +13,9 @@ PERIOD_INDEX, Y_INDEX, EXTREMUM_INDEX, PATH_INDEX = range(4)
 
 
 def path_differences(coarse: CycleMotion, fine: CycleMotion) -> Array:
-    """Differences of two paths, (4,): difference of the period, of the largest y, of the extremum with the
-    largest difference, and largest difference of the tip's x, y or theta over the period.
+    """Differences of the tip's paths in two motions of a cycle, (4,): difference of the period, of the
+    largest y, of the extremum with the largest difference, and largest difference of the tip's x, y or theta
+    over the period.
 
     The first number is the larger of two relative differences: of the periods, and of the parameters of the
     rods, which may be different on a branch. The remaining three differences are divided by the largest y of
@@ -22,16 +23,23 @@ def path_differences(coarse: CycleMotion, fine: CycleMotion) -> Array:
     """
     max_distance = np.abs(fine.tip_samples - coarse.resampled_tip(len(fine.tip_samples))).max()
     extrema = fine.extrema
-    changes = {name: abs(value - extrema[name]) for name, value in coarse.extrema.items()}
-    size = abs(extrema["tip_y_max"])
-    period = max(abs(coarse.orbit.period / fine.orbit.period - 1), rod_difference(coarse.orbit, fine.orbit))
-    return np.array([period, *(np.array([changes["tip_y_max"], max(changes.values()), max_distance]) / size)])
+    differences = {name: abs(value - extrema[name]) for name, value in coarse.extrema.items()}
+    largest_y = abs(extrema["tip_y_max"])
+    period_difference = max(
+        abs(coarse.orbit.period / fine.orbit.period - 1), rod_difference(coarse.orbit, fine.orbit)
+    )
+    return np.array(
+        [
+            period_difference,
+            *(np.array([differences["tip_y_max"], max(differences.values()), max_distance]) / largest_y),
+        ]
+    )
 
 
-def rod_difference(first: Orbit, second: Orbit) -> float:
+def rod_difference(first: Orbit, reference: Orbit) -> float:
     """Largest difference between the parameters of the rods of two orbits, relative to the parameters of the
-    orbit `second`; absolute for a parameter of `second` that is 0."""
-    a, b = (_rod_coordinates(orbit.form.rod) for orbit in (first, second))
+    orbit `reference`; absolute for a parameter of `reference` that is 0."""
+    a, b = (_rod_coordinates(orbit.form.rod) for orbit in (first, reference))
     # A coefficient is 0 only in a limit, such as c1 = 0, where it is exactly 0 for both rods.
     return float(np.abs((a - b) / np.where(b == 0, 1, b)).max())
 

@@ -29,8 +29,8 @@ def orbit_arrays(orbit: Orbit) -> dict[str, Array]:
 
 
 def orbit_from_arrays(arrays: Mapping[str, Array], keeps_omega: bool = False) -> Orbit:
-    """The orbit from named arrays with the shapes that `orbit_arrays` gives, as "orbit" (N,). keeps_omega: as
-    in `StressForm`."""
+    """The orbit from named arrays with the shapes that `orbit_arrays` gives, as "orbit" (N,). keeps_omega:
+    option of the orbit's `StressForm`."""
     mesh = OrbitMesh.from_array(arrays["mesh"])
     parameters: dict[str, Any] = dict(zip(PARAMETERS, map(float, arrays["rod"]), strict=True))
     rod = Rod(**parameters, material=RodMaterial.from_json_text(bytes(arrays["build"]).decode()))

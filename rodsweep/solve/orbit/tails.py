@@ -58,11 +58,15 @@ def tails_of(orbit: Orbit) -> CoefficientTails:
     coefficients = coefficients_of_elements(orbit)
     scales = np.max([c.max(axis=1) for c in coefficients], axis=0)
     # Two coefficients, because the last coefficient may vanish by parity.
-    ends = np.max([np.hypot(c[:, -1], c[:, -2]) for c in coefficients], axis=0)
-    last_coefficients = ends / np.maximum(scales, EXPONENT_SETTINGS.min_divisor)
-    finest = np.max([c for c in coefficients if c.shape[1] == orbit.form.mesh.order + 1], axis=0)
+    end_norms = np.max([np.hypot(c[:, -1], c[:, -2]) for c in coefficients], axis=0)
+    last_coefficients = end_norms / np.maximum(scales, EXPONENT_SETTINGS.min_divisor)
+    highest_order_coefficients = np.max(
+        [c for c in coefficients if c.shape[1] == orbit.form.mesh.order + 1], axis=0
+    )
     return CoefficientTails(
-        float(last_coefficients.max()), float(tails_of_intervals(orbit).max()), _coefficient_decay(finest)
+        float(last_coefficients.max()),
+        float(tails_of_intervals(orbit).max()),
+        _coefficient_decay(highest_order_coefficients),
     )
 
 
@@ -91,10 +95,10 @@ def _coefficient_decay(c: Array) -> float:
 def coefficients_of_elements(orbit: Orbit) -> list[Array]:
     """Largest moduli of the Legendre coefficients in space of n1, n2 and m3 of each element over the ends of
     all time intervals, (3, p + 1) each, p: order of the element."""
-    ends = np.ascontiguousarray(orbit.stage_states[:, -1])
+    end_states = np.ascontiguousarray(orbit.stage_states[:, -1])
     return [
         largest_coefficients(values, _analysis_matrix_on_element(values.shape[2] - 1))
-        for values in _stresses_of_elements(orbit, ends)
+        for values in _stresses_of_elements(orbit, end_states)
     ]
 
 
@@ -131,11 +135,11 @@ def smooth_tails(orbit: Orbit) -> Array:
     `COEFFICIENT_TAIL_SETTINGS.last_coefficients` coefficients: a single coefficient may vanish."""
     stresses = _stresses_of_elements(orbit, orbit.all_states)
     max_stress = np.max([np.abs(values).max(axis=(1, 2)) for values in stresses], axis=0)
-    ends = np.max(
+    end_norms = np.max(
         [largest_norms(values, _last_columns_of_analysis_matrix(values.shape[2] - 1)) for values in stresses],
         axis=0,
     )
-    space_tails = ends / np.maximum(max_stress, EXPONENT_SETTINGS.min_divisor)
+    space_tails = end_norms / np.maximum(max_stress, EXPONENT_SETTINGS.min_divisor)
     return np.array([float(space_tails.max()), float(tails_of_intervals(orbit).max())])
 
 

@@ -32,7 +32,8 @@ class TimeGradingSettings:
     """Number of equidistant times per node at which a function of the mesh time is evaluated to find its
     harmonics in time. A function of the time has fewer harmonics than the same function of the mesh time."""
     bisections: int = 8
-    """Number of bisections that invert the map to 0.002, from where Newton's method converges."""
+    """Number of bisections that invert the map with an error of 0.002, from where Newton's method
+    converges."""
     newton_steps: int = 4
     """Number of Newton steps that invert the map after the bisections; the third reaches rounding error."""
 
@@ -103,19 +104,21 @@ def fitted_grading(tails: Array, edges: Array, stage_count: int, harmonic: int) 
     fractions of the solved part of the period, (K + 1,). stage_count: number of stages of an interval.
     harmonic: `TimeGrading.harmonic` of the result."""
     lengths = np.diff(edges)
-    limited = np.maximum(tails, TIME_GRADING_SETTINGS.min_tail_ratio * tails.max())
+    limited_tails = np.maximum(tails, TIME_GRADING_SETTINGS.min_tail_ratio * tails.max())
     # A coefficient of degree s in an interval of length h, over h^(s + 1), is a measure of the error density.
-    increments = limited ** (1 / (stage_count + 1))
-    ends = np.cumsum(increments) / increments.sum()
-    angles = 2 * np.pi * harmonic * (ends - increments / (2 * increments.sum()))
+    increments = limited_tails ** (1 / (stage_count + 1))
+    mesh_time_ends = np.cumsum(increments) / increments.sum()
+    angles = 2 * np.pi * harmonic * (mesh_time_ends - increments / (2 * increments.sum()))
     # With equal tails tau grows by the increments; these are the Fourier coefficients of dt/dtau.
     cosine = 2 * float(lengths @ np.cos(angles))
     sine = 2 * float(lengths @ np.sin(angles))
     amplitude = float(np.hypot(cosine, sine))
     max_amplitude = TIME_GRADING_SETTINGS.max_amplitude
-    factor = max_amplitude / amplitude if amplitude > max_amplitude else 1.0
+    amplitude_factor = max_amplitude / amplitude if amplitude > max_amplitude else 1.0
     step = TIME_GRADING_SETTINGS.step
-    return TimeGrading(step * round(factor * cosine / step), step * round(factor * sine / step), harmonic)
+    return TimeGrading(
+        step * round(amplitude_factor * cosine / step), step * round(amplitude_factor * sine / step), harmonic
+    )
 
 
 def coefficients_in_time(c: Complex, grading: TimeGrading, part_count: int) -> Complex:
@@ -135,11 +138,13 @@ def samples_in_time(c: Complex, grading: TimeGrading, part_count: int) -> Array:
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
-def _waves_at_equal_times(count: int, grading: TimeGrading, part_count: int) -> tuple[Array, Array]:
+def _waves_at_equal_times(
+    coefficient_count: int, grading: TimeGrading, part_count: int
+) -> tuple[Array, Array]:
     """Cosines and sines of 2 pi k tau, (m, count) each, k = 0 ... count - 1, at the mesh times tau of m
     equidistant times of the period."""
-    samples = TIME_GRADING_SETTINGS.oversampling * (count - 1)
-    part, times = np.divmod(part_count * np.arange(samples), samples)
-    mesh_times = (part + grading.mesh_times(times / samples)) / part_count
-    angles = 2 * np.pi * np.outer(mesh_times, np.arange(count))
+    sample_count = TIME_GRADING_SETTINGS.oversampling * (coefficient_count - 1)
+    part, times = np.divmod(part_count * np.arange(sample_count), sample_count)
+    mesh_times = (part + grading.mesh_times(times / sample_count)) / part_count
+    angles = 2 * np.pi * np.outer(mesh_times, np.arange(coefficient_count))
     return np.cos(angles), np.sin(angles)

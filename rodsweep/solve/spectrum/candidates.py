@@ -88,30 +88,30 @@ class CountComparison:
 
 
 def candidates_on_mesh(
-    problem: TransverseProblem, mesh: AnyMesh, requested: int, vectors: bool, to_rounding: bool
+    problem: TransverseProblem, mesh: AnyMesh, requested_count: int, needs_vectors: bool, to_rounding: bool
 ) -> Candidates:
     """The eigenvalues of a mesh nearest to the shift of `problem`, refined to roots of D; spurious
     eigenvalues are dropped.
 
-    requested: number of eigenvalues requested. vectors: whether eigenvectors are returned. to_rounding:
-    whether the eigenvalues of the mesh converge to rounding error before they are refined. After an error
-    inside PETSc, SLEPc or LAPACK no eigenvalue is returned; the solver may succeed on another mesh.
+    requested_count: number of eigenvalues requested. needs_vectors: whether eigenvectors are returned.
+    to_rounding: whether the eigenvalues of the mesh converge to rounding error before they are refined. After
+    an error inside PETSc, SLEPc or LAPACK no eigenvalue is returned; the solver may succeed on another mesh.
     """
     mesh_eigenvalues: Complex = np.empty(0, complex)
-    vectors_kept = None
+    vectors = None
     failure = ""
     try:
         solver = problem.solver(mesh)
-        mesh_eigenvalues = solver.solve(problem.rod, problem.shift, requested, to_rounding)
-        vectors_kept = solver.vectors(len(mesh_eigenvalues)) if vectors else None
+        mesh_eigenvalues = solver.solve(problem.rod, problem.shift, requested_count, to_rounding)
+        vectors = solver.vectors(len(mesh_eigenvalues)) if needs_vectors else None
     except PETSC_ERRORS as error:
         destroy_pooled_solvers()
         failure = cause_of(error)
     kept_roots = problem.refined_roots(
         mesh_eigenvalues, CANDIDATE_SETTINGS.max_waves_per_node * mesh.element_count * mesh.order
     )
-    vectors_kept = vectors_kept[:, kept_roots.mesh_indices] if vectors_kept is not None else None
-    return Candidates(mesh, kept_roots, vectors_kept, failure)
+    vectors = vectors[:, kept_roots.mesh_indices] if vectors is not None else None
+    return Candidates(mesh, kept_roots, vectors, failure)
 
 
 def compare_with_count(problem: TransverseProblem, roots: Roots, mode_count: int) -> CountComparison:
@@ -123,8 +123,8 @@ def compare_with_count(problem: TransverseProblem, roots: Roots, mode_count: int
     line = line_for_proof(w[mode_count - 1], errors[mode_count - 1])
     is_complete, evaluations = problem.prove_completeness(line, roots)
     if is_complete:
-        found_count, are_clear = _count_right_of(line, w, errors)
-        return CountComparison(EigenvalueCount(found_count, evaluations), found_count, are_clear)
+        found_count, is_line_clear = _count_right_of(line, w, errors)
+        return CountComparison(EigenvalueCount(found_count, evaluations), found_count, is_line_clear)
     for line in lines_for_count(w, mode_count):
         count = problem.count(line, roots)
         if count.number is not None:
@@ -132,41 +132,43 @@ def compare_with_count(problem: TransverseProblem, roots: Roots, mode_count: int
     return CountComparison(count, *_count_right_of(line, w, errors))
 
 
-def line_for_proof(last: complex, error: float) -> float:
+def line_for_proof(last_wanted: complex, error: float) -> float:
     """Real part <= 0 of the line of a proof without a count, to the left of the last wanted eigenvalue and of
-    all unstable eigenvalues. last, error: the last wanted eigenvalue and its absolute error."""
+    all unstable eigenvalues. last_wanted: the last wanted eigenvalue. error: its absolute error."""
     return min(
-        last.real
+        last_wanted.real
         - CANDIDATE_SETTINGS.proof_line_distance_in_errors * error
-        - CANDIDATE_SETTINGS.proof_line_distance_ratio * abs(last),
+        - CANDIDATE_SETTINGS.proof_line_distance_ratio * abs(last_wanted),
         0.0,
     )
 
 
 def _count_right_of(line: float, w: list[complex], errors: list[float]) -> tuple[int, bool]:
-    """Returns (number, are_clear). number: number of eigenvalues w to the right of `line`. are_clear: whether
-    the distance of each w from the line is more than twice its error. errors: absolute errors of w."""
-    are_clear = all(abs(value.real - line) > 2 * error for value, error in zip(w, errors, strict=True))
-    return sum(value.real > line for value in w), are_clear
+    """Returns (number of eigenvalues w to the right of `line`, is_line_clear). is_line_clear: whether the
+    distance of each w from the line is more than twice the error of w. errors: absolute errors of w."""
+    is_line_clear = all(abs(value.real - line) > 2 * error for value, error in zip(w, errors, strict=True))
+    return sum(value.real > line for value in w), is_line_clear
 
 
 def lines_for_count(w: list[complex], mode_count: int) -> list[float]:
     """Real parts of up to `max_count_lines` vertical lines to the right of which eigenvalues are counted,
-    best first: middles of the widest gaps to the left of the `mode_count` leading and of all unstable
-    eigenvalues.
+    best first: middles of the widest gaps between real parts, to the left of the `mode_count` leading and of
+    all unstable eigenvalues.
 
     w: eigenvalues found, by descending real part. Gaps wider than `wide_gap_ratio` (unstable rod:
     `wide_gap_if_unstable`) are equally good; the rightmost comes first. The last line lies to the left of all
     eigenvalues found.
     """
-    min_gap = CANDIDATE_SETTINGS.wide_gap_if_unstable if w[0].real > 0 else CANDIDATE_SETTINGS.wide_gap_ratio
-    target = min(w[mode_count - 1].real, 0.0)
-    real_parts = [target] + [value.real for value in w if value.real < target]
+    wide_gap_ratio = (
+        CANDIDATE_SETTINGS.wide_gap_if_unstable if w[0].real > 0 else CANDIDATE_SETTINGS.wide_gap_ratio
+    )
+    rightmost_end = min(w[mode_count - 1].real, 0.0)
+    real_parts = [rightmost_end] + [value.real for value in w if value.real < rightmost_end]
     gaps = []
     for right, left in zip(real_parts[:-1], real_parts[1:], strict=True):
         width = (right - left) / abs(left)
         if width > CANDIDATE_SETTINGS.min_gap_ratio:
-            gaps.append((min(width, min_gap), (left + right) / 2))
+            gaps.append((min(width, wide_gap_ratio), (left + right) / 2))
     gaps.sort(key=lambda gap: -gap[0])  # stable sort: the first wide gap stays first
     last_real_part = real_parts[-1]
     last_line = last_real_part - CANDIDATE_SETTINGS.last_line_distance_ratio * (

@@ -67,7 +67,8 @@ class UniformSolver(ShiftInvertSolver):
         return LoadedPencil(finite_eigenvalue_count(rod, self.node_count), shift, deflection_ratio)
 
     def displacements(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
-        """Returns (y, theta) at all nodes, (nodes + 1, k). vectors: of the last solve, (unknowns, k)."""
+        """Returns (y, theta) at all nodes, (nodes + 1, k). vectors: eigenvectors of the last solve,
+        (unknowns, k)."""
         return fields_of_vectors(vectors, self.pencil.displacement_factors(rod))
 
 

@@ -48,12 +48,12 @@ class TransverseProblem(ABC):
     shift: float
     has_bound: bool
     is_count_slow: ClassVar[bool]
-    additional_eigenvalues: int = 0
+    additional_eigenvalue_count: int = 0
     """Number of eigenvalues requested from the first mesh besides the modes, for a proof without a count."""
 
     def move_shift_right(self) -> None:
-        """Moves the shift farther to the right, where the eigenvalues nearest to it are the rightmost. For a
-        uniform rod, whose shift lies to the right of all amplified waves, it stays.
+        """Moves the shift farther to the right, so that the eigenvalues nearest to the shift are the
+        rightmost. The shift of a uniform rod stays, because it lies to the right of all amplified waves.
         """
         return
 
@@ -131,15 +131,15 @@ class ArmProblem(TransverseProblem):
 
     is_count_slow = True
 
-    def __init__(self, rod: Rod, to_prove: int = 0):
+    def __init__(self, rod: Rod, modes_to_prove: int = 0):
         self.rod = rod
-        self._modes_to_prove = to_prove
+        self._modes_to_prove = modes_to_prove
         self._has_proof_failed = False
         self._hull = hull_of(rod)
         self._determinant = arm_determinant(rod)
         self.has_bound = isfinite(self._hull.a)
-        self.additional_eigenvalues = (
-            COMPLETENESS_SETTINGS.additional_eigenvalues if to_prove and self.has_bound else 0
+        self.additional_eigenvalue_count = (
+            COMPLETENESS_SETTINGS.additional_eigenvalues if modes_to_prove and self.has_bound else 0
         )
         growth, _ = most_amplified_local_waves(rod)
         self.shift = KRYLOV_SETTINGS.shift_over_growth_rate * float(growth.max())
@@ -156,26 +156,26 @@ class ArmProblem(TransverseProblem):
     def refined_roots(self, mesh_eigenvalues: Complex, max_q: float) -> Roots:
         """Roots of D refined from `mesh_eigenvalues`, (n,); if a proof is requested, and until one fails,
         only from the eigenvalues that the proof needs."""
-        needed_mask, largest_w = self._eigenvalues_for_proof(mesh_eigenvalues)
+        needed_mask, max_abs_w = self._eigenvalues_for_proof(mesh_eigenvalues)
         return roots_of_arm(
-            np.where(needed_mask, mesh_eigenvalues, np.inf), self._determinant, self._hull, max_q, largest_w
+            np.where(needed_mask, mesh_eigenvalues, np.inf), self._determinant, self._hull, max_q, max_abs_w
         )
 
     def _eigenvalues_for_proof(self, mesh_eigenvalues: Complex) -> tuple[NDArray[np.bool_], float]:
-        """Returns (mask, size). mask: which of the eigenvalues `mesh_eigenvalues` the proof will need, (n,).
-        size: largest |w| at which the proof needs D; 0 if unknown."""
+        """Returns (mask, max_abs_w). mask: True for each of the `mesh_eigenvalues` that the proof will need,
+        (n,). max_abs_w: largest |w| at which the proof needs D; 0 if unknown."""
         needed_mask = np.isfinite(mesh_eigenvalues)
         if not self._modes_to_prove or not self.has_bound or needed_mask.sum() < self._modes_to_prove:
             return needed_mask, 0.0
         finite = np.flatnonzero(needed_mask)
         order = finite[np.lexsort((-mesh_eigenvalues.imag[finite], -mesh_eigenvalues.real[finite]))]
         line = min(float(mesh_eigenvalues[order[self._modes_to_prove - 1]].real), 0.0)
-        number, size = cheapest_proof(line, self._hull, mesh_eigenvalues[order], self._modes_to_prove)
+        number, max_abs_w = cheapest_proof(line, self._hull, mesh_eigenvalues[order], self._modes_to_prove)
         # After a failed proof a count decides, which needs all eigenvalues right of its line.
         if not number or self._has_proof_failed:
             return needed_mask, largest_w_of_count(line, self._determinant, self._hull)
         needed_mask[order[number:]] = False
-        return needed_mask, size
+        return needed_mask, max_abs_w
 
     def count(self, line: float, roots: Roots | KnownRoots | None = None) -> EigenvalueCount:
         w_and_errors = () if roots is None else (roots.w, roots.error)
@@ -191,14 +191,15 @@ class ArmProblem(TransverseProblem):
         return is_complete, evaluations
 
 
-def transverse_problem(rod: Rod, to_prove: int = 0) -> TransverseProblem:
-    """The transverse eigenvalue problem of a uniform rod or of an arm; to_prove: see `ArmProblem`."""
-    return UniformProblem(rod) if rod.is_uniform_and_linear else ArmProblem(rod, to_prove)
+def transverse_problem(rod: Rod, modes_to_prove: int = 0) -> TransverseProblem:
+    """The transverse eigenvalue problem of a uniform rod or of an arm. modes_to_prove: number of leading
+    modes to be proved complete; 0 if no proof is requested."""
+    return UniformProblem(rod) if rod.is_uniform_and_linear else ArmProblem(rod, modes_to_prove)
 
 
-def meshes_text(number: int, next_mesh: AnyMesh) -> str:
+def meshes_text(mesh_count: int, next_mesh: AnyMesh) -> str:
     """Subject of a message on meshes without a result: all meshes of a size that may be solved, or the first
-    `number` meshes, which are coarser than `next_mesh`."""
+    `mesh_count` meshes, which are coarser than `next_mesh`."""
     if next_mesh.unknown_count > RESOLUTION_SETTINGS.max_unknowns:
         return f"no mesh of at most {RESOLUTION_SETTINGS.max_unknowns} unknowns"
-    return f"none of {number} meshes with fewer than {next_mesh.unknown_count} unknowns"
+    return f"none of {mesh_count} meshes with fewer than {next_mesh.unknown_count} unknowns"

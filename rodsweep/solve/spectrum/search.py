@@ -59,19 +59,19 @@ def warm_up() -> None:
 
 class SpectrumSearch:
     """Search for the leading eigenvalues of one rod: the next mesh, the best candidates, the failures so far.
-    requested: number of eigenvalues in the first request; default: modes plus `additional_eigenvalues`."""
+    requested: number of eigenvalues in the first request; default: modes plus
+    `additional_eigenvalue_count`."""
 
-    def __init__(self, rod: Rod, request: SpectrumRequest, requested: int | None = None):
+    def __init__(self, rod: Rod, request: SpectrumRequest, requested_count: int | None = None):
         self.problem = transverse_problem(rod, request.modes if request.certify else 0)
         self.request = request
         self.modes = request.modes
         self.needs_vectors = request.vector_node_count > 0
-        bounded = self.problem.has_bound
-        self.accuracy = mesh_accuracy(request.accuracy, self.needs_vectors) if bounded else request.accuracy
+        has_bound = self.problem.has_bound
+        self.accuracy = mesh_accuracy(request.accuracy, self.needs_vectors) if has_bound else request.accuracy
         self.mesh = self.problem.mesh_for(request.modes, self.accuracy)
-        self.requested_count = (
-            request.modes + self.problem.additional_eigenvalues if requested is None else requested
-        )
+        default_count = request.modes + self.problem.additional_eigenvalue_count
+        self.requested_count = default_count if requested_count is None else requested_count
         self.best: CheckedCandidates | None = None
         self.stalled_refinements = self.failure_count = 0
         self.disagreement: CountComparison | None = None
@@ -101,8 +101,8 @@ class SpectrumSearch:
                 or self.stalled_refinements >= SEARCH_SETTINGS.max_stalled_refinements
             ):
                 break
-            waves = candidates.roots.wave_number[: self.modes]
-            self.mesh = self.problem.finer_mesh_for_waves(candidates.mesh, waves, self.accuracy)
+            wave_numbers = candidates.roots.wave_number[: self.modes]
+            self.mesh = self.problem.finer_mesh_for_waves(candidates.mesh, wave_numbers, self.accuracy)
         return self.best_spectrum()
 
     def check_candidates(self, candidates: Candidates) -> CheckedCandidates | None:
@@ -134,29 +134,30 @@ class SpectrumSearch:
     def error_over_limit(self, candidates: Candidates, comparison: CountComparison | None) -> float:
         """The largest ratio of an error of the candidates to the allowed error. Eigenvectors, and eigenvalues
         without a proof, also need a mesh whose eigenvalues are close to the roots of D."""
-        error = candidates.worst_error(self.modes) / self.request.accuracy
+        ratio = candidates.worst_error(self.modes) / self.request.accuracy
         if comparison is not None and comparison.agrees and not self.needs_vectors:
-            return error
-        limits = SEARCH_SETTINGS
-        allowed = (
-            limits.max_root_distance_ratio
+            return ratio
+        settings = SEARCH_SETTINGS
+        max_ratio = (
+            settings.max_root_distance_ratio
             if self.problem.has_bound
-            else limits.max_root_distance_ratio_without_bound
+            else settings.max_root_distance_ratio_without_bound
         )
-        displacement = float(candidates.roots.displacement[: self.modes].max())
-        return max(error, displacement / (self.request.accuracy if self.needs_vectors else allowed))
+        distance_ratio = float(candidates.roots.displacement[: self.modes].max())
+        return max(ratio, distance_ratio / (self.request.accuracy if self.needs_vectors else max_ratio))
 
-    def request_missing_eigenvalues(self, number: int, found_count: int) -> None:
-        """Requests more eigenvalues or a finer mesh: `found_count` of `number` counted ones are found."""
-        if number <= found_count:  # spurious eigenvalues, or a line within the errors
+    def request_missing_eigenvalues(self, counted: int, found_count: int) -> None:
+        """Requests more eigenvalues or a finer mesh, after a count of `counted` eigenvalues."""
+        if counted <= found_count:  # spurious eigenvalues, or a line within the errors
             self.mesh = self.problem.finer_mesh(self.mesh)
             return
-        new_count = number + SEARCH_SETTINGS.spare_modes
-        if new_count <= self.requested_count:  # missing eigenvalues are far from the shift or unresolved
-            new_count = self.requested_count + number - found_count + SEARCH_SETTINGS.spare_modes
+        requested_count = counted + SEARCH_SETTINGS.spare_modes
+        if requested_count <= self.requested_count:
+            # The missing eigenvalues are far from the shift or unresolved.
+            requested_count = self.requested_count + counted - found_count + SEARCH_SETTINGS.spare_modes
             self.problem.move_shift_right()
             self.mesh = self.problem.finer_mesh(self.mesh)
-        self.request_eigenvalues(new_count)
+        self.request_eigenvalues(requested_count)
 
     def count_needs_decaying_modes(self, candidates: Candidates) -> bool:
         """Whether a slow count needs eigenvalues with Re w <= 0 too, because all modes in `candidates` grow.
@@ -165,28 +166,28 @@ class SpectrumSearch:
             return False
         return len(candidates.roots.w) < SEARCH_SETTINGS.max_unproved_modes or self.problem.is_countable
 
-    def request_decaying_modes(self, number: int) -> None:
-        """Requests more eigenvalues, because all `number` eigenvalues found grow and a count also needs
+    def request_decaying_modes(self, found_count: int) -> None:
+        """Requests more eigenvalues, because all `found_count` eigenvalues grow and a count also needs
         decaying modes; refines the mesh if fewer eigenvalues were found than requested."""
         self.is_leader_unresolved = True
-        if number < self.requested_count:
+        if found_count < self.requested_count:
             self.mesh = self.problem.finer_mesh(self.mesh)
-        self.request_eigenvalues(max(self.requested_count, 2 * number + SEARCH_SETTINGS.spare_modes))
+        self.request_eigenvalues(max(self.requested_count, 2 * found_count + SEARCH_SETTINGS.spare_modes))
 
-    def request_eigenvalues(self, requested: int) -> None:
-        """Requests `requested` eigenvalues, and refines the mesh until it has enough unknowns for them."""
+    def request_eigenvalues(self, requested_count: int) -> None:
+        """Requests eigenvalues, and refines the mesh until it has enough unknowns for their number."""
         while (
-            requested > self.mesh.unknown_count // SEARCH_SETTINGS.min_unknowns_per_mode
+            requested_count > self.mesh.unknown_count // SEARCH_SETTINGS.min_unknowns_per_mode
             and self.mesh.unknown_count <= RESOLUTION_SETTINGS.max_unknowns
         ):
             self.mesh = self.problem.finer_mesh(self.mesh)
-        self.requested_count = requested
+        self.requested_count = requested_count
 
     def update_best(self, checked: CheckedCandidates) -> None:
         """Stores the candidates if they are the best so far; counts successive attempts without progress."""
         best = self.best
-        limit = SEARCH_SETTINGS.progress_ratio * best.error_over_limit if best else 0.0
-        is_better = best is None or checked.sort_key < (best.sort_key[0], limit)
+        progress_limit = SEARCH_SETTINGS.progress_ratio * best.error_over_limit if best else 0.0
+        is_better = best is None or checked.sort_key < (best.sort_key[0], progress_limit)
         self.stalled_refinements = 0 if is_better else self.stalled_refinements + 1
         if (
             best is None
@@ -200,8 +201,11 @@ class SpectrumSearch:
         if self.best is not None:
             return _best_spectrum(self.best, self.problem, self.request)
         if self.disagreement is not None:
-            number, found = self.disagreement.count.number, self.disagreement.found_count
-            reason = f"the winding number counts {number} eigenvalues right of a line, but {found} are found"
+            counted, found_count = self.disagreement.count.number, self.disagreement.found_count
+            reason = (
+                f"the winding number counts {counted} eigenvalues right of a vertical line, but the meshes "
+                f"give {found_count}"
+            )
             return failed_spectrum(SpectrumStatus.modes_missing, self.request, reason)
         if self.is_leader_unresolved:
             reason = "no mesh resolves all eigenvalues with large real parts, so the leading one is not known"
@@ -215,8 +219,8 @@ def _best_spectrum(best: CheckedCandidates, problem: TransverseProblem, request:
     """The spectrum of the best candidates, with its status and whether it is proved complete."""
     roots = best.candidates.roots
     comparison = best.comparison
-    accurate = best.error_over_limit <= SEARCH_SETTINGS.max_stalled_error_over_limit
-    status = SpectrumStatus.ok if accurate else SpectrumStatus.accuracy_not_reached
+    is_accurate = best.error_over_limit <= SEARCH_SETTINGS.max_stalled_error_over_limit
+    status = SpectrumStatus.ok if is_accurate else SpectrumStatus.accuracy_not_reached
     is_proved = comparison is not None and comparison.agrees
     w: Any = roots.w.tolist()
     on_axis: Any = roots.is_on_axis.tolist()

@@ -148,9 +148,9 @@ class ShiftInvertSolver(ABC):
         """Returns (y, theta) at all nodes, (nodes + 1, k) each. vectors: eigenvectors of the last solve,
         (unknowns, k). rod: the rod that was solved."""
 
-    def solve(self, rod: Rod, shift: float, requested: int, to_rounding: bool = False) -> Complex:
-        """Eigenvalues of a rod nearest to the shift, complex, unsorted, (k,), in 1/tau2; k >= `requested` if
-        enough eigenvalues converge.
+    def solve(self, rod: Rod, shift: float, requested_count: int, to_rounding: bool = False) -> Complex:
+        """Eigenvalues of a rod nearest to the shift, complex, unsorted, (k,), in 1/tau2; k >=
+        `requested_count` if enough eigenvalues converge.
 
         shift: in 1/tau2. to_rounding: whether the eigenvalues converge to rounding error on the mesh, instead
         of the few digits that Newton's method on D needs. Raises PETSc.Error.
@@ -160,13 +160,15 @@ class ShiftInvertSolver(ABC):
         self.A.assemble()
         self.eps.setOperators(self.A, self.B)
         max_count = self.loaded_pencil.finite_eigenvalue_count
-        requested = min(requested, max_count - 1)  # a conjugate pair may add one
-        spare = KRYLOV_SETTINGS.tight_spare_vectors if to_rounding else KRYLOV_SETTINGS.loose_spare_vectors
+        requested_count = min(requested_count, max_count - 1)  # a conjugate pair may add one
+        spare_vectors = (
+            KRYLOV_SETTINGS.tight_spare_vectors if to_rounding else KRYLOV_SETTINGS.loose_spare_vectors
+        )
         tolerance = KRYLOV_SETTINGS.tight_tolerance if to_rounding else KRYLOV_SETTINGS.loose_tolerance
-        krylov = self.krylov_size_option or max(2 * requested, requested + spare)
+        vector_count = self.krylov_size_option or max(2 * requested_count, requested_count + spare_vectors)
         self.eps.setTolerances(self.tolerance_option or tolerance, KRYLOV_SETTINGS.max_restarts)
-        krylov = min(krylov, max_count + KRYLOV_SETTINGS.max_vectors_beyond_finite)
-        self.eps.setDimensions(requested, krylov, krylov)
+        vector_count = min(vector_count, max_count + KRYLOV_SETTINGS.max_vectors_beyond_finite)
+        self.eps.setDimensions(requested_count, vector_count, vector_count)
         self.eps.setInitialSpace(self.start_vector)
         self.eps.solve()
         converged_count = self.eps.getConverged()
@@ -191,13 +193,13 @@ class ShiftInvertSolver(ABC):
         Destroying a solver frees 0.5 to 0.9 of this estimate, measured with up to 640 Krylov vectors; pencils
         stay in memory."""
         n = len(self.row_starts) - 1
-        krylov = self.eps.getDimensions()[1] + 1
+        vector_count = self.eps.getDimensions()[1] + 1
         matrices = (
             KRYLOV_SETTINGS.dense_matrices_per_solver * n * n
             if self.is_dense
             else KRYLOV_SETTINGS.numbers_per_nonzero_entry * len(self.indices)
         )
-        return 8 * (matrices + 2 * n * krylov + 4 * krylov**2)
+        return 8 * (matrices + 2 * n * vector_count + 4 * vector_count**2)
 
     def destroy(self) -> None:
         """Frees the PETSc and SLEPc objects of the solver."""

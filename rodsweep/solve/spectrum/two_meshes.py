@@ -72,8 +72,8 @@ def _spectrum_or_raise(rod: Rod, request: SpectrumRequest) -> Spectrum:
             break
         eigenvalues = _leading_eigenvalues(problem, mesh, modes)
         if len(eigenvalues.w) >= modes and len(coarser_eigenvalues.w):
-            scale = _eigenvalue_rounding_scale(problem)
-            error = _errors_between_meshes(eigenvalues.w, coarser_eigenvalues.w, scale)
+            rounding_scale = _eigenvalue_rounding_scale(problem)
+            error = _errors_between_meshes(eigenvalues.w, coarser_eigenvalues.w, rounding_scale)
             spectrum = _spectrum_of_mesh(problem, request, mesh, eigenvalues, error)
             if spectrum.status == SpectrumStatus.ok:
                 return spectrum
@@ -95,11 +95,11 @@ def _spectrum_or_raise(rod: Rod, request: SpectrumRequest) -> Spectrum:
 
 def _missed_accuracy_text(problem: TransverseProblem, request: SpectrumRequest, spectrum: Spectrum) -> str:
     """Which mode misses the requested accuracy by most, by how much, why, and what to change."""
-    sizes = np.abs(spectrum.eigenvalues)
-    relative_errors = spectrum.error_estimate / sizes
+    moduli = np.abs(spectrum.eigenvalues)
+    relative_errors = spectrum.error_estimate / moduli
     index = int(np.argmax(relative_errors))
-    rounding = TWO_MESH_SETTINGS.rounding_ratio * (sizes[index] + _eigenvalue_rounding_scale(problem))
-    cause = "rounding errors" if rounding > request.accuracy * sizes[index] else "the meshes"
+    rounding_error = TWO_MESH_SETTINGS.rounding_ratio * (moduli[index] + _eigenvalue_rounding_scale(problem))
+    cause = "rounding errors" if rounding_error > request.accuracy * moduli[index] else "the meshes"
     max_error = float(relative_errors[index])
     return (
         f"mode {index + 1} has a relative error of {max_error:.2e}, limited by {cause}, but the requested "
@@ -123,42 +123,42 @@ def _leading_eigenvalues(problem: TransverseProblem, mesh: AnyMesh, mode_count: 
     """Sorted eigenvalues of a mesh. The requested number is doubled until the `mode_count` leading
     eigenvalues no longer change. The result is empty if the mesh is too coarse for a doubled request."""
     solver = problem.solver(mesh)
-    requested = mode_count + TWO_MESH_SETTINGS.spare_eigenvalues
+    requested_count = mode_count + TWO_MESH_SETTINGS.spare_eigenvalues
     # The solver finds the eigenvalues nearest to the shift, which need not lead: more are requested until
     # the leading eigenvalues stay the same.
     previous_w = np.empty(0, complex)
     while True:
-        mesh_eigenvalues = solver.solve(problem.rod, problem.shift, requested, to_rounding=True)
+        mesh_eigenvalues = solver.solve(problem.rod, problem.shift, requested_count, to_rounding=True)
         order = np.lexsort((-mesh_eigenvalues.imag, -mesh_eigenvalues.real))
-        leading = mesh_eigenvalues[order[:mode_count]]
-        is_complete = len(leading) == len(previous_w) == mode_count
+        leading_w = mesh_eigenvalues[order[:mode_count]]
+        is_complete = len(leading_w) == len(previous_w) == mode_count
         rounding_change = TWO_MESH_SETTINGS.unchanged_rounding_tolerance * _eigenvalue_rounding_scale(problem)
         if is_complete and np.allclose(
-            leading, previous_w, rtol=TWO_MESH_SETTINGS.unchanged_tolerance, atol=rounding_change
+            leading_w, previous_w, rtol=TWO_MESH_SETTINGS.unchanged_tolerance, atol=rounding_change
         ):
             return _MeshEigenvalues(mesh_eigenvalues[order], order)
-        if 2 * requested > mesh.unknown_count // TWO_MESH_SETTINGS.min_unknowns_per_mode:
+        if 2 * requested_count > mesh.unknown_count // TWO_MESH_SETTINGS.min_unknowns_per_mode:
             return _MeshEigenvalues(mesh_eigenvalues[:0], order[:0])
-        previous_w = leading
-        requested = 2 * requested
+        previous_w = leading_w
+        requested_count = 2 * requested_count
 
 
-def _errors_between_meshes(w: Complex, coarser: Complex, scale: float) -> Array:
-    """Absolute errors of the sorted eigenvalues w, (k,), from the unsorted eigenvalues `coarser`, (l,), of a
-    coarser mesh.
+def _errors_between_meshes(w: Complex, coarser_w: Complex, rounding_scale: float) -> Array:
+    """Absolute errors of the sorted eigenvalues w, (k,), from the unsorted eigenvalues `coarser_w`, (l,), of
+    a coarser mesh.
 
-    scale: result of `_eigenvalue_rounding_scale`. Two meshes may agree on one eigenvalue by chance. The
-    relative error of an eigenvalue is therefore the largest of three differences: of the eigenvalue and of
-    its two neighbours. Near a double eigenvalue the stated rounding errors are larger than elsewhere.
+    rounding_scale: result of `_eigenvalue_rounding_scale`. Two meshes may agree on one eigenvalue by chance.
+    The relative error of an eigenvalue is therefore the largest of three differences: of the eigenvalue and
+    of its two neighbours. Near a double eigenvalue the stated rounding errors are larger than elsewhere.
     """
-    distances = np.abs(w[:, None] - coarser).min(axis=1) / np.abs(w)
+    distances = np.abs(w[:, None] - coarser_w).min(axis=1) / np.abs(w)
     padded_distances = np.pad(distances, 1)
     max_distances = np.max([padded_distances[:-2], padded_distances[1:-1], padded_distances[2:]], axis=0)
     separations = np.abs(w[:, None] - w) + np.diag(np.full(len(w), np.inf))
     crowding_factor = np.sqrt(1 + np.abs(w) / separations.min(axis=1, initial=np.inf))
     errors: Array = TWO_MESH_SETTINGS.mesh_error_factor * max_distances * np.abs(
         w
-    ) + TWO_MESH_SETTINGS.rounding_ratio * crowding_factor * (np.abs(w) + scale)
+    ) + TWO_MESH_SETTINGS.rounding_ratio * crowding_factor * (np.abs(w) + rounding_scale)
     return errors
 
 
@@ -177,8 +177,8 @@ def _spectrum_of_mesh(
     if request.vector_node_count and is_accurate:
         vectors = problem.solver(mesh).vectors(len(w))[:, eigenvalues.indices]
     unstable_count = int((w.real > 0).sum())
-    decisive = slice(max(modes, unstable_count + 1))  # later eigenvalues decay faster
-    is_known = unstable_count < len(w) and not (np.abs(w.real) <= error)[decisive].any()
+    decisive_modes = slice(max(modes, unstable_count + 1))  # later eigenvalues decay faster
+    is_known = unstable_count < len(w) and not (np.abs(w.real) <= error)[decisive_modes].any()
     return Spectrum(
         status=SpectrumStatus.ok if is_accurate else SpectrumStatus.accuracy_not_reached,
         eigenvalues=w[:modes],

@@ -29,7 +29,7 @@ from rodsweep.solve.modes import norm_maximum as peak_module
 from rodsweep.solve.modes import transient_growth as growth_module
 from rodsweep.solve.modes.inverse_iteration import mode_vectors, null_vectors
 from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
-from rodsweep.solve.modes.norm_maximum import NORM_MAXIMUM_SETTINGS, largest_propagator_norm
+from rodsweep.solve.modes.norm_maximum import NORM_MAXIMUM_SETTINGS, maximum_propagator_norm
 from rodsweep.solve.modes.numerical_abscissa import numerical_abscissa
 from rodsweep.solve.modes.propagator import Propagator, matrix_exponential
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
@@ -505,7 +505,7 @@ def test_a_peak_later_than_the_decay_time_is_found():
     """Three close modes in a chain, |exp(L t)| near 1800 t^2 exp(-t): the peak is at t = 2, not before 1."""
     propagator = toy(np.diag([-1.0, -1.002, -1.004]) + np.diag([60.0, 60.0], 1))
     end, tail = growth_module._end_of_growth(propagator, 1e-3, 20.0)
-    (largest, time), bound = largest_propagator_norm(
+    largest, time, bound = maximum_propagator_norm(
         propagator, (1e-3, end), abscissa_of(propagator), 1.0, 1e-6
     )
     assert propagator.norm_and_log_slope(end)[0] < 1
@@ -565,9 +565,7 @@ def test_fast_modes_cost_the_slow_ones_no_digits(fast):
 def test_a_peak_between_two_times_is_found(frequency):
     """A damped pair with |exp(L t)| up to 9 twice a turn: the times to start with see few of the peaks."""
     propagator = toy([[-0.05, 9 * frequency], [-frequency / 9, -0.05]])
-    (largest, time), bound = largest_propagator_norm(
-        propagator, (1.0, 8.0), abscissa_of(propagator), 1.0, 1e-8
-    )
+    largest, time, bound = maximum_propagator_norm(propagator, (1.0, 8.0), abscissa_of(propagator), 1.0, 1e-8)
     first = (np.ceil(frequency / np.pi - 0.5) + 0.5) * np.pi / frequency
     assert time == pytest.approx(first, rel=1e-2)
     assert largest == pytest.approx(9 * np.exp(-0.05 * first), rel=1e-3)
@@ -611,7 +609,7 @@ def test_the_bound_is_reached_round_the_peak_of_a_pair():
 def test_a_search_that_is_given_up_leaves_the_bound_where_it_is(monkeypatch):
     monkeypatch.setattr(peak_module, "NORM_MAXIMUM_SETTINGS", replace(NORM_MAXIMUM_SETTINGS, max_halvings=1))
     propagator = toy([[-0.05, 9 * 155.0], [-155.0 / 9, -0.05]])
-    (largest, _), bound = largest_propagator_norm(propagator, (1.0, 8.0), abscissa_of(propagator), 1.0, 1e-8)
+    largest, _, bound = maximum_propagator_norm(propagator, (1.0, 8.0), abscissa_of(propagator), 1.0, 1e-8)
     scan = brute_force(propagator, np.linspace(1, 8, 4000)).max()
     assert scan < bound
     assert bound > 1.01 * largest

@@ -154,7 +154,7 @@ def test_work_is_limited_until_the_workspace_is_released():
 def test_no_matrix_takes_more_than_its_share_of_the_work():
     workspace = NewtonWorkspace()
     one = 4 * 3**2 * 10.0**3
-    workspace.limit_work(one / WORKSPACE_SETTINGS.max_matrix_share * 0.99)
+    workspace.limit_work(one / WORKSPACE_SETTINGS.max_matrix_work_fraction * 0.99)
     with pytest.raises(WorkLimitReached):
         FactorStorage(workspace, 4, 3, 10)
 

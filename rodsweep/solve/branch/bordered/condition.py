@@ -53,7 +53,7 @@ class BorderCondition:
         distance is the error of multipliers and tangent.
         """
         matrix = BorderedMatrix(orbit, self.scale, workspace)
-        distance = 0.0
+        matrix_distance = 0.0
         previous_change = np.inf
         step = matrix.step(self.border, self.residual(orbit))
         for _ in range(ORBIT_NEWTON_SETTINGS.max_iterations):
@@ -64,23 +64,26 @@ class BorderCondition:
                     "Newton's method for the cycle finds no cycle of the branch near the prediction"
                 )
             orbit = moved_orbit(orbit, self.scale.parameter_name, step)
-            distance = distance + change
+            matrix_distance = matrix_distance + change
             # There is no rate at the first step with a matrix.
-            rate = change / previous_change if distance > change else np.inf
+            contraction = change / previous_change if matrix_distance > change else np.inf
             # The next step would have the length change * rate; a negligible step is not made.
             is_converged = (
-                change * min(rate, 1.0) <= tolerance and rate <= ORBIT_NEWTON_SETTINGS.new_matrix_ratio
+                change * min(contraction, 1.0) <= tolerance
+                and contraction <= ORBIT_NEWTON_SETTINGS.new_matrix_ratio
             )
             if is_converged or change <= tolerance:
-                solved = self._with_matrix_error(orbit, matrix, distance, max_matrix_distance)
+                solved = self._with_matrix_error(orbit, matrix, matrix_distance, max_matrix_distance)
                 if solved is not None:
                     return solved
                 needs_matrix = True
             else:
-                needs_matrix = distance > change and rate > ORBIT_NEWTON_SETTINGS.new_matrix_ratio
+                needs_matrix = (
+                    matrix_distance > change and contraction > ORBIT_NEWTON_SETTINGS.new_matrix_ratio
+                )
             if needs_matrix:
                 matrix = BorderedMatrix(orbit, self.scale, workspace)
-                distance = 0.0
+                matrix_distance = 0.0
                 step = matrix.step(self.border, self.residual(orbit))
                 previous_change = np.inf
             else:
@@ -114,7 +117,7 @@ class BorderCondition:
 
 
 def require_equal_unknowns(form: StressForm, orbit: Orbit) -> None:
-    """Raises Unsolvable if the states of `form` have other unknowns than the states of `orbit`: then they
+    """Raises Unsolvable if the states of `form` have other unknowns than the states of `orbit`, so that they
     cannot be compared."""
     if form.unknown_velocities != orbit.form.unknown_velocities:
         settings = STRESS_FORM_SETTINGS

@@ -1,5 +1,5 @@
 """Newton's matrix for a cycle with the parameter as a further unknown: one further column for the parameter,
-and one further row, the border. The solved time interval is a half period for a symmetric orbit, otherwise
+and one further row, the border. The solved time interval is half the period for a symmetric orbit, otherwise
 the period. Shapes: K intervals with s stages each, n unknowns of a state, m shooting intervals, N orbit
 values."""
 
@@ -26,8 +26,8 @@ from .scale import ArcLengthScale, deflection_functional
 
 
 class BorderedMatrix:
-    """Newton's matrix at an orbit with the parameter as a further unknown; methods that solve the system have
-    the last row as their argument `border`.
+    """Newton's matrix at an orbit with the parameter as a further unknown. The last row is the argument
+    `border` of the methods that solve the system.
 
     A step, (N + 1,), changes the orbit values and the parameter coordinate. Solving raises RuntimeError after
     another matrix was assembled in the same workspace; multipliers stay valid.
@@ -109,7 +109,7 @@ class BorderedMatrix:
         by the factors of this matrix, (K, s, v, n), and the resulting increments of the state at the
         end of the last interval for a fixed start, (v, n).
 
-        variations: variations of orbit values and parameter coordinate, (v, N + 1). name: this parameter;
+        variations: variations of orbit values and of the coordinate of the parameter `name`, (v, N + 1);
         None: the parameter of the branch.
         """
         derivatives = parameter_derivatives(orbit.form, name or self.scale.parameter_name)
@@ -137,7 +137,7 @@ class BorderedMatrix:
 
     def orbit_increments_at_fixed_parameter(self, starts: Array, columns: Array) -> Array:
         """Increments of the orbit, (v, N + 1), at fixed period and parameter. starts: increments of the start
-        state, (v, n). columns: reduced right-hand sides, without the stages, (K, s, v, n)."""
+        state, (v, n). columns: reduced right-hand sides of the stages, (K, s, v, n)."""
         out = np.empty_like(columns)
         substitute_stages(starts, columns, self.orbit.orbit_equations, self._memory.factors, out)
         stages = out.transpose(2, 0, 1, 3).reshape(len(starts), -1)
@@ -156,15 +156,15 @@ class BorderedMatrix:
 
     @cached_property
     def multipliers_over_solved_part(self) -> Complex:
-        """Multipliers over the solved time interval, (rank,): eigenvalues of the propagator, composed with
-        the reflection for a symmetric orbit."""
+        """Multipliers over the solved time interval, (multipliers,): eigenvalues of the propagator, composed
+        with the reflection for a symmetric orbit."""
         if len(self._shooting_intervals.flow_maps) == 1:
             return multipliers_over_solved_part(self.propagator, self.orbit)
         return self._shooting_intervals.multipliers(self.orbit)
 
     def multipliers(self) -> Complex:
-        """Floquet multipliers larger than rounding error, by descending modulus, (rank,), with the trivial
-        multiplier."""
+        """Floquet multipliers larger than rounding error, by descending modulus, (multipliers,), with the
+        trivial multiplier."""
         return multipliers_over_period(self.multipliers_over_solved_part, self.orbit)
 
     def approximate_null_vector(self) -> Array:
@@ -184,9 +184,9 @@ class BorderedMatrix:
 
         jump: distance S x(0) - x(end) from the end of the last interval to this image, (n,), S: symmetry. The
         other intervals have no jump, because the orbit has one state for the end of an interval and the start
-        of the next. columns: reduced right-hand sides, without the stages, (K, s, 1, n). end_increments:
-        increment of the state at the end of the last time interval that `columns` cause if the first state is
-        fixed, (1, n).
+        of the next. columns: reduced right-hand sides of the stages, (K, s, 1, n). end_increments: increment
+        of the state at the end of the last time interval that `columns` cause if the first state is fixed,
+        (1, n).
         """
         p = self.orbit.orbit_equations
         sides = -self._shooting_intervals.increments_of_ends(

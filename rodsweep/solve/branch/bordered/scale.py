@@ -3,9 +3,9 @@ parameter.
 
 The components have the same meaning on every mesh: the deflection at t = 0, divided by about the largest
 deflection of the cycle; the logarithm of the period; the parameter coordinate, divided by its modulus, but at
-least by a fraction of the range of the branch, so that steps towards the coordinate 0 reach it. Both
-divisors belong to one cycle, for which an `ArcLengthScale` is made. At a Hopf point the deflection passes
-linearly through 0, so that arc length stays regular.
+least by a fraction of the range of the branch, so that steps reach the coordinate 0. Both divisors belong to
+one cycle, for which an `ArcLengthScale` is made. At a Hopf point the deflection passes linearly through 0, so
+that arc length stays regular.
 
 The deflection is the integral of (1 - s) c m3 over the rod, which is linear in the state; s is the position
 on the rod and c the bending compliance of the arm's profile. For small cycles of a rod without taper the
@@ -92,7 +92,6 @@ def deflection_functional(orbit: Orbit) -> Array:
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def _cached_deflection_functional(layout: StateLayout, mesh: Mesh, material: RodMaterial) -> Array:
     """Cached `deflection_functional`, (n,); callers share the array and must not change it."""
-    # In linear theory the curvature at u moves the tip by the lever 1 - u. Values at the tip have the weight
-    # 0.
+    # In linear theory the curvature at u moves the tip by the lever 1 - u, which is 0 at the tip.
     weights = mesh.quadrature * relative_bending_compliance_at_nodes(material, mesh)
     return layout.state_with_stresses({"m3": weights[:-1] * (1 - mesh.node_positions[:-1])})

@@ -43,7 +43,8 @@ class BranchSegment:
             start = self.mesh.interpolated_orbit(self.predicted_orbit(length))
         else:
             last_length, orbit, tangent = self._last_solved
-            # From the last cycle along its tangent: a secant method changes the length only a little.
+            # Predicted from the last cycle along its tangent: a secant method changes the length only a
+            # little.
             predicted = moved_orbit(orbit, self.start.scale.parameter_name, (length - last_length) * tangent)
             start = predicted if mesh_of(predicted) == self.mesh else self.mesh.interpolated_orbit(predicted)
         condition = self.start.arc_length_condition(length)

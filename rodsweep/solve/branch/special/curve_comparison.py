@@ -18,14 +18,15 @@ def are_identical_curves(first: SpecialPointCurve, second: SpecialPointCurve, li
 
 def leaves_range(curve: SpecialPointCurve, line_axis: PlaneAxis) -> bool:
     """Whether a curve ends at an edge of the plane across the rows. line_axis: axis along the rows."""
-    places = (line_axis.coordinate(curve.points[i].parameter_value) for i in (0, -1))
+    positions = (line_axis.coordinate(curve.points[i].parameter_value) for i in (0, -1))
     return any(
-        end is CurveEndReason.edge and min(abs(place), abs(1 - place)) <= END_SETTINGS.max_edge_distance
-        for end, place in zip(curve.ends, places, strict=True)
+        end is CurveEndReason.edge and min(abs(position), abs(1 - position)) <= END_SETTINGS.max_edge_distance
+        for end, position in zip(curve.ends, positions, strict=True)
     )
 
 
 def _ends(curve: SpecialPointCurve, line_axis: PlaneAxis) -> list[tuple[float, float]]:
-    """Both ends of a curve, each as (row coordinate, position along the row), from 0 to 1; ascending."""
+    """Both ends of a curve, each as (row coordinate, position along the row), from 0 to 1, in ascending
+    order."""
     ends = curve.points[0], curve.points[-1]
     return sorted((p.row_coordinate, line_axis.coordinate(p.parameter_value)) for p in ends)

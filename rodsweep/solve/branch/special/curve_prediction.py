@@ -19,15 +19,19 @@ from .special_curves import CURVE_IDENTITY_SETTINGS, lagrange_weights
 def predicted_orbit(
     roles: ParameterRoles, points: Sequence[SolvedPoint], length: float
 ) -> tuple[Orbit, float]:
-    """(orbit, row coordinate) predicted an arc length `length` beyond the last point; raises Unsolvable."""
-    tail = points[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
-    return weighted_sum(roles, tail, lagrange_weights(arc_lengths(tail), length), mesh_of(tail[-1].orbit))
+    """Returns (orbit, row coordinate), predicted at the arc length `length` beyond the last point; raises
+    Unsolvable."""
+    last_points = points[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
+    return weighted_sum(
+        roles, last_points, lagrange_weights(arc_lengths(last_points), length), mesh_of(last_points[-1].orbit)
+    )
 
 
 def weighted_sum(
     roles: ParameterRoles, points: Sequence[SolvedPoint], weights: Sequence[float] | Array, mesh: OrbitMesh
 ) -> tuple[Orbit, float]:
-    """(orbit on `mesh`, row coordinate): sums of `points` with weights, (points,); raises Unsolvable."""
+    """Returns (orbit on `mesh`, row coordinate): sums of `points` with weights, (points,); raises
+    Unsolvable."""
     values = np.dot(weights, [mesh.interpolated_orbit(point.orbit).values for point in points])
     row, parameters = _parameters(roles, points, weights)
     orbit = replace(mesh.interpolated_orbit(points[-1].orbit), values=values)
@@ -42,12 +46,12 @@ def length_before_crushing(
     tolerance of the shortened length."""
     from scipy.optimize import brentq  # slow import: 0.1 s, for few runs
 
-    known = points[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
-    lengths = arc_lengths(known)
+    last_points = points[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
+    lengths = arc_lengths(last_points)
 
     def distance(length: float) -> float:
-        rod = known[-1].orbit.form.rod
-        _, parameters = _parameters(roles, known, lagrange_weights(lengths, length))
+        rod = last_points[-1].orbit.form.rod
+        _, parameters = _parameters(roles, last_points, lagrange_weights(lengths, length))
         values = {**rod.values, **parameters}
         load = rod.material.crushing_ratio(values["F"], values["k1"], values["taper"])
         return 1 - margin / 2 - load
@@ -71,7 +75,8 @@ def orbit_with_parameters(orbit: Orbit, parameters: dict[str, float]) -> Orbit:
 def _parameters(
     roles: ParameterRoles, points: Sequence[SolvedPoint], weights: Sequence[float] | Array
 ) -> tuple[float, dict[str, float]]:
-    """(row coordinate, values of both parameters by name): sums of `points` with weights, (points,)."""
+    """Returns (row coordinate, values of both parameters by name): sums of `points` with weights,
+    (points,)."""
     branch_axis, row_axis = roles.axes_of(points[-1])
     row = float(np.dot(weights, [point.row_coordinate for point in points]))
     value = float(np.dot(weights, [point.parameter for point in points]))

@@ -64,7 +64,8 @@ class SpecialCurveProblem:
         return ParameterRoles(self.kind, self.line_axis, self.row_axis)
 
     def follow_from(self, special: SpecialPoint, row: float) -> tuple[list[SolvedPoint], CurveEndReason]:
-        """(points of the curve from `special` on row `row`, reason for its end); raises Unsolvable."""
+        """Returns (points of the curve from `special`, on the row with the parameter value `row`; reason for
+        its end); raises Unsolvable."""
         first = first_point_of_curve(special, self.line_axis.name, self.row_axis, row, self.workspace)
         curve = follow_curve(self, first, CURVE_STEP_CONTROL, self._report)
         points = with_row_extrema(self, with_parameter_errors(curve.solutions))
@@ -110,16 +111,18 @@ class SpecialCurveProblem:
         error = relative_change(predicted, point.orbit.values - predicted.values)
         if len(previous) == 1:  # the prediction was the cycle of another row
             return StepResult(point, min(error, CURVE_STEP_CONTROL.max_error), 1.0)
-        old = last.step_from(points[-2])
-        new = point.step_from(last)
-        return StepResult(point, error, float(old @ new / np.linalg.norm(old) / np.linalg.norm(new)))
+        old_step = last.step_from(points[-2])
+        new_step = point.step_from(last)
+        return StepResult(
+            point, error, float(old_step @ new_step / np.linalg.norm(old_step) / np.linalg.norm(new_step))
+        )
 
     def family(self, point: SolvedPoint) -> CycleFamily:
         """The cycles near a point of the curve, with the roles of the parameters at this point."""
         return CycleFamily.near_point(self.kind, self.roles.axes_of(point)[1], point, self.workspace)
 
     def _first_roles_and_direction(self, first: SolvedPoint) -> tuple[SolvedPoint, float]:
-        """(first point `first` with the roles of the first step, sign of this step)."""
+        """Returns (the point `first` with the roles of the first step, sign of this step)."""
         if self.kind != SpecialKind.fold:
             return first, self.row_direction
         slope = self.roles.axis_slope_at(first, self.workspace)
@@ -130,8 +133,8 @@ class SpecialCurveProblem:
     def _points_for_prediction(self, previous: Sequence[SolvedPoint], length: float) -> list[SolvedPoint]:
         """The last points of `previous`, with the roles of a step of the arc length `length`."""
         exchanged = self.roles.need_exchange_beyond(previous, length)
-        tail = previous[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
-        return [self.roles.with_roles(point, exchanged) for point in tail]
+        last_points = previous[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
+        return [self.roles.with_roles(point, exchanged) for point in last_points]
 
     def _length_before_crushing(self, points: Sequence[SolvedPoint], length: float) -> float:
         """The arc length `length`, shortened as in `length_before_crushing`."""
@@ -140,7 +143,7 @@ class SpecialCurveProblem:
 
     def margins(self, point: SolvedPoint) -> Array:
         """Margins, (7,); the curve ends where a margin becomes 0: distances from the four edges, 1 -
-        `RodMaterial.crushing_ratio` - `crushing_margin`, smallest h1, largest tip y minus `min_amplitude`."""
+        `RodMaterial.crushing_ratio` - `crushing`, smallest h1, largest tip y minus `min_amplitude`."""
         plane_point = self.roles.in_plane(point)
         x = self.line_axis.coordinate(plane_point.parameter)
         y = plane_point.row_coordinate
@@ -165,7 +168,7 @@ class SpecialCurveProblem:
         else:
             point = self.point_on_row(inner, outer, float(margin - ROW_EDGE_MARGINS[0]))
             if self.roles.are_exchanged_at(outer):
-                # The error of the other parameter, measured at `outer`, does not apply.
+                # The error measured at `outer`, of the other parameter, does not apply.
                 return self.family(point).corrected_point_with_error(
                     point.orbit, point.row_coordinate, ALONG_BRANCH
                 )
@@ -176,21 +179,22 @@ class SpecialCurveProblem:
         inner: SolvedPoint,
         outer: SolvedPoint,
         function: Callable[[SolvedPoint], float],
-        values: tuple[float, float],
+        end_values: tuple[float, float],
         tolerance: float = END_SETTINGS.margin_tolerance,
     ) -> SolvedPoint:
         """The point between `inner` and `outer`, with equal roles, at which `function` is 0; raises
-        Unsolvable. values: of the function at `inner` and `outer`. tolerance: of the function."""
+        Unsolvable. end_values: values of the function at `inner` and `outer`. tolerance: tolerance of the
+        function."""
         points: dict[float, SolvedPoint] = {0.0: inner, 1.0: outer}
 
         def value(fraction: float) -> float:
             points[fraction] = self.point_near_chord(inner, outer, fraction)
             return function(points[fraction])
 
-        return points[zero_along_step(value, values, 1.0, tolerance, END_SETTINGS.margin_tolerance)]
+        return points[zero_along_step(value, end_values, 1.0, tolerance, END_SETTINGS.margin_tolerance)]
 
     def is_closed_by(self, previous: Sequence[SolvedPoint], point: SolvedPoint) -> bool:
-        """Whether a curve of over `min_loop_points` points passes its first point on the step to `point`."""
+        """Whether a curve, with more than `min_loop_points` points, passes its first point on this step."""
         exchanged = self.roles.are_exchanged_at(point)
         first, last = (self.roles.with_roles(previous[i], exchanged) for i in (0, -1))
         step = point.step_from(last)
@@ -223,7 +227,7 @@ class SpecialCurveProblem:
         return self.family(outer).corrected_point(start, row, ALONG_BRANCH, outer.normal_derivatives)
 
     def _point_near_row(self, inner: SolvedPoint, outer: SolvedPoint, row: float) -> SolvedPoint:
-        """Point of the curve between `inner` and `outer` at the row coordinate `row` but for a tolerance,
+        """Point of the curve between `inner` and `outer` at the row coordinate `row` within a tolerance,
         found with exchanged roles; raises Unsolvable."""
         ends = [self.roles.with_roles(point, exchanged=True) for point in (inner, outer)]
 

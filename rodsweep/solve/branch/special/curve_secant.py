@@ -44,9 +44,9 @@ class SecantSearch:
     """State of the secant method across a curve; all cycles are corrected with the matrix factors of one
     cycle. family, start, row_coordinate: the family of cycles, the orbit at which the search starts, and its
     row coordinate from 0 to 1. line: line of the search. derivatives: derivatives from an earlier search, or
-    None. is_other_mesh: whether these were computed at the same point on another mesh. orbit: current cycle.
-    distance: its distance from the start of the search along `line`. start_arc_length: arc length of this
-    start along the branch."""
+    None. is_other_mesh: whether these derivatives were computed at the same point on another mesh. orbit:
+    current cycle. distance: distance of this cycle from the start of the search along `line`.
+    start_arc_length: arc length of this start along the branch."""
 
     def __init__(
         self,
@@ -82,10 +82,10 @@ class SecantSearch:
         Unsolvable."""
         current = self._solve_at_distance()
         span = 0.0
-        if measured := self._derivatives_from_last(current):
-            self.derivatives = measured
+        if measured_derivatives := self._derivatives_from_last(current):
+            self.derivatives = measured_derivatives
             self.has_previous_point_derivatives = False
-            span = measured.cycle_distance
+            span = measured_derivatives.cycle_distance
         rates = self.derivatives
         # Without derivatives any small step suffices: the two cycles then give derivatives.
         step = -current.test_value / rates.test_slope if rates else CURVE_SECANT_SETTINGS.first_secant_step
@@ -133,12 +133,12 @@ class SecantSearch:
 
     def _is_accurate_enough(self, error: float) -> bool:
         """Whether a point at the distance `error` from the curve is accurate enough. Errors within the
-        tolerance of the test function always are."""
+        tolerance of the test function are always small enough."""
         if error <= AUGMENTED_SETTINGS.tolerance:
             return True
         parameter = abs(getattr(self.orbit.form.rod, self.family.scale.parameter_name))
-        allowed = CURVE_SECANT_SETTINGS.max_secant_error_ratio * CURVE_SECANT_SETTINGS.accuracy * parameter
-        return error <= CURVE_SECANT_SETTINGS.max_distance_error and self._parameter_error(error) <= allowed
+        max_error = CURVE_SECANT_SETTINGS.max_secant_error_ratio * CURVE_SECANT_SETTINGS.accuracy * parameter
+        return error <= CURVE_SECANT_SETTINGS.max_distance_error and self._parameter_error(error) <= max_error
 
     def _solve_at_distance(self) -> _SecantIterate:
         """The cycle at the current distance across the curve, with its test function; raises Unsolvable."""
@@ -154,8 +154,10 @@ class SecantSearch:
             else AUGMENTED_SETTINGS.tolerance_to_distance_ratio * CURVE_SECANT_SETTINGS.first_secant_step
         )
         condition = BorderCondition(family.scale, family.border, length)
-        self.orbit, test = self.nearby_solver.solve(self.orbit, condition, slope, is_accurate)
-        return _SecantIterate(self.orbit, self.nearby_solver.test_function.null_vectors, test, self.distance)
+        self.orbit, test_value = self.nearby_solver.solve(self.orbit, condition, slope, is_accurate)
+        return _SecantIterate(
+            self.orbit, self.nearby_solver.test_function.null_vectors, test_value, self.distance
+        )
 
     def _derivatives_from_last(self, current: _SecantIterate) -> NormalDerivatives | None:
         """Derivatives across the curve from the last cycle and the cycle `current`; None if `current` is the
@@ -171,10 +173,12 @@ class SecantSearch:
         previous_orbit = previous.orbit
         current_orbit = current.orbit
         change = current_orbit.form.rod.coordinate(name) - previous_orbit.form.rod.coordinate(name)
-        orbit = np.append(current_orbit.values - previous_orbit.values, change) / span
-        slope = (current.test_value - previous.test_value) / span
-        self._update_relative_second_derivative((current.distance + previous.distance) / 2, slope)
-        return NormalDerivatives(self.line.direction, slope, orbit, mesh_of(previous_orbit), abs(span))
+        orbit_derivative = np.append(current_orbit.values - previous_orbit.values, change) / span
+        test_slope = (current.test_value - previous.test_value) / span
+        self._update_relative_second_derivative((current.distance + previous.distance) / 2, test_slope)
+        return NormalDerivatives(
+            self.line.direction, test_slope, orbit_derivative, mesh_of(previous_orbit), abs(span)
+        )
 
     def _update_relative_second_derivative(self, middle: float, slope: float) -> None:
         """Updates `curvature`, abs(f''/f') of the test function f along the search line, from the last two

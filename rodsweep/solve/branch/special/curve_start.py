@@ -56,8 +56,10 @@ def first_point_of_curve(
         stage_count=cheapest_stage_count(CURVE_SECANT_SETTINGS.accuracy),
     )
     orbit = first_point.interpolated_orbit(orbit)
-    min_unit = abs(deflection_of(orbit)) * BRANCH_START_SETTINGS.min_deflection_amplitude / special.tip_y_max
-    scale = ArcLengthScale.at_orbit(orbit, line_name, min_unit)
+    min_deflection_unit = (
+        abs(deflection_of(orbit)) * BRANCH_START_SETTINGS.min_deflection_amplitude / special.tip_y_max
+    )
+    scale = ArcLengthScale.at_orbit(orbit, line_name, min_deflection_unit)
     matrix = BorderedMatrix(orbit, scale, workspace)
     derivative = scale.directional_derivative(orbit, tangent_at(orbit, scale, ALONG_DEFLECTION, matrix))
     row_coordinate = row_axis.coordinate(row)

@@ -3,7 +3,7 @@
 Cycles near a special point form a family with two variables: arc length along the branch (`bordered`), and
 row coordinate. In this family the special points form a smooth curve, also at a cusp, where both parameters
 turn back: the zeros of a test function. The secant method finds a zero across the curve (`curve_secant`). The
-error is the difference between two meshes, measured at every third point or so, plus the error of the secant
+error is the difference between two meshes, measured at about every third point, plus the error of the secant
 method.
 """
 
@@ -52,8 +52,8 @@ class CycleFamily:
     def near_point(
         cls, kind: SpecialKind, row_axis: PlaneAxis, point: SolvedPoint, workspace: NewtonWorkspace
     ) -> "CycleFamily":
-        """The family of the cycles near `point` of a curve of special points of the kind `kind`. row_axis,
-        workspace: as in the class."""
+        """The family of the cycles near `point` of a curve of special points of the kind `kind`. row_axis:
+        axis of the row parameter. workspace: memory of Newton's matrices."""
         has_small_cycles = (
             kind == SpecialKind.fold and point.tip_y_max < CURVE_SECANT_SETTINGS.small_fold_cycle
         )
@@ -140,11 +140,11 @@ class CycleFamily:
         raise mesh_limit_error()
 
     def finer_mesh_than(self, point: SolvedPoint) -> OrbitMesh:
-        """A mesh finer than that of `point` in space and time; raises Unsolvable if it is not allowed."""
+        """A mesh finer than the mesh of `point` in space and time; raises Unsolvable if it is not allowed."""
         mesh = mesh_of(point.orbit)
-        longer = ceil(CURVE_SECANT_SETTINGS.interval_ratio * mesh.interval_count)
-        larger = mesh.with_order(mesh.order + CURVE_SECANT_SETTINGS.order_increase)
-        finer_mesh = replace(larger, interval_count=longer)
+        interval_count = ceil(CURVE_SECANT_SETTINGS.interval_ratio * mesh.interval_count)
+        mesh_of_higher_order = mesh.with_order(mesh.order + CURVE_SECANT_SETTINGS.order_increase)
+        finer_mesh = replace(mesh_of_higher_order, interval_count=interval_count)
         if not finer_mesh.is_allowed:
             raise mesh_limit_error()
         return finer_mesh

@@ -1,5 +1,5 @@
-"""Search for all curves of folds and torus points of a phase diagram, and for the branches that only these
-curves lead to, in stages.
+"""Search for all curves of folds and torus points of a phase diagram, and for the branches to which only
+these curves lead, in stages.
 
 A stage traces curves through special points (`SpecialCurveTracer`), or solves rows again, each with the
 points at which curves cross it without a special point of its own (`DetachedRows`). The next stage follows
@@ -24,7 +24,7 @@ from .special_point import RowSpecialPoint, SpecialPoint
 
 MAX_DIAGRAM_STAGES = 8
 """Maximum number of stages of a diagram: stages of curves and stages of rows alternate, and each finds fewer
-branches than the one before. Rows with cycles that are not reached then are named by `show`."""
+branches than the stage before. `show` names the rows with cycles that are not reached."""
 Results = Mapping[int, dict[str, Array]]
 """Results of work items, by number; the result of a row has the variables of the row by name, or is empty."""
 SpecialPointsOfRow = Callable[[int, dict[str, Array]], list[RowSpecialPoint]]
@@ -72,7 +72,7 @@ Stage = SpecialCurveTracer | DetachedRows | FoldsBeyondRange
 
 @dataclass(frozen=True, slots=True)
 class DiagramStages:
-    """The stages of a diagram whose first stage traces the curves of `first`. special_points_of_row: as in
+    """The stages of a diagram whose first stage traces the curves of `first`. special_points_of_row: a
     `SpecialPointsOfRow`. extended_axis: axis of the parameter along the rows, as far as branches are followed
     beyond the range; None: curves are not followed beyond the range. leaving_rows: value of the row
     parameter, by index, of the rows with branches that leave or enter the range."""
@@ -83,7 +83,7 @@ class DiagramStages:
     leaving_rows: Mapping[int, float] = field(default_factory=dict)
 
     def stages(self, results: Results) -> list[Stage]:
-        """All stages that follow from the results of work items; only the last one may be incomplete."""
+        """All stages that follow from the results of work items; only the last stage may be incomplete."""
         stages: list[Stage] = [self.first]
         while len(stages) < MAX_DIAGRAM_STAGES and not stages[-1].items_to_solve(results):
             next_stage = self._stage_after(stages, results)
@@ -202,7 +202,8 @@ class DiagramStages:
 
 
 def _changed_rows(stages: Sequence[Stage], results: Results) -> dict[int, dict[str, Array]]:
-    """Variables of all rows that were solved again, by index of the row; the last result of a row counts."""
+    """Variables of all rows that were solved again, by index of the row; the last result of a row is
+    taken."""
     variables_by_row: dict[int, dict[str, Array]] = {}
     for stage in stages:
         if isinstance(stage, DetachedRows):

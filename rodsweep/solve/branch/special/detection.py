@@ -8,6 +8,7 @@ special points found must explain the change of the number of multipliers outsid
 """
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
@@ -28,21 +29,29 @@ def unstable_multiplier_count(point: BranchCycle) -> int:
     return int((np.abs(point.multipliers_over_solved_part) > 1).sum())
 
 
-def special_kinds_between(start: BranchCycle, end: BranchCycle) -> tuple[list[SpecialKind], bool]:
-    """(kinds of the special points between the cycles `start` and `end`, whether these kinds explain the
-    change of the number of multipliers outside the unit circle)."""
+class DetectedKinds(NamedTuple):
+    """Kinds of the special points between two cycles. explain_count_change: whether these kinds explain the
+    change of the number of multipliers outside the unit circle."""
+
+    kinds: list[SpecialKind]
+    explain_count_change: bool
+
+
+def special_kinds_between(start: BranchCycle, end: BranchCycle) -> DetectedKinds:
+    """Kinds of the special points between the cycles `start` and `end`."""
     kinds = []
     if start.parameter_rate * end.parameter_rate < 0:
         kinds.append(SpecialKind.fold)
     # Two multipliers may pass -1 together or become a pair near -1; an odd difference needs a crossing.
     if (_count_beyond_minus_one(start) - _count_beyond_minus_one(end)) % 2:
         kinds.append(kind_at_minus_one(start.orbit))
-    change = abs(unstable_multiplier_count(end) - unstable_multiplier_count(start))
+    count_change = abs(unstable_multiplier_count(end) - unstable_multiplier_count(start))
     # Near a fold a multiplier is 1 within its error; the counts at `start` and `end` may be wrong by one.
-    tolerance = 1 if _has_multiplier_near_one(start) or _has_multiplier_near_one(end) else 0
-    if not kinds and change - tolerance > 1:
-        return [SpecialKind.torus], change == 2 and all(map(_has_complex_pair, (start, end)))
-    return kinds, len(kinds) <= 1 and abs(change - len(kinds)) <= tolerance
+    count_tolerance = 1 if _has_multiplier_near_one(start) or _has_multiplier_near_one(end) else 0
+    if not kinds and count_change - count_tolerance > 1:
+        is_pair = count_change == 2 and all(map(_has_complex_pair, (start, end)))
+        return DetectedKinds([SpecialKind.torus], is_pair)
+    return DetectedKinds(kinds, len(kinds) <= 1 and abs(count_change - len(kinds)) <= count_tolerance)
 
 
 def fold_and_breaking_between(start: BranchCycle, end: BranchCycle) -> list[SpecialKind]:

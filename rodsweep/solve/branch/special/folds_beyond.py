@@ -41,7 +41,8 @@ class FoldsBeyondRange:
         return sorted(self.row_values)[item - self.first_item]
 
     def starts_of_row(self, row: int) -> tuple[SpecialPoint, ...]:
-        """No special points: the branches of the row with the index `row` are those of the first stage."""
+        """No special points: the branches of the row with the index `row` are the branches of the first
+        stage."""
         return ()
 
     def item_label(self, item: int) -> str:

@@ -19,17 +19,17 @@ def trace_half_curve(
     special_points: Sequence[RowSpecialPoint],
     complete_rows: Mapping[int, float],
 ) -> TracedHalfCurve:
-    """One half of a curve, from the point in `located` that agrees with special point `special_point`; `half`
-    is None if no point agrees or after a failure. located: points of the row, with cycles. special_points:
-    all points. complete_rows: value of the row parameter, by index, of the rows whose branches are all
-    known."""
-    width = abs(problem.line_axis.parameter_per_coordinate(special_point.parameter_value))
+    """One half of a curve, from the point in `located` that agrees with `special_point`; the field `half` is
+    None if no point agrees or after a failure. located: special points of the row, with cycles.
+    special_points: special points of all rows. complete_rows: value of the row parameter, by index, of the
+    rows whose branches are all known."""
+    row_length = abs(problem.line_axis.parameter_per_coordinate(special_point.parameter_value))
     matches = [
         point
         for point in located
         if point.kind == special_point.kind
         and abs(point.parameter_value - special_point.parameter_value)
-        <= CURVE_IDENTITY_SETTINGS.max_row_distance_fraction * width
+        <= CURVE_IDENTITY_SETTINGS.max_row_distance_fraction * row_length
         and abs(point.period / special_point.period - 1) <= CURVE_IDENTITY_SETTINGS.max_period_difference
     ]
     if not matches:
@@ -52,7 +52,8 @@ def _special_points_and_row_crossings(
 ) -> tuple[dict[int, float], tuple[RowCrossing, ...]]:
     """Returns (distances, crossings). distances: distance along the row, in row lengths, of each special
     point that lies on the curve through `points`, by its index. crossings: crossings with complete rows at
-    which no special point lies. Other arguments as in `trace_half_curve`."""
+    which no special point lies. special_points: special points of all rows. complete_rows: value of the row
+    parameter, by index, of the rows whose branches are all known."""
     indices_by_row: dict[int, list[int]] = {}
     for i, special_point in enumerate(special_points):
         if special_point.kind == problem.kind:
@@ -62,24 +63,26 @@ def _special_points_and_row_crossings(
     }
     distances: dict[int, float] = {}
     crossings = []
-    for a, b in pairwise(points):
-        low, high = sorted((a.row_coordinate, b.row_coordinate))
+    for first, second in pairwise(points):
+        low, high = sorted((first.row_coordinate, second.row_coordinate))
         for index, value in rows.items():
             row_coordinate = problem.row_axis.coordinate(value)
             near_indices = [
-                i for i in indices_by_row.get(index, ()) if _may_be_near(problem, a, b, special_points[i])
+                i
+                for i in indices_by_row.get(index, ())
+                if _may_be_near(problem, first, second, special_points[i])
             ]
             if not low <= row_coordinate <= high or not (near_indices or index in complete_rows):
                 continue
             try:
-                crossing = problem.point_on_row(a, b, row_coordinate)
+                crossing = problem.point_on_row(first, second, row_coordinate)
             except Unsolvable:
                 continue
             distances_here = _distances(problem, crossing, {i: special_points[i] for i in near_indices})
             for i, distance in distances_here.items():
                 distances[i] = min(distance, distances.get(i, distance))
             if not distances_here and index in complete_rows:
-                error = max(a.error, b.error)
+                error = max(first.error, second.error)
                 crossings.append(RowCrossing.from_solved_point(index, problem.kind, crossing, error))
     return dict(sorted(distances.items())), tuple(crossings)
 
@@ -111,7 +114,7 @@ def _may_be_near(
     x = problem.line_axis.coordinate(special_point.parameter_value)
     ends = sorted(problem.line_axis.coordinate(p.parameter) for p in (a, b))
     periods = sorted(p.orbit.period for p in (a, b))
-    margin = CURVE_IDENTITY_SETTINGS.max_chord_distance
+    margin = CURVE_IDENTITY_SETTINGS.max_chord_distance_fraction
     is_within = ends[0] - margin <= x <= ends[1] + margin
-    ratio = 1 + CURVE_IDENTITY_SETTINGS.period_interval_extension
-    return is_within and periods[0] / ratio <= special_point.period <= periods[1] * ratio
+    period_factor = 1 + CURVE_IDENTITY_SETTINGS.period_interval_extension
+    return is_within and periods[0] / period_factor <= special_point.period <= periods[1] * period_factor

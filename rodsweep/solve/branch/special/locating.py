@@ -36,8 +36,8 @@ def kind_at_minus_one(orbit: Orbit) -> SpecialKind:
 
 
 def test_function_value(kind: SpecialKind, segment: BranchSegment, solved: ConvergedOrbit) -> float:
-    """Value of the test function that is zero at special points of a kind, at the cycle `solved`, the last
-    cycle that `segment` solved; raises Unsolvable."""
+    """Value of the test function of special points of a kind at the cycle `solved`, the last cycle that
+    `segment` solved; raises Unsolvable."""
     if kind == SpecialKind.fold:
         return segment.parameter_rate()
     if kind == SpecialKind.left_the_model:
@@ -55,26 +55,26 @@ def multiplier_test_function(kind: SpecialKind, h: Complex) -> float:
     the solved part of the period, (multipliers,). Torus point: |m| - 1 for the complex multiplier m nearest
     to the unit circle; raises Unsolvable if all multipliers are real. Otherwise: the smallest |m + 1|,
     negative if an odd number of real multipliers is less than -1."""
-    real = np.abs(h.imag) <= SPECIAL_POINT_SETTINGS.real_multiplier_tolerance * np.abs(h)
+    is_real = np.abs(h.imag) <= SPECIAL_POINT_SETTINGS.real_multiplier_tolerance * np.abs(h)
     if kind != SpecialKind.torus:
         # The product of h + 1 changes sign only where a real multiplier crosses -1.
-        return float((-1) ** (h[real].real < -1).sum() * np.abs(h + 1).min())
+        return float((-1) ** (h[is_real].real < -1).sum() * np.abs(h + 1).min())
     # Without a complex pair the test function is not defined.
-    if real.all():
+    if is_real.all():
         raise Unsolvable("all multipliers are real, so no complex pair crosses the unit circle")
-    excess = np.abs(h[~real]) - 1
-    return float(excess[np.argmin(np.abs(excess))])
+    modulus_excess = np.abs(h[~is_real]) - 1
+    return float(modulus_excess[np.argmin(np.abs(modulus_excess))])
 
 
 def _test_value_at_end(kind: SpecialKind, scale: ArcLengthScale, tangent: Array, point: BranchCycle) -> float:
     """Value of the test function of a kind at `point`, an end of a segment; raises Unsolvable. scale,
     tangent: scale and tangent, (3,), at the start of the segment."""
     if kind == SpecialKind.fold:
-        # By the arc length along the direction `ahead`, which is the variable of the search.
+        # The variable of the search is the arc length along `tangent`.
         rate = float(scale.directional_derivative(point.orbit, point.tangent) @ tangent)
         return float(point.tangent[-1]) / scale.coordinate_unit / rate
     if kind == SpecialKind.left_the_model:
-        return least_stretch(point.cycle.path)
+        return least_stretch(point.cycle.motion)
     return multiplier_test_function(kind, point.multipliers_over_solved_part)
 
 
@@ -92,7 +92,7 @@ def special_point_between(
         length, slope = _bracketed_zero(kind, segment)
         mesh = first_mesh(end.calibration, required_accuracy)
         point: SpecialPoint | None = None
-        for number in range(SPECIAL_POINT_SETTINGS.max_mesh_comparisons + 1):
+        for comparison_index in range(SPECIAL_POINT_SETTINGS.max_mesh_comparisons + 1):
             segment.set_mesh(mesh)
             try:
                 length, orbit, slope = _zero_by_secants(kind, segment, length, slope)
@@ -108,7 +108,7 @@ def special_point_between(
                     break
             # Every second mesh is chosen from the measured error; the mesh after it is only slightly finer.
             required_error = required_accuracy * abs(point.parameter_value)
-            mesh = next_mesh(mesh, point.error / required_error if number % 2 else 1.0)
+            mesh = next_mesh(mesh, point.error / required_error if comparison_index % 2 else 1.0)
             if not mesh.is_allowed:
                 break
         if point is None or np.isnan(point.error):
@@ -128,39 +128,39 @@ def _with_mesh_errors(
     error = SPECIAL_POINT_SETTINGS.error_factor * abs(
         point.parameter_value - coarser_point.parameter_value
     ) + SPECIAL_POINT_SETTINGS.rounding_error * abs(point.parameter_value)
-    fraction = SPECIAL_POINT_SETTINGS.secant_error_at_fold
+    secant_error = SPECIAL_POINT_SETTINGS.secant_error_ratio_at_fold
     if point.kind is not SpecialKind.fold:
         # Period and tip y of two meshes may agree by coincidence, although the parameter does not.
         name = start.scale.parameter_name
-        length = abs(getattr(start.orbit.form.rod, name) - getattr(end.orbit.form.rod, name))
-        slope_error = SPECIAL_POINT_SETTINGS.max_slope_ratio * error / length if length else 1.0
-        fraction = SPECIAL_POINT_SETTINGS.secant_error + min(slope_error, 1.0)
+        difference = abs(getattr(start.orbit.form.rod, name) - getattr(end.orbit.form.rod, name))
+        slope_error = SPECIAL_POINT_SETTINGS.max_slope_ratio * error / difference if difference else 1.0
+        secant_error = SPECIAL_POINT_SETTINGS.secant_error_ratio + min(slope_error, 1.0)
     start_measures = start.cycle.measures
     end_measures = end.cycle.measures
     factor = SPECIAL_POINT_SETTINGS.error_factor
-    period = factor * abs(point.period - coarser_point.period) + fraction * abs(
+    period_error = factor * abs(point.period - coarser_point.period) + secant_error * abs(
         start_measures.period - end_measures.period
     )
-    size = factor * abs(point.tip_y_max - coarser_point.tip_y_max) + fraction * abs(
+    tip_y_error = factor * abs(point.tip_y_max - coarser_point.tip_y_max) + secant_error * abs(
         start_measures.tip_y_max - end_measures.tip_y_max
     )
     return replace(
         point,
         error=error,
-        period_error=period / point.period + SPECIAL_POINT_SETTINGS.rounding_error,
-        tip_y_max_error=size / point.tip_y_max + SPECIAL_POINT_SETTINGS.rounding_error,
+        period_error=period_error / point.period + SPECIAL_POINT_SETTINGS.rounding_error,
+        tip_y_max_error=tip_y_error / point.tip_y_max + SPECIAL_POINT_SETTINGS.rounding_error,
     )
 
 
 def _special_point_at(kind: SpecialKind, orbit: Orbit, name: str) -> SpecialPoint:
     """The special point of a kind at the solved cycle `orbit`, without errors. name: continuation
     parameter."""
-    path = CycleMotion(orbit)
+    motion = CycleMotion(orbit)
     return SpecialPoint(
         kind=kind,
         parameter_value=getattr(orbit.form.rod, name),
         period=orbit.period,
-        tip_y_max=path.extrema["tip_y_max"],
+        tip_y_max=motion.extrema["tip_y_max"],
         error=nan,
         orbit=orbit,
     )
@@ -187,7 +187,7 @@ def _unlocated_point(kind: SpecialKind, start: BranchCycle, end: BranchCycle, me
 
 
 def _bracketed_zero(kind: SpecialKind, segment: BranchSegment) -> tuple[float, float]:
-    """(arc length of an approximate zero, slope of the test function there), by bracketing; raises
+    """Returns (arc length of an approximate zero, slope of the test function there), by bracketing; raises
     Unsolvable."""
     start = segment.start
     ends_of_segment = ((0.0, start), (segment.length, segment.end))
@@ -216,21 +216,21 @@ def _zero_by_secants(
     """(arc length of the zero of the test function near `guess`, cycle at this zero, slope of the test
     function), by the secant method on `segment`; raises Unsolvable. slope: approximate slope, for the first
     step."""
-    linear = (
+    max_step_ratio = (
         SPECIAL_POINT_SETTINGS.max_linear_step_ratio_at_fold
         if kind == SpecialKind.fold
         else SPECIAL_POINT_SETTINGS.max_linear_step_ratio
     )
-    tolerance = segment.length * linear
+    tolerance = segment.length * max_step_ratio
     length = guess
     step = np.inf
     previous_point = None
     for _ in range(SPECIAL_POINT_SETTINGS.max_secant_steps):
-        f = test_function_value(kind, segment, segment.cycle_at(length))
-        if previous_point is not None and f != previous_point[1]:
-            slope = (f - previous_point[1]) / (length - previous_point[0])
+        test_value = test_function_value(kind, segment, segment.cycle_at(length))
+        if previous_point is not None and test_value != previous_point[1]:
+            slope = (test_value - previous_point[1]) / (length - previous_point[0])
         last_step_length = abs(step)
-        step = -f / slope
+        step = -test_value / slope
         if not abs(step) < segment.length:
             raise Unsolvable("the secant method leaves the interval between the two cycles")
         # A short step that hardly decreased is rounding error.
@@ -245,6 +245,6 @@ def _zero_by_secants(
             if kind == SpecialKind.fold:
                 change[-1] /= 2  # the derivative of the parameter decreases linearly to 0 along the step
             return length + step, moved_orbit(orbit, segment.start.scale.parameter_name, change), slope
-        previous_point = length, f
+        previous_point = length, test_value
         length += step
     raise Unsolvable("the secant method for the special point does not converge")

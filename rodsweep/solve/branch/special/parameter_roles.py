@@ -92,17 +92,19 @@ class ParameterRoles:
 
     def need_exchange_beyond(self, points: Sequence[SolvedPoint], length: float) -> bool:
         """Whether the parameters exchange their roles on the step of the arc length `length` beyond the last
-        of `points`: on the last chord or on the predicted one the row parameter hardly changes, or it turns
-        back between both, and the parameter along a row does not."""
-        known = [self.in_plane(point) for point in points[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]]
-        if self.need_exchange_between(*known[-2:]):
+        of `points`: on the last chord or on the predicted chord the row parameter hardly changes, or it turns
+        back between these chords and the parameter along a row does not."""
+        last_points = [
+            self.in_plane(point) for point in points[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
+        ]
+        if self.need_exchange_between(*last_points[-2:]):
             return True
-        rods = [point.orbit.form.rod for point in known]
+        rods = [point.orbit.form.rod for point in last_points]
         names = self.line_axis.name, self.row_axis.name
-        table = np.array([[rod.coordinate(name) for name in names] for rod in rods])
-        predicted = lagrange_weights(arc_lengths(known), length) @ table - table[-1]
-        turns = predicted * (table[-1] - table[-2]) < 0
-        return bool(turns[1] and not turns[0]) or self._is_flat(rods[-1], *predicted)
+        coordinates = np.array([[rod.coordinate(name) for name in names] for rod in rods])
+        predicted_change = lagrange_weights(arc_lengths(last_points), length) @ coordinates - coordinates[-1]
+        turns = predicted_change * (coordinates[-1] - coordinates[-2]) < 0
+        return bool(turns[1] and not turns[0]) or self._is_flat(rods[-1], *predicted_change)
 
     def need_exchange_at(self, point: SolvedPoint, slope: float) -> bool:
         """Whether the parameters exchange their roles on the first step from `point`, whose branch parameter
@@ -127,15 +129,16 @@ class ParameterRoles:
         return response * other_change / branch_change
 
     def _is_flat(self, rod: Rod, line_change: float, row_change: float) -> bool:
-        """Whether the row parameter hardly changes in comparison with the parameter along a row. rod: gives
-        the units. line_change, row_change: changes of the coordinates of both parameters."""
+        """Whether the row parameter hardly changes in comparison with the parameter along a row. rod: rod
+        whose parameters are the units. line_change, row_change: changes of the coordinates of both
+        parameters."""
         if self.kind != SpecialKind.fold:
             return False
-        line, row = (
+        line_ratio, row_ratio = (
             abs(change) / max(abs(rod.coordinate(axis.name)), self._min_coordinate_unit(axis))
             for axis, change in ((self.line_axis, line_change), (self.row_axis, row_change))
         )
-        return row <= PARAMETER_ROLE_SETTINGS.max_slope * line
+        return row_ratio <= PARAMETER_ROLE_SETTINGS.max_slope * line_ratio
 
     def _min_coordinate_unit(self, axis: PlaneAxis) -> float:
         """Smallest unit of the coordinate of the parameter of `axis`."""

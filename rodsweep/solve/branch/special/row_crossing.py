@@ -26,7 +26,7 @@ class RowCrossing:
     ) -> "RowCrossing":
         """The crossing at the point `point` of a curve of special points of the kind `kind`. error: absolute
         error of the parameter along a row at the neighbouring points of the curve."""
-        special = SpecialPoint(
+        special_point = SpecialPoint(
             kind=kind,
             parameter_value=point.parameter,
             period=point.orbit.period,
@@ -34,10 +34,10 @@ class RowCrossing:
             error=max(error, CURVE_SECANT_SETTINGS.accuracy * abs(point.parameter)),
             orbit=point.orbit,
         )
-        return cls(row_index, special)
+        return cls(row_index, special_point)
 
     def arrays(self) -> dict[str, Array]:
-        """The crossing as named arrays: "crossing" (6,), then those of the orbit."""
+        """The crossing as named arrays: "crossing" (6,), then the arrays of the orbit."""
         point = self.special_point
         assert point.orbit is not None
         keeps_omega = point.orbit.form.keeps_omega

@@ -39,36 +39,45 @@ def with_row_extrema(problem: "SpecialCurveProblem", points: Sequence[SolvedPoin
     points at the extrema of the row parameter. points: points with errors and any roles of the parameters.
     An extremum that cannot be located is omitted; the point after it has a `row_extremum_error` of NaN."""
     roles = problem.roles
-    sloped = {}
+    sloped_points = {}
     for i, point in enumerate(points):
         # The chords to and from points with exchanged roles.
         if any(map(roles.are_exchanged_at, points[max(i - 1, 0) : i + 2])):
             exchanged = roles.with_roles(point, exchanged=True)
-            sloped[i] = _SlopedPoint(exchanged, roles.axis_slope_at(exchanged, problem.workspace))
+            sloped_points[i] = _SlopedPoint(exchanged, roles.axis_slope_at(exchanged, problem.workspace))
     result: list[SolvedPoint] = []
     extremum_error = 0.0
     for i, point in enumerate(points):
         has_plane_error = not roles.are_exchanged_at(point)
-        error = point.error if has_plane_error else _error_along_row(problem, sloped, i)
+        error = point.error if has_plane_error else _error_along_row(problem, sloped_points, i)
         result.append(replace(roles.in_plane(point), error=error, row_extremum_error=extremum_error))
         extremum_error = 0.0
-        if i in sloped and i + 1 in sloped and sloped[i].slope * sloped[i + 1].slope < 0:
+        if (
+            i in sloped_points
+            and i + 1 in sloped_points
+            and sloped_points[i].slope * sloped_points[i + 1].slope < 0
+        ):
             try:
-                result.append(_located_extremum(problem, sloped[i], sloped[i + 1]))
+                result.append(_located_extremum(problem, sloped_points[i], sloped_points[i + 1]))
             except FAILURES:
                 extremum_error = nan
     return result
 
 
-def _error_along_row(problem: "SpecialCurveProblem", sloped: Mapping[int, _SlopedPoint], i: int) -> float:
-    """Absolute error of the parameter along a row at point i, whose error is one of the row parameter."""
-    here = sloped[i]
+def _error_along_row(
+    problem: "SpecialCurveProblem", sloped_points: Mapping[int, _SlopedPoint], i: int
+) -> float:
+    """Absolute error of the parameter along a row at point i, at which only the error of the row parameter is
+    known."""
+    sloped_point = sloped_points[i]
     line_axis, row_axis = problem.line_axis, problem.row_axis
-    error = here.point.error / abs(row_axis.parameter_per_coordinate(here.point.parameter))
-    curvature = max(abs(_slope_change(here, sloped[j])) for j in (i - 1, i + 1) if j in sloped)
+    error = sloped_point.point.error / abs(row_axis.parameter_per_coordinate(sloped_point.point.parameter))
+    curvature = max(
+        abs(_slope_change(sloped_point, sloped_points[j])) for j in (i - 1, i + 1) if j in sloped_points
+    )
     # The distance d along the row at which |slope| d + curvature d^2 / 2 is the error of the row coordinate.
-    distance = 2 * error / (abs(here.slope) + sqrt(here.slope**2 + 2 * curvature * error))
-    return distance * abs(line_axis.parameter_per_coordinate(here.point.row_parameter))
+    distance = 2 * error / (abs(sloped_point.slope) + sqrt(sloped_point.slope**2 + 2 * curvature * error))
+    return distance * abs(line_axis.parameter_per_coordinate(sloped_point.point.row_parameter))
 
 
 def _slope_change(first: _SlopedPoint, second: _SlopedPoint) -> float:

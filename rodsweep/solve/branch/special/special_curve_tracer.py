@@ -45,8 +45,8 @@ class SpecialCurveTracer:
     known_special_points: Sequence[RowSpecialPoint] = ()
     """Further special points of the rows, through which no curve is traced."""
     starts_by_row: Mapping[int, tuple[SpecialPoint, ...]] = field(default_factory=dict)
-    """Special points from which branches of a row are followed beside those from Hopf points, by index of the
-    row."""
+    """Special points from which branches of a row are followed in addition to its branches from Hopf points,
+    by index of the row."""
     first_item: int = 0
 
     @property
@@ -65,7 +65,8 @@ class SpecialCurveTracer:
         return [self.first_item + item for item in needed_items + possible_items] if needed_items else []
 
     def crossings(self, results: Mapping[int, HalfCurveArrays]) -> list[RowCrossing]:
-        """Crossings of all curves with complete rows at which no special point lies; valid as `curves`."""
+        """Crossings of all curves with complete rows at which no special point lies; valid if
+        `items_to_solve(results)` is empty."""
         return [
             crossing
             for _, search in self._searches(results)
@@ -74,8 +75,8 @@ class SpecialCurveTracer:
         ]
 
     def points_of_leaving_curves(self, results: Mapping[int, HalfCurveArrays]) -> list[RowSpecialPoint]:
-        """A special point of each curve that leaves the range of the parameter along the rows; valid as
-        `curves`."""
+        """A special point of each curve that leaves the range of the parameter along the rows; valid if
+        `items_to_solve(results)` is empty."""
         return [
             self.special_points[min(traced.distances)]
             for _, search in self._searches(results)
@@ -158,7 +159,8 @@ class _CurvesOfKind:
     results: Mapping[int, HalfCurveArrays]
 
     def next_seed(self, untraced: Sequence[int]) -> int:
-        """The median of the special points `untraced`: both halves of its curve have similar lengths."""
+        """The median of the special points `untraced`, for which both halves of the curve have similar
+        lengths."""
         return sorted(untraced, key=self._sort_key)[len(untraced) // 2]
 
     def missing_items(self, seed: int) -> list[int]:
@@ -186,11 +188,11 @@ class _CurvesOfKind:
         forward = TracedHalfCurve.from_arrays(self.results[2 * seed])
         if forward.half is None:
             return None
-        closed = forward.half.end is CurveEndReason.closed
+        is_closed = forward.half.end is CurveEndReason.closed
         backward = (
-            TracedHalfCurve(None) if closed else TracedHalfCurve.from_arrays(self.results[2 * seed + 1])
+            TracedHalfCurve(None) if is_closed else TracedHalfCurve.from_arrays(self.results[2 * seed + 1])
         )
-        if backward.half is None and not closed:
+        if backward.half is None and not is_closed:
             return None
         curve = SpecialPointCurve.joined(self.kind, forward.half, backward.half)
         distances = dict(forward.distances)
@@ -233,6 +235,6 @@ class _CurvesOfKind:
             )
             chord = x + fraction * (self.line_axis.coordinate(last_point.parameter_value) - x)
             distance = abs(chord - self.line_axis.coordinate(special_point.parameter_value))
-            if 0 <= fraction <= 1 and distance <= CURVE_IDENTITY_SETTINGS.max_last_chord_distance:
+            if 0 <= fraction <= 1 and distance <= CURVE_IDENTITY_SETTINGS.max_last_chord_distance_fraction:
                 return True
         return False

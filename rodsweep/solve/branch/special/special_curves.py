@@ -24,7 +24,7 @@ class CurveIdentitySettings:
     max_row_distance_fraction: float = 1e-6
     """A special point of a row lies on a curve if its distance from the curve is at most this fraction of the
     length of a row."""
-    max_chord_distance: float = 0.1
+    max_chord_distance_fraction: float = 0.1
     """A special point can lie on the arc between two points of a curve only if its distance, along the row,
     from the interval of these two points is at most this fraction of the length of a row."""
     period_interval_extension: float = 0.1
@@ -35,7 +35,7 @@ class CurveIdentitySettings:
     max_end_distance: float = 1e-4
     """Two curves are identical if the coordinates of their ends differ by at most this number; each axis has
     length 1."""
-    max_last_chord_distance: float = 1e-3
+    max_last_chord_distance_fraction: float = 1e-3
     """Between the last cycle of a curve and the Hopf point where the cycles vanish, a special point lies on
     the curve if its distance, along the row, from the chord is at most this fraction of the length of a
     row."""
@@ -94,9 +94,9 @@ class CurvePoint:
     """Stored quantities of a point of a curve of special points.
 
     parameter_value: value of the parameter along a row, with the absolute error `error`. row_value: value of
-    the row parameter. row_coordinate: from 0 to 1. period: in tau2. tip_y_max: largest tip y, in L.
-    row_extremum_error: absolute error of `row_value` where it is extremal along the curve, NaN at the point
-    after an extremum that could not be located, 0 elsewhere.
+    the row parameter. row_coordinate: position of `row_value` on its axis, from 0 to 1. period: in tau2.
+    tip_y_max: largest tip y, in L. row_extremum_error: absolute error of `row_value` where it is extremal
+    along the curve, NaN at the point after an extremum that could not be located, 0 elsewhere.
     """
 
     parameter_value: float
@@ -185,11 +185,11 @@ class SpecialPointCurve:
         None for a closed curve."""
         first_half = backward or HalfCurve(forward.points[:1], forward.end)
         points = (*first_half.points[:0:-1], *forward.points)
-        vanishing = [
+        hopf_ends = [
             extrapolated_hopf_end(side) if end is CurveEndReason.hopf else None
             for end, side in ((first_half.end, points[::-1]), (forward.end, points))
         ]
-        return cls(kind, points, (first_half.end, forward.end), (vanishing[0], vanishing[1]))
+        return cls(kind, points, (first_half.end, forward.end), (hopf_ends[0], hopf_ends[1]))
 
 
 def with_bautin_ends(
@@ -230,10 +230,12 @@ def extrapolated_hopf_end(points: Sequence[CurvePoint]) -> HopfEnd | None:
     last_points = points[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
     if len(last_points) < CURVE_IDENTITY_SETTINGS.max_interpolated_points:
         return None
-    squares = np.array([point.tip_y_max**2 for point in last_points])
-    table = np.array([[point.parameter_value, point.row_value, point.period] for point in last_points])
+    squared_amplitudes = np.array([point.tip_y_max**2 for point in last_points])
+    quantities = np.array([[point.parameter_value, point.row_value, point.period] for point in last_points])
     # The error estimate is the difference between the polynomials with and without the first point.
-    values, values_of_lower_order = (np.dot(lagrange_weights(squares[i:], 0.0), table[i:]) for i in (0, 1))
+    values, values_of_lower_order = (
+        np.dot(lagrange_weights(squared_amplitudes[i:], 0.0), quantities[i:]) for i in (0, 1)
+    )
     difference = abs(values[0] - values_of_lower_order[0]) + max(point.error for point in last_points)
     error = CURVE_IDENTITY_SETTINGS.extrapolation_factor * difference
     return HopfEnd(float(values[0]), float(values[1]), float(error), float(values[2]))

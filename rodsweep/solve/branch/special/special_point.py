@@ -35,15 +35,16 @@ class SpecialPointSettings:
     than `converging_step_ratio` times the previous step."""
     max_linear_step_ratio: float = 1e-6
     """Longest last secant step, divided by the step of the branch. After the last step the cycle is moved
-    along its tangent, not solved again. The relative error 1e-3 of the slope causes the error `secant_error`.
+    along its tangent, not solved again. The relative error 1e-3 of the slope causes the error
+    `secant_error_ratio`.
     """
     max_linear_step_ratio_at_fold: float = 1e-5
     """Longest last secant step at a fold, divided by the step of the branch; longer than elsewhere, because
     the parameter is quadratic in arc length."""
-    secant_error: float = 1e-9
+    secant_error_ratio: float = 1e-9
     """Error of the arc length of a special point caused by the last secant step, divided by the step of the
     branch."""
-    secant_error_at_fold: float = 1e-5
+    secant_error_ratio_at_fold: float = 1e-5
     """Error of the arc length of a fold caused by the last secant step, divided by the step of the branch.
     The slope may come from a coarser mesh and then has a relative error of 0.1."""
     max_matrix_distance: float = 1e-3
@@ -73,8 +74,8 @@ class SpecialPointSettings:
     error_factor: float = 3.0
     """The error estimate is the difference between the special points on two meshes, times this factor."""
     max_slope_ratio: float = 2.0
-    """Largest derivative of period and tip y by the parameter at a special point, divided by the slope of the
-    chord between the cycles before and after the point."""
+    """Largest derivative of period and tip y with respect to the parameter at a special point, divided by the
+    slope of the chord between the cycles before and after the point."""
     rounding_error: float = 1e-13
     """Relative rounding error of the parameter, the period and the largest tip y of a special point."""
     unit_multiplier_distance: float = 3e-3
@@ -164,9 +165,9 @@ def _are_near(
 ) -> bool:
     """Whether kind, parameter and period of two special points agree. error: sum of the absolute errors of
     the two parameters."""
-    excess = abs(first.parameter_value - second.parameter_value) - error
+    excess_distance = abs(first.parameter_value - second.parameter_value) - error
     return (
         first.kind == second.kind
-        and excess <= SPECIAL_POINT_SETTINGS.max_relocation_distance * abs(first.parameter_value)
+        and excess_distance <= SPECIAL_POINT_SETTINGS.max_relocation_distance * abs(first.parameter_value)
         and abs(first.period / second.period - 1) <= SPECIAL_POINT_SETTINGS.max_relocation_period_change
     )

@@ -20,26 +20,29 @@ def first_mesh(calibration: BranchCalibration, accuracy: float) -> OrbitMesh:
     """
     target_accuracy = SPECIAL_POINT_SETTINGS.first_mesh_accuracy_ratio * accuracy
     mesh = calibration.cheapest_mesh_for_parameter(target_accuracy)
-    stages = max(mesh.stage_count, cheapest_stage_count(accuracy))
-    if stages == mesh.stage_count:
+    stage_count = max(mesh.stage_count, cheapest_stage_count(accuracy))
+    if stage_count == mesh.stage_count:
         return mesh
-    coarser_mesh = calibration.cheapest_mesh_for_parameter(target_accuracy ** (mesh.stage_count / stages))
+    coarser_mesh = calibration.cheapest_mesh_for_parameter(
+        target_accuracy ** (mesh.stage_count / stage_count)
+    )
     return replace(
-        mesh, stage_count=stages, interval_count=min(mesh.interval_count, coarser_mesh.interval_count)
+        mesh, stage_count=stage_count, interval_count=min(mesh.interval_count, coarser_mesh.interval_count)
     )
 
 
-def next_mesh(mesh: OrbitMesh, excess: float) -> OrbitMesh:
-    """The next finer mesh. excess: ratio of the error on `mesh` to the accuracy; 1 gives the smallest
+def next_mesh(mesh: OrbitMesh, error_ratio: float) -> OrbitMesh:
+    """The next finer mesh. error_ratio: ratio of the error on `mesh` to the accuracy; 1 gives the smallest
     refinement."""
     # The error is assumed proportional to intervals^-p, p: `time_order_per_stage` times the number of stages.
-    growth = excess ** (1 / (SPECIAL_POINT_SETTINGS.time_order_per_stage * mesh.stage_count))
+    growth = error_ratio ** (1 / (SPECIAL_POINT_SETTINGS.time_order_per_stage * mesh.stage_count))
     growth = min(
         max(growth, SPECIAL_POINT_SETTINGS.min_interval_ratio), SPECIAL_POINT_SETTINGS.max_interval_ratio
     )
     order_increase = min(
         max(
-            ceil(log(excess) / SPECIAL_POINT_SETTINGS.space_decay), SPECIAL_POINT_SETTINGS.min_order_increase
+            ceil(log(error_ratio) / SPECIAL_POINT_SETTINGS.space_decay),
+            SPECIAL_POINT_SETTINGS.min_order_increase,
         ),
         SPECIAL_POINT_SETTINGS.max_order_increase,
     )

@@ -40,9 +40,9 @@ class AsymmetricStartSettings:
     """Relative differences between the predicted first asymmetric cycle and the symmetric cycle, tried in
     this order."""
     max_accuracy: float = 1e-4
-    """Largest relative accuracy of asymmetric cycles: a coarser mesh does not separate them from the
-    symmetric cycles nearby. At an accuracy of 1e-3 Newton's method converges to symmetric cycles for 4 of 6
-    rods, at 3e-4 for none."""
+    """Largest relative accuracy of asymmetric cycles: a coarser mesh does not separate asymmetric cycles from
+    the symmetric cycles nearby. At an accuracy of 1e-3 Newton's method converges to symmetric cycles for 4 of
+    6 rods, at 3e-4 for none."""
     rate_tolerance: float = 1e-9
     """Tolerance of Newton's method for the cycles whose parameter rates show a fold before the first
     cycle."""
@@ -66,9 +66,9 @@ def first_asymmetric_cycle(
     min_coordinate_unit: float = 0.0,
 ) -> tuple[BranchCycle, float]:
     """Returns (the first asymmetric cycle of the branch from a symmetry breaking along the parameter `name`,
-    its relative accuracy): `accuracy`, or a smaller one if a fold lies close to the symmetry breaking. Raises
-    Unsolvable. The tip's y reaches a larger maximum than on the mirror image. min_coordinate_unit: as in
-    `ArcLengthScale`."""
+    its relative accuracy): `accuracy`, or a smaller number if a fold lies close to the symmetry breaking.
+    Raises Unsolvable. Of a cycle and its mirror image, the cycle with the larger maximum of the tip's y is
+    returned. min_coordinate_unit: smallest unit of the parameter coordinate."""
     if breaking.special_point.orbit is None:
         raise Unsolvable("the cycle at which the symmetry breaks is not known")
     full_orbit = extended_to_whole_period(breaking.special_point.orbit)
@@ -132,16 +132,16 @@ class _AsymmetricCycles:
         between the symmetric cycle and the cycle at `distance`; raises Unsolvable."""
         # The parameter is p0 + A t^2 + B t^4 with t = 1 at `distance`; its derivatives give A and B.
         parameter_rate = self._parameter_rate(distance)
-        half = self._parameter_rate(distance / 2)
-        A = (8 * half - parameter_rate) / 6
+        half_distance_rate = self._parameter_rate(distance / 2)
+        A = (8 * half_distance_rate - parameter_rate) / 6
         B = (parameter_rate - 2 * A) / 4
         if A * parameter_rate >= 0:
             return distance
         return distance * ASYMMETRIC_START_SETTINGS.asymmetry_to_fold_ratio * sqrt(-A / (2 * B))
 
     def _parameter_rate(self, distance: float) -> float:
-        """Derivative of the scaled parameter coordinate by arc length at the cycle at a relative distance;
-        raises Unsolvable."""
+        """Derivative of the scaled parameter coordinate with respect to arc length at the cycle at a relative
+        distance; raises Unsolvable."""
         solved = self._condition(distance).solve_cycle(
             self.predicted_orbit(distance), ASYMMETRIC_START_SETTINGS.rate_tolerance, self.matrix.workspace
         )

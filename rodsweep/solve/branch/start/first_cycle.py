@@ -53,10 +53,10 @@ def _cycle_near_hopf_point(
     """A cycle of the branch from the Hopf point `hopf`, as its first cycle, to a relative accuracy; raises
     Unsolvable. max_amplitude: upper limit of its amplitude, in L."""
     a = abs(hopf.amplitude_coefficient)
-    usual = max(accuracy, REFINEMENT_SETTINGS.min_first_mesh_accuracy)
+    first_mesh_accuracy = max(accuracy, REFINEMENT_SETTINGS.min_first_mesh_accuracy)
     # On a coarse mesh the Hopf point is displaced, so that this mesh may have no cycle here.
     for mesh_accuracy, is_finer_start in (
-        (usual, False),
+        (first_mesh_accuracy, False),
         (REFINEMENT_SETTINGS.min_first_mesh_accuracy, True),
     ):
         for fraction in BRANCH_START_SETTINGS.first_amplitudes:
@@ -90,17 +90,19 @@ def _cycle_of_amplitude(
         start = mesh_from_tails(start, mesh_accuracy, cheapest_stage_count(mesh_accuracy)).interpolated_orbit(
             start
         )
-    min_unit = abs(deflection_of(start)) * BRANCH_START_SETTINGS.min_deflection_amplitude / amplitude
-    scale = ArcLengthScale.at_orbit(start, hopf.parameter_name, min_unit, hopf.min_coordinate_unit)
+    min_deflection_unit = (
+        abs(deflection_of(start)) * BRANCH_START_SETTINGS.min_deflection_amplitude / amplitude
+    )
+    scale = ArcLengthScale.at_orbit(start, hopf.parameter_name, min_deflection_unit, hopf.min_coordinate_unit)
     # With the deflection prescribed, not the parameter, the cycle cannot collapse onto the straight rod.
     border = np.sign(deflection_of(start)) * ALONG_DEFLECTION
     condition = BorderCondition.at_arc_length(scale, border, start)
     rough_orbit = condition.solve_cycle(start, REFINEMENT_SETTINGS.nearby_orbit_tolerance, workspace)
     near_orbit = rough_orbit.orbit
-    y = float(near_orbit.form.tip_coordinates(near_orbit.start_state)[1])
+    tip_y = float(near_orbit.form.tip_coordinates(near_orbit.start_state)[1])
     # A different cycle with the same deflection would have an amplitude far from the normal form's.
     least_ratio, largest_ratio = BRANCH_START_SETTINGS.allowed_amplitude_ratios
-    if not least_ratio < y / amplitude < largest_ratio:
+    if not least_ratio < tip_y / amplitude < largest_ratio:
         raise Unsolvable("Newton's method converged far from the cycle that the normal form predicts")
     mesh = mesh_from_tails(near_orbit, mesh_accuracy, cheapest_stage_count(accuracy))
     first = condition.solve_on_mesh(

@@ -55,8 +55,10 @@ class HopfBranchStart:
         sign = -1.0 if ParameterPath(self.rod, self.parameter_name).is_compliance_path else 1.0
         # 0 = Re slope dp + Re c a^2, so a^2 = -Re slope p/Re c per relative change of p; a negative value
         # means cycles at smaller p.
-        squared = -sign * self.growth_slope.real * self.parameter_coordinate / self.coefficients.landau.real
-        return float(np.copysign(abs(squared) ** 0.5, squared))
+        squared_amplitude = (
+            -sign * self.growth_slope.real * self.parameter_coordinate / self.coefficients.landau.real
+        )
+        return float(np.copysign(abs(squared_amplitude) ** 0.5, squared_amplitude))
 
     @property
     def coefficient_error(self) -> float:
@@ -64,10 +66,10 @@ class HopfBranchStart:
         Re(slope) and of the parameter at the Hopf point."""
         c = self.coefficients.landau
         slope = self.growth_slope
-        landau = self.coefficients.landau_error * abs(c) / abs(c.real)
+        landau_error = self.coefficients.landau_error * abs(c) / abs(c.real)
         slope_error = self.coefficients.growth_slope_error * abs(slope) / abs(slope.real)
         # Half, because a is a square root.
-        return (landau + slope_error + self.crossing.error / abs(self.crossing.value)) / 2
+        return (landau_error + slope_error + self.crossing.error / abs(self.crossing.value)) / 2
 
     @property
     def period_error(self) -> float:
@@ -89,8 +91,8 @@ class HopfBranchStart:
         return int(np.sign(-c.real / self.growth_slope.real))
 
     def parameter_change_and_frequency(self, amplitude: float) -> tuple[float, float]:
-        """(change of the parameter coordinate from the Hopf point, frequency in 1/tau2), by the normal form,
-        of the cycle whose largest tip y is `amplitude`, in L."""
+        """Returns (change of the parameter coordinate from the Hopf point, frequency in 1/tau2), by the
+        normal form, of the cycle whose largest tip y is `amplitude`, in L."""
         c = self.normal_form.landau
         # The growth rate of the cycle vanishes: Re slope dp + Re c a^2 = 0.
         change = -c.real * amplitude**2 / self.growth_slope.real

@@ -95,8 +95,8 @@ class CriticalModesOfPath:
 
     def _compute_modes(self, p: float, guesses: Complex | None) -> CriticalModes:
         """The modes near the imaginary axis if `has_many_modes(p)` and their count is decided, otherwise the
-        leading modes; raises Unsolvable. guesses: approximate eigenvalues near the imaginary
-        axis, (n,), one of each pair, if available."""
+        leading modes; raises Unsolvable. guesses: approximate eigenvalues near the imaginary axis, (n,), one
+        of each pair, if available."""
         # The neighbour's count gives the number of modes: the unstable modes and one more pair.
         nearest_modes = min(self.modes_by_p.values(), key=lambda place: abs(place.p - p), default=None)
         expected_count = 0 if nearest_modes is None else nearest_modes.unstable_count
@@ -114,34 +114,38 @@ class CriticalModesOfPath:
 
     def _modes_near_axis(self, p: float, guesses: Complex | None) -> CriticalModes | None:
         """The modes near the imaginary axis at path variable p, and a count of the unstable modes; None if
-        the count is undecided. start_guesses: approximate eigenvalues of these modes, (n,), if available."""
+        the count is undecided. guesses: approximate eigenvalues of these modes, (n,), if available."""
         if guesses is None:
             guesses = self.eigenvalues_near_axis(p, math.inf, NO_EIGENVALUES)
-        refined = [self.problem.eigenvalue(guess, p) for guess in guesses.tolist()]
-        w = np.array([root[0] for root in refined], complex)
-        count = self.problem.counted_unstable_modes(p, w, np.array([root[2] for root in refined]))
-        slopes = np.array([root[1] for root in refined], complex)
+        refined_roots = [self.problem.eigenvalue(guess, p) for guess in guesses.tolist()]
+        w = np.array([root[0] for root in refined_roots], complex)
+        count = self.problem.counted_unstable_modes(p, w, np.array([root[2] for root in refined_roots]))
+        slopes = np.array([root[1] for root in refined_roots], complex)
         return None if count is None else CriticalModes(p, w, slopes, count)
 
     def _leading_modes(self, p: float, expected_count: int) -> CriticalModes:
         """The leading modes at path variable p, at least two more than the unstable modes; raises Unsolvable
         if the count fails or too many modes grow. expected_count: expected number of unstable modes."""
         settings = SPECTRUM_SAMPLE_SETTINGS
-        modes = max(settings.min_computed_modes, 2 + expected_count)
-        spectrum = self.problem.spectrum(p, SpectrumRequest(modes, settings.arm_accuracy, self.certify))
-        while modes < _needed_modes(spectrum) <= AXIS_MODE_SETTINGS.max_computed_modes:
+        mode_count = max(settings.min_computed_modes, 2 + expected_count)
+        spectrum = self.problem.spectrum(p, SpectrumRequest(mode_count, settings.arm_accuracy, self.certify))
+        while mode_count < _needed_modes(spectrum) <= AXIS_MODE_SETTINGS.max_computed_modes:
             if self.certify and spectrum.unstable_count < 0:
                 break  # more modes do not help a failed count
-            modes = _needed_modes(spectrum)
-            spectrum = self.problem.spectrum(p, SpectrumRequest(modes, settings.arm_accuracy, self.certify))
+            mode_count = _needed_modes(spectrum)
+            spectrum = self.problem.spectrum(
+                p, SpectrumRequest(mode_count, settings.arm_accuracy, self.certify)
+            )
         if spectrum.unstable_count < 0:
             is_undecided = (
                 spectrum.status != SpectrumStatus.ok
             )  # else only the number of unstable modes is unknown
-            name = spectrum.status.name if is_undecided else SpectrumStatus.undecided.name
+            status_name = spectrum.status.name if is_undecided else SpectrumStatus.undecided.name
             place = self.problem.path.text_at(p)
-            raise Unsolvable(f"the spectrum at {place} is {name}: {spectrum.message}".rstrip(": "))
-        if _needed_modes(spectrum) > max(modes, AXIS_MODE_SETTINGS.max_computed_modes):
+            raise Unsolvable(
+                f"the spectrum at {place} has the status {status_name}: {spectrum.message}".rstrip(": ")
+            )
+        if _needed_modes(spectrum) > max(mode_count, AXIS_MODE_SETTINGS.max_computed_modes):
             raise Unsolvable(
                 f"{self.problem.path.text_at(p)}: {spectrum.unstable_count} modes grow, but at most "
                 f"{AXIS_MODE_SETTINGS.max_computed_modes} modes are computed; shorten the range"
@@ -153,7 +157,8 @@ class CriticalModesOfPath:
 
 
 def _needed_modes(spectrum: Spectrum) -> int:
-    """Number of modes to be computed: two more than the counted unstable modes or the growing modes found."""
+    """Number of modes to be computed: two more than the counted unstable modes, or than the growing modes
+    found if these are more."""
     growing_count = int((spectrum.eigenvalues.real > 0).sum())
     return 2 + max(spectrum.unstable_count, growing_count)
 
@@ -161,20 +166,22 @@ def _needed_modes(spectrum: Spectrum) -> int:
 def next_count_position(left: CriticalModes, right: CriticalModes) -> float:
     """Position of the next count as a fraction of the interval of p from `left` to `right`; 0 if no count is
     needed, because no pair can touch the imaginary axis in the interval."""
-    h = right.p - left.p
+    length = right.p - left.p
     for grows in (False, True):
-        a = left.nearest_pair(grows)
-        b = right.nearest_pair(grows)
-        if a is None and b is None:
+        left_pair = left.nearest_pair(grows)
+        right_pair = right.nearest_pair(grows)
+        if left_pair is None and right_pair is None:
             continue
-        if a is None or b is None:
-            value, slope = a or b or (0.0, 0.0)
+        if left_pair is None or right_pair is None:
+            distance, slope = left_pair or right_pair or (0.0, 0.0)
             # The slope of a pair known at one end only shows whether the pair came from the axis.
-            approaches = slope > 0 if a is None else slope < 0
-            if approaches and value < abs(slope) * h:
+            may_touch_axis = slope > 0 if left_pair is None else slope < 0
+            if may_touch_axis and distance < abs(slope) * length:
                 return 0.5
             continue
-        minimum, fraction = minimum_of_cubic(a[0], b[0], h * a[1], h * b[1])
-        if minimum < SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * min(a[0], b[0]):
+        minimum, fraction = minimum_of_cubic(
+            left_pair[0], right_pair[0], length * left_pair[1], length * right_pair[1]
+        )
+        if minimum < SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * min(left_pair[0], right_pair[0]):
             return fraction
     return 0.0

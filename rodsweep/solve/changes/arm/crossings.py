@@ -24,7 +24,7 @@ class ArmCrossingSettings:
     max_expected_pairs_ratio: float = 2.0
     """Largest number of pairs expected to grow at the right end of an interval, divided by the maximum number
     of crossings; with more pairs the interval is halved before its search."""
-    min_halved_interval: float = 1e-3
+    min_halved_interval_fraction: float = 1e-3
     """Intervals shorter than this fraction of the path are searched without being halved."""
     max_pairs_at_once: int = 6
     """Where many modes grow, all crossings between two counted arms are searched at once if their counts
@@ -72,8 +72,11 @@ class CrossingSearch:
         further crossing takes longer than all earlier ones. Raises Unsolvable if the search ends at the first
         edge."""
         intervals = IntervalQueue(edges)
-        margin = ARM_CROSSING_SETTINGS.count_distance_fraction * intervals.length
-        self.axis_modes.outside_p_by_end = {edges[0]: edges[0] - margin, edges[-1]: edges[-1] + margin}
+        count_distance = ARM_CROSSING_SETTINGS.count_distance_fraction * intervals.length
+        self.axis_modes.outside_p_by_end = {
+            edges[0]: edges[0] - count_distance,
+            edges[-1]: edges[-1] + count_distance,
+        }
         self.axis_modes.modes_at(edges[0])
         for a, b in intervals:
             if sum(p < a for p in self.crossings_by_p) > max_crossings:
@@ -97,9 +100,13 @@ class CrossingSearch:
         return first <= high and last >= low
 
     def _must_be_halved(self, a: float, b: float, max_crossings: float, length: float) -> bool:
-        """Whether (a, b) must be halved before its search: it is not short, the modes at b are not known, and
-        the list of `max_crossings` crossings is likely to be full before b. length: length of the path."""
-        if b in self.axis_modes.modes_by_p or b - a < ARM_CROSSING_SETTINGS.min_halved_interval * length:
+        """Whether the interval (a, b) of p must be halved before its search: the interval is not short, the
+        modes at b are not known, and the list of `max_crossings` crossings is likely to be full before b.
+        length: length of the path."""
+        if (
+            b in self.axis_modes.modes_by_p
+            or b - a < ARM_CROSSING_SETTINGS.min_halved_interval_fraction * length
+        ):
             return False
         max_pairs = ARM_CROSSING_SETTINGS.max_expected_pairs_ratio * 2 * max_crossings
         return self.axis_modes.has_many_modes(b) and self.problem.expected_unstable_count(b) > max_pairs
@@ -139,7 +146,7 @@ class CrossingSearch:
     ) -> list[tuple[float, float]] | None:
         """The intervals between crossings, in increasing order of p; None if the counts just before and just
         after a crossing do not confirm the crossing. length: length of the path."""
-        parts: list[tuple[float, float]] = []
+        intervals: list[tuple[float, float]] = []
         start = left.p
         max_frequency = ARM_CROSSING_SETTINGS.max_frequency_ratio * max(
             left.largest_modulus, right.largest_modulus
@@ -153,40 +160,40 @@ class CrossingSearch:
                 guesses = self.axis_modes.eigenvalues_near_axis(
                     p, max_frequency, np.array([1j * crossing.frequency])
                 )
-            change = (
+            count_change = (
                 self.axis_modes.modes_at(p_after, guesses).unstable_count
                 - self.axis_modes.modes_at(p_before, guesses).unstable_count
             )
-            if change != (2 if right.unstable_count > left.unstable_count else -2):
+            if count_change != (2 if right.unstable_count > left.unstable_count else -2):
                 return None
-            parts.append((start, p_before))
+            intervals.append((start, p_before))
             start = p_after
-        return [*parts, (start, right.p)]
+        return [*intervals, (start, right.p)]
 
     def _crossings_between(self, left: CriticalModes, right: CriticalModes) -> list[Threshold]:
         """Crossings between the arms with the modes `left` and `right`, in increasing order of p, that
         explain the change of the number of unstable modes; empty if a crossing is not found or the change is
         too large for one search."""
-        change = (right.unstable_count - left.unstable_count) // 2
+        pair_count_change = (right.unstable_count - left.unstable_count) // 2
         has_many_modes = self.axis_modes.has_many_modes(right.p)
         # Where modes are followed, bisection first separates several crossings.
-        if abs(change) > (ARM_CROSSING_SETTINGS.max_pairs_at_once if has_many_modes else 1):
+        if abs(pair_count_change) > (ARM_CROSSING_SETTINGS.max_pairs_at_once if has_many_modes else 1):
             return []
         if has_many_modes:
             self.problem.ensure_family(left.p, right.p, max(left.largest_modulus, right.largest_modulus))
-        grows = change > 0
+        becomes_unstable = pair_count_change > 0
         crossings_by_p: dict[float, Threshold] = {}
         # The pairs that cross are stable on one side and unstable on the other; pairs near the axis are
         # tried first.
-        for start, growing in ((left, not grows), (right, grows)):
+        for start, growing in ((left, not becomes_unstable), (right, becomes_unstable)):
             pairs = [i for i, w in enumerate(start.w.tolist()) if w.imag > 0 and (w.real > 0) == growing]
             for i in sorted(pairs, key=lambda i: abs(start.w[i].real)):
-                crossing = self._newton_crossing(start, i, (left.p, right.p), grows)
+                crossing = self._newton_crossing(start, i, (left.p, right.p), becomes_unstable)
                 if crossing is not None and not any(
                     _are_same_crossing(crossing, earlier) for earlier in crossings_by_p.values()
                 ):
                     crossings_by_p[self.problem.path.coordinate(crossing.value)] = crossing
-                if len(crossings_by_p) == abs(change):
+                if len(crossings_by_p) == abs(pair_count_change):
                     return [crossings_by_p[p] for p in sorted(crossings_by_p)]
         return []
 
@@ -227,8 +234,10 @@ class CrossingSearch:
         kind = crossing_kind(self.problem.path, grows)
         total_p_error = p_error + abs(w.real / slope.real)
         value, error = self.problem.path.value(p, total_p_error)
-        error_of_w = (abs(slope.real) + abs(slope.imag)) * total_p_error  # at fixed p, and by the error of p
-        return Threshold(value, kind, w.imag, 0.0, error, frequency_error=error_of_w)
+        frequency_error = (
+            abs(slope.real) + abs(slope.imag)
+        ) * total_p_error  # at fixed p, and by the error of p
+        return Threshold(value, kind, w.imag, 0.0, error, frequency_error=frequency_error)
 
 
 def _are_same_crossing(first: Threshold, second: Threshold) -> bool:

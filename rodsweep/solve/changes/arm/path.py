@@ -44,7 +44,7 @@ class ArmPathSettings:
     w_bound_ratio: float = 4.0
     """Bound W of |w| of a family of arms for crossings, divided by the largest known |w|; twice the known |w|
     suffices for the eigenvalues."""
-    max_count_distance_from_middle: float = 0.25
+    max_count_distance_fraction: float = 0.25
     """A known count replaces a count in the middle of an interval if the distance of its path variable from
     the middle is less than this fraction of the interval's length."""
 
@@ -99,11 +99,11 @@ class ArmPath(PathProblem):
             ARM_PATH_SETTINGS.edge_shift_fraction * (high - low) / ARM_PATH_SETTINGS.first_interval_count
         )
         if self._followed_arms is None and low < high:
-            steps = (
+            step_positions = (
                 np.arange(ARM_PATH_SETTINGS.first_interval_count * ARM_PATH_SETTINGS.steps_per_interval + 1)
                 / ARM_PATH_SETTINGS.steps_per_interval
             )
-            points = np.interp(steps, np.arange(len(edges)), edges)
+            points = np.interp(step_positions, np.arange(len(edges)), edges)
             self._followed_arms = FollowedArms(self.path, points, ARM_PATH_SETTINGS.followed_modes)
         return edges.tolist()
 
@@ -158,12 +158,12 @@ class ArmPath(PathProblem):
         )
 
     def known_count_near_middle(self, low: float, high: float) -> int | None:
-        positions = [
+        known_p = [
             p
             for p in self._unstable_counts
-            if abs(p - (low + high) / 2) < ARM_PATH_SETTINGS.max_count_distance_from_middle * (high - low)
+            if abs(p - (low + high) / 2) < ARM_PATH_SETTINGS.max_count_distance_fraction * (high - low)
         ]
-        nearest_p = min(positions, key=lambda p: abs(p - (low + high) / 2), default=None)
+        nearest_p = min(known_p, key=lambda p: abs(p - (low + high) / 2), default=None)
         return None if nearest_p is None else self._unstable_counts[nearest_p]
 
     def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
@@ -191,16 +191,16 @@ class ArmPath(PathProblem):
         followed_roots = self._followed_arms.followed_roots(p) if self._followed_arms is not None else None
         return ArmProblem(self.path.rod_at(p)).count(line, followed_roots)
 
-    def counted_unstable_modes(self, p: float, known_w: Complex, error: Array) -> int | None:
+    def counted_unstable_modes(self, p: float, known_w: Complex, known_error: Array) -> int | None:
         """Number of unstable modes at p, known already or by a count; None if the count is undecided.
         known_w: eigenvalues near the imaginary axis, (n,), one of each pair, which make the count faster.
-        error: errors of these eigenvalues, (n,)."""
+        known_error: errors of these eigenvalues, (n,)."""
         if p not in self._unstable_counts:
-            roots = KnownRoots(np.append(known_w, known_w.conj()), np.append(error, error))
-            number = ArmProblem(self.path.rod_at(p)).count(0.0, roots).number
-            if number is None:
+            roots = KnownRoots(np.append(known_w, known_w.conj()), np.append(known_error, known_error))
+            count = ArmProblem(self.path.rod_at(p)).count(0.0, roots).number
+            if count is None:
                 return None
-            self._unstable_counts[p] = number
+            self._unstable_counts[p] = count
         return self._unstable_counts[p]
 
     def eigenvalues_near_axis(self, p: float, max_frequency: float, known_w: Complex) -> Complex:

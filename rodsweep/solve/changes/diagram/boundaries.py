@@ -54,9 +54,9 @@ class Seed:
 
 
 def seed_of(values: tuple[float, float], kind: int, frequency: float, growth_rate: float) -> Seed | None:
-    """The seed of a threshold with values of both parameters; None for an overtaking of a real eigenvalue and
-    a pair, because no boundary consists of overtakings. kind: value of `ThresholdKind`. frequency,
-    growth_rate: Im and Re of the eigenvalue, in 1/tau2."""
+    """The seed at a threshold with the given `values` of both parameters; None for an overtaking of a real
+    eigenvalue and a pair, because no boundary consists of overtakings. kind: value of `ThresholdKind`.
+    frequency, growth_rate: Im and Re of the eigenvalue, in 1/tau2."""
     if kind in (ThresholdKind.hopf, ThresholdKind.hopf_reverse, ThresholdKind.restabilization):
         return Seed(values, 0.0, frequency)
     if kind in (ThresholdKind.onset, ThresholdKind.real_again):
@@ -72,7 +72,8 @@ class _StabilityBoundaries:
     seeds: list[Seed]
 
     def next_seed(self, untraced: Sequence[int]) -> int:
-        """Index of the threshold at which the next curve starts: the first of `untraced`, on no curve."""
+        """Index of the threshold at which the next curve starts: the first of `untraced`, which lie on no
+        curve."""
         return untraced[0]
 
     def missing_items(self, seed: int) -> list[int]:
@@ -101,7 +102,8 @@ class _StabilityBoundaries:
 
 
 def boundary_curves_through(plane: ParameterPlane, seeds: list[Seed]) -> TracedCurves[BoundaryCurve]:
-    """Boundary curves through all thresholds `seeds`; a threshold on a known curve starts no other."""
+    """Boundary curves through all thresholds `seeds`; no curve is traced from a threshold on a known
+    curve."""
     problem = _StabilityBoundaries(plane, seeds)
     return trace_all_curves(
         problem, range(len(seeds)), BOUNDARY_ASSIGNMENT_SETTINGS.max_threshold_distance
@@ -111,19 +113,23 @@ def boundary_curves_through(plane: ParameterPlane, seeds: list[Seed]) -> TracedC
 def _distance_from_curve(plane: ParameterPlane, curve: BoundaryCurve, seed: Seed) -> float:
     """Distance of a threshold from the curve along the first axis, at the threshold's value on the second
     axis, in the scaled coordinate of the first axis; inf if the curve has another `eigenvalue_sign`, or no
-    point there with nearly the eigenvalue of the threshold."""
+    point at this value with nearly the eigenvalue of the threshold."""
     settings = BOUNDARY_ASSIGNMENT_SETTINGS
     if curve.eigenvalue_sign != seed.eigenvalue_sign:
         return math.inf
     x, y = (a.coordinate(v) for a, v in zip(plane.axes, seed.values, strict=True))
     points = curve.scaled_points
-    side = points[:, 1] - y
+    distances_in_y = points[:, 1] - y
     # A threshold on a point of the curve must not fall between two chords by rounding.
-    side[np.abs(side) < settings.coordinate_tolerance] = 0.0
+    distances_in_y[np.abs(distances_in_y) < settings.coordinate_tolerance] = 0.0
     if len(points) == 1:
-        return float(abs(points[0, 0] - x)) if abs(side[0]) < settings.max_threshold_distance else math.inf
+        return (
+            float(abs(points[0, 0] - x))
+            if abs(distances_in_y[0]) < settings.max_threshold_distance
+            else math.inf
+        )
     distance = math.inf
-    for i in np.flatnonzero(side[:-1] * side[1:] <= 0):
+    for i in np.flatnonzero(distances_in_y[:-1] * distances_in_y[1:] <= 0):
         a = points[i]
         b = points[i + 1]
         chord_distance = max(min(a[0], b[0]) - x, x - max(a[0], b[0]))
@@ -145,9 +151,9 @@ def _point_at_second_coordinate(boundary: StabilityBoundary, a: Array, b: Array,
     fraction = (y - a[1]) / (b[1] - a[1]) if a[1] != b[1] else 0.0
     for _ in range(BOUNDARY_ASSIGNMENT_SETTINGS.max_secant_steps):
         guess = a + fraction * (b - a)
-        level = guess.copy()
-        level[1] = y
-        point = boundary.point_near(level, np.eye(3)[1])
+        guess_at_y = guess.copy()
+        guess_at_y[1] = y
+        point = boundary.point_near(guess_at_y, np.eye(3)[1])
         if point is not None:
             return point.v
         point = boundary.point_near(guess, (b - a) / np.linalg.norm(b - a))

@@ -27,7 +27,8 @@ from .boundary_problem import (
 
 @dataclass(frozen=True, slots=True)
 class Fold:
-    """Extremum of coordinate `axis` (0 or 1) on a curve: both parameters with errors, eigenvalue."""
+    """Extremum of the coordinate `axis` (0 or 1) on a curve: values and errors of both parameters, and the
+    eigenvalue at the extremum."""
 
     axis: int
     values: tuple[float, float]
@@ -61,53 +62,58 @@ class BoundaryCurve:
 
 
 def trace_boundary(
-    sign: float, plane: ParameterPlane, start: tuple[float, float], eigenvalue: float
+    eigenvalue_sign: float, plane: ParameterPlane, start: tuple[float, float], eigenvalue: float
 ) -> BoundaryCurve | None:
     """The boundary curve through `start` (scaled coordinates) and |w| = |eigenvalue|; None if no point of a
-    curve is found there. sign: 0 for a curve of Hopf points, else the sign of the double eigenvalue.
+    curve is found there. eigenvalue_sign: 0 for a curve of Hopf points, else the sign of the double
+    eigenvalue.
 
     The curve is followed in both directions until it leaves the plane, closes, reaches a crushed rod, or
     cannot be followed further.
     """
-    curve = BoundaryCurveProblem(StabilityBoundary(plane, sign))
+    problem = BoundaryCurveProblem(StabilityBoundary(plane, eigenvalue_sign))
     guess = np.array([*start, math.log(abs(eigenvalue))])
     try:
-        tangent = curve.boundary.tangent(guess)
-        first = BoundaryPoint.oriented(curve.boundary_point_near(guess, tangent), tangent)
+        tangent = problem.boundary.tangent(guess)
+        first_point = BoundaryPoint.oriented(problem.boundary_point_near(guess, tangent), tangent)
     except (ValueError, ArithmeticError, Unsolvable):
         return None
-    forward = follow_curve(curve, first, BOUNDARY_STEP_CONTROL, lambda _: report())
+    forward = follow_curve(problem, first_point, BOUNDARY_STEP_CONTROL, lambda _: report())
     backward = forward
     solutions = forward.solutions
     if forward.end_reason is not StopReason.closed:
         backward = follow_curve(
-            curve, BoundaryPoint(first.v, -first.tangent), BOUNDARY_STEP_CONTROL, lambda _: report()
+            problem,
+            BoundaryPoint(first_point.v, -first_point.tangent),
+            BOUNDARY_STEP_CONTROL,
+            lambda _: report(),
         )
         solutions = [*backward.solutions[:0:-1], *solutions]
     points = np.array([point.v for point in solutions])
     # The chord of coincident points, as on an edge, has no direction.
     are_distinct = np.abs(np.diff(points, axis=0)).max(axis=1) > BOUNDARY_CURVE_SETTINGS.max_merged_distance
     return _curve_with_folds(
-        curve,
+        problem,
         points[np.append(are_distinct, True)],
-        (curve.end_reason_of(backward), curve.end_reason_of(forward)),
+        (problem.end_reason_of(backward), problem.end_reason_of(forward)),
     )
 
 
 def _curve_with_folds(
-    curve: BoundaryCurveProblem, points: Array, end_reasons: tuple[BoundaryEndReason, BoundaryEndReason]
+    problem: BoundaryCurveProblem, points: Array, end_reasons: tuple[BoundaryEndReason, BoundaryEndReason]
 ) -> BoundaryCurve:
-    """The curve through points, (points, 3), with folds between. end_reasons: for its two ends."""
-    boundary = curve.boundary
+    """The curve through `points`, (points, 3), with the folds between them. end_reasons: reasons for the ends
+    at the first and at the last point."""
+    boundary = problem.boundary
     folds = []
     if len(points) > 1:
-        forward = np.diff(points, axis=0, append=points[-1:] + (points[-1:] - points[-2:-1]))
+        chords = np.diff(points, axis=0, append=points[-1:] + (points[-1:] - points[-2:-1]))
         tangents = np.array([boundary.tangent(v) for v in points])
-        tangents *= np.where((tangents * forward).sum(axis=1) < 0, -1.0, 1.0)[:, None]
+        tangents *= np.where((tangents * chords).sum(axis=1) < 0, -1.0, 1.0)[:, None]
         curve_points = list(map(BoundaryPoint, points, tangents))
         for axis in (0, 1):
             for i in np.flatnonzero(tangents[:-1, axis] * tangents[1:, axis] < 0):
-                fold = _fold_between(curve, curve_points[i], curve_points[i + 1], axis)
+                fold = _fold_between(problem, curve_points[i], curve_points[i + 1], axis)
                 if fold is not None:
                     folds.append(fold)
     # One by one: the rounding of NumPy's exp of an array depends on the position of an element in memory.
@@ -119,29 +125,33 @@ def _curve_with_folds(
     )
 
 
-def _fold_between(curve: BoundaryCurveProblem, a: BoundaryPoint, b: BoundaryPoint, axis: int) -> Fold | None:
+def _fold_between(
+    problem: BoundaryCurveProblem, a: BoundaryPoint, b: BoundaryPoint, axis: int
+) -> Fold | None:
     """The fold between the points a and b, where the tangent is normal to `axis`; None if not found."""
-    boundary = curve.boundary
-    rounding = _tangent_error(curve.boundary)
+    boundary = problem.boundary
+    tangent_error = _tangent_error(problem.boundary)
     chord = b.v - a.v
     solutions = dict[float, BoundarySolution]()
     size = float(np.linalg.norm(chord))
 
     def component(length: float) -> float:
-        solutions[length] = solution = curve.boundary_point_near(a.v + length / size * chord, chord / size)
+        solutions[length] = solution = problem.boundary_point_near(a.v + length / size * chord, chord / size)
         return float(BoundaryPoint.oriented(solution, chord).tangent[axis])
 
-    ends = float(a.tangent[axis]), float(b.tangent[axis])
+    end_components = float(a.tangent[axis]), float(b.tangent[axis])
     try:
         length = zero_along_step(
             component,
-            ends,
+            end_components,
             size,
             BOUNDARY_CURVE_SETTINGS.fold_accuracy,
             BOUNDARY_CURVE_SETTINGS.fold_accuracy,
         )
-        # Along the chord the component changes by the difference of `ends`: its error moves the fold.
-        curve_error = (abs(component(length)) + rounding) * size / abs(ends[1] - ends[0])
+        # Along the chord the tangent's component changes from end to end: its error moves the fold.
+        curve_error = (
+            (abs(component(length)) + tangent_error) * size / abs(end_components[1] - end_components[0])
+        )
     except Unsolvable:
         return None
     return _fold_at(boundary, solutions[length], axis, curve_error)
@@ -156,7 +166,8 @@ def _tangent_error(boundary: StabilityBoundary) -> float:
 
 
 def _fold_at(boundary: StabilityBoundary, solution: BoundarySolution, axis: int, curve_error: float) -> Fold:
-    """The fold of coordinate `axis` at a point of a boundary. curve_error: its error along the curve."""
+    """The fold of coordinate `axis` at a point of a boundary. curve_error: error of its position along the
+    curve."""
     axes = boundary.plane.axes
     first, second = (a.value(float(x)) for a, x in zip(axes, solution.v[:2], strict=True))
     units = [abs(a.parameter_per_coordinate(x)) for a, x in zip(axes, (first, second), strict=True)]

@@ -99,7 +99,8 @@ class BoundaryCurveProblem:
         return StepResult(point, 0.0, float(point.tangent @ tangent))
 
     def boundary_point_near(self, guess: Array, normal: Array) -> BoundarySolution:
-        """The point of the boundary near `guess`, in the plane normal to `normal`, (3,); or Unsolvable."""
+        """The point of the boundary near `guess`, in the plane normal to `normal`, (3,); raises Unsolvable if
+        no point is found."""
         solution = self.boundary.point_near(guess, normal)
         if solution is None:
             raise Unsolvable("no point of the boundary is near")
@@ -134,8 +135,8 @@ class BoundaryCurveProblem:
         direction, within the step from the last of `previous` to `point`."""
         first = previous[0]
         last = previous[-1]
-        step = float(np.linalg.norm(point.v - last.v))
-        is_near = float(np.linalg.norm(point.v - first.v)) < step
+        step_length = float(np.linalg.norm(point.v - last.v))
+        is_near = float(np.linalg.norm(point.v - first.v)) < step_length
         return (
             len(previous) >= BOUNDARY_CURVE_SETTINGS.min_loop_points
             and is_near

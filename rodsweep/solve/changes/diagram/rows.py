@@ -73,7 +73,8 @@ class DiagramRow:
 
 
 def solve_row(rod: Rod, request: RowRequest) -> DiagramRow:
-    """The row of rods like `rod` along the requested axis; a failure is a status, never raised."""
+    """The row of rods that differ from `rod` in the requested parameter; a failure is returned as a status,
+    never raised."""
 
     def failed(cause: str) -> DiagramRow:
         return _row_of_one_class(ThresholdStatus.failed, request.values, RodClass.undecided, cause)
@@ -94,32 +95,38 @@ def _search_row(rod: Rod, request: RowRequest) -> DiagramRow:
     values = request.values
     F = values if name == "F" else np.full(len(values), rod.F)
     k1 = values if name == "k1" else np.full(len(values), rod.k1)
-    fraction = rod.material.relative_crushing_force(rod.taper)
-    crushing = k1 * fraction
-    is_uncrushed = crushing * (1 - CRUSHING_END_SETTINGS.crushing_margin) > F
-    crushed = crushing * (1 - CRUSHING_END_SETTINGS.crushing_tolerance) <= F
-    nearly_crushed = ~is_uncrushed & ~crushed
+    relative_crushing_force = rod.material.relative_crushing_force(rod.taper)
+    crushing_force = k1 * relative_crushing_force
+    is_uncrushed = crushing_force * (1 - CRUSHING_END_SETTINGS.crushing_margin) > F
+    is_crushed = crushing_force * (1 - CRUSHING_END_SETTINGS.crushing_tolerance) <= F
+    is_nearly_crushed = ~is_uncrushed & ~is_crushed
     if not is_uncrushed.any():
         row = crushed_row(values)
-        return replace(row, rod_class=np.where(crushed, RodClass.crushed, RodClass.undecided).astype(np.int8))
+        return replace(
+            row, rod_class=np.where(is_crushed, RodClass.crushed, RodClass.undecided).astype(np.int8)
+        )
     start = float(values[is_uncrushed][0])
     stop = float(values[is_uncrushed][-1])
     # Thresholds may lie between the last value that is not crushed and the crushing force.
     if name == "F" and not is_uncrushed.all():
         stop = rod.crushing_force * (1 - CRUSHING_END_SETTINGS.crushing_margin)
     if name == "k1" and not is_uncrushed.all():
-        start = rod.F / (fraction * (1 - CRUSHING_END_SETTINGS.crushing_margin)) if rod.F > 0 else start
+        start = (
+            rod.F / (relative_crushing_force * (1 - CRUSHING_END_SETTINGS.crushing_margin))
+            if rod.F > 0
+            else start
+        )
     result = thresholds_of_solvable_part(
         rod, name, values[(values > start) & (values < stop)], (start, stop), request.certify
     )
     classes, unstable_counts = classes_and_unstable_counts(result, values)
     # Nearly crushed rods lie outside the searched range.
-    classes[crushed] = RodClass.crushed
-    unstable_counts[crushed] = -1
-    classes[nearly_crushed] = RodClass.undecided
-    unstable_counts[nearly_crushed] = -1
-    changes = thresholds_with_status(result, request.accuracy, request.certify, request.max_thresholds)
-    return DiagramRow(rod_class=classes, unstable_count=unstable_counts, thresholds=changes)
+    classes[is_crushed] = RodClass.crushed
+    unstable_counts[is_crushed] = -1
+    classes[is_nearly_crushed] = RodClass.undecided
+    unstable_counts[is_nearly_crushed] = -1
+    thresholds = thresholds_with_status(result, request.accuracy, request.certify, request.max_thresholds)
+    return DiagramRow(rod_class=classes, unstable_count=unstable_counts, thresholds=thresholds)
 
 
 def _row_of_one_class(
@@ -154,7 +161,7 @@ def classes_and_unstable_counts(
     low, high = result.open_range
     if not math.isnan(low):
         is_undecided |= (values >= low) & (values <= high)
-        # Crossings in the open range change the number unseen; the count at the end applies behind the range.
+        # Crossings in the open range are unknown; behind this range the count at the end applies.
         unstable_counts[values > max([high, *(c.value for c in result.thresholds)])] = result.unstable_at_end
     classes = np.where(oscillates, RodClass.oscillatory, RodClass.monotone).astype(np.int8)
     classes[unstable_counts > 0] = RodClass.flutter

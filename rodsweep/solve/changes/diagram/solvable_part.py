@@ -15,10 +15,10 @@ from ..thresholds_along_path import ThresholdSearchResult, find_thresholds
 
 
 class Attempt(NamedTuple):
-    """Search of a row from one value on. found: result; None if nothing could be searched. failure: why the
-    search does not go beyond the pulls; empty if it does."""
+    """Search of a row that starts at one of its values. result: None if nothing could be searched. failure:
+    why nothing could be searched, or why a search along F ended early at a pull, F < 0; empty otherwise."""
 
-    found: ThresholdSearchResult | None
+    result: ThresholdSearchResult | None
     failure: str = ""
 
 
@@ -28,23 +28,24 @@ def thresholds_of_solvable_part(
     """Thresholds along a row between the values `row_ends` of the parameter `name`.
 
     If a row along F cannot be searched from its first pull on, the search begins at the first value of the
-    row from which it can, or at F = 0. inner_values: increasing values of the row between its ends, (n,).
-    certify: whether a proof is requested. Raises Unsolvable if the row cannot be searched from F = 0 on
-    either.
+    row from which a search is possible, or at F = 0. inner_values: increasing values of the row between its
+    ends, (n,). certify: whether a proof is requested. Raises Unsolvable if the row cannot be searched from F
+    = 0 on either.
     """
     start, stop = row_ends
     first_attempt = _attempt(rod, name, row_ends, certify)
-    if not first_attempt.failure and first_attempt.found is not None:
-        return first_attempt.found
+    if not first_attempt.failure and first_attempt.result is not None:
+        return first_attempt.result
     later_starts: list[float] = []
     if name == "F":
         later_starts = [*inner_values[inner_values < 0].tolist(), *([0.0] if start < 0 < stop else [])]
     last_attempt = _attempt(rod, name, (later_starts[-1], stop), certify) if later_starts else first_attempt
-    if last_attempt.found is None:
+    if last_attempt.result is None:
         raise Unsolvable(last_attempt.failure)
     if not later_starts:
-        return last_attempt.found
-    # Bisection for the first value from which the row can be searched; a search from starts[high] succeeds.
+        return last_attempt.result
+    # Bisection for the first value from which the row can be searched; a search from starts[solved_index]
+    # succeeds.
     starts = [start, *later_starts]
     failure = first_attempt.failure
     failed_index = 0
@@ -58,7 +59,7 @@ def thresholds_of_solvable_part(
         else:
             solved_index = middle_index
             last_attempt = attempt
-    result = last_attempt.found or first_attempt.found
+    result = last_attempt.result or first_attempt.result
     assert result is not None
     message = (
         f"the search begins at F = {starts[solved_index]:.12g}: from F = {starts[failed_index]:.12g} on, "
@@ -68,7 +69,8 @@ def thresholds_of_solvable_part(
 
 
 def _attempt(rod: Rod, name: str, row_ends: tuple[float, float], certify: bool) -> Attempt:
-    """Search along a row between `row_ends`; a row along F must be searched beyond its pulls."""
+    """Search along a row between `row_ends`; a search along F that ends early at a pull, F < 0, is a
+    failure."""
     try:
         result = find_thresholds(
             ParameterPath(rod.with_values(**{name: row_ends[0]}), name), *row_ends, certify

@@ -32,14 +32,15 @@ CHECKPOINT_FIELDS = dict(
     tails="tails_and_size",
     indicators="indicators",
 )
-"""Field of `Calibration` by the name of its array in a checkpoint."""
+"""Fields of `Calibration` by the names of their arrays in a checkpoint."""
 
 
 @dataclass(frozen=True, eq=False)
 class Calibration:
     """Measured errors of a mesh at an orbit, with convergence rates. space_errors, time_errors: errors due to
     the elements and to the time intervals, (5,): relative errors of the period, of the largest y, of the
-    worst extremum and of the tip's path, and the absolute error of the largest nontrivial multiplier."""
+    extremum with the largest error and of the tip's path, and the absolute error of the largest nontrivial
+    multiplier."""
 
     mesh: OrbitMesh
     space_errors: Array
@@ -64,8 +65,8 @@ class Calibration:
     def arrays(self) -> dict[str, Array]:
         """All fields except the growth factors as named arrays, for a checkpoint."""
         errors = {name: getattr(self, field) for name, field in CHECKPOINT_FIELDS.items()}
-        numbers = {"reach": np.array(self.parameter_change), "calibrated_mesh": self.mesh.as_array}
-        return errors | numbers
+        scalars = {"reach": np.array(self.parameter_change), "calibrated_mesh": self.mesh.as_array}
+        return errors | scalars
 
     @classmethod
     def from_arrays(cls, arrays: dict[str, Array]) -> "Calibration":
@@ -116,8 +117,9 @@ class Calibration:
         return self.parameter_change + change <= CALIBRATION_SETTINGS.max_parameter_change
 
     def min_remeasured_errors(self, orbit: Orbit) -> tuple[Array, Array]:
-        """Returns (errors in space, errors in time), (5,): lower limits of errors measured again at `orbit`
-        on this mesh: fractions of the current errors that decrease with the coefficient tails."""
+        """Returns (errors in space, errors in time), (5,) each: lower limits of errors that are measured
+        again at `orbit` on this mesh. These limits are fractions of the current errors, reduced as the
+        coefficient tails have decreased."""
         shrinkage = np.minimum(squared_tail_growth(self.tails_and_size, tails_and_size(orbit)), 1.0)
         space_ratio, time_ratio = CALIBRATION_SETTINGS.min_remeasured_ratio * shrinkage
         return space_ratio * self.space_errors, time_ratio * self.time_errors
@@ -164,11 +166,11 @@ def calibration_of(
     return Calibration(mesh, space, time, space_decay, time_order, tails, 0.0)
 
 
-def _measured_space_decay(first_errors: Array, second_errors: Array, orders: int) -> Array:
+def _measured_space_decay(first_errors: Array, second_errors: Array, order_increase: int) -> Array:
     """Decrease of ln(error) in space if the order of the elements increases by 1, (5,). first_errors,
-    second_errors: errors on two meshes, (5,) each. orders: increase of the order from the first mesh to the
-    second."""
-    return _limited_space_decay(_log_ratio(first_errors, second_errors) / orders)
+    second_errors: errors on two meshes, (5,) each. order_increase: increase of the order from the first mesh
+    to the second."""
+    return _limited_space_decay(_log_ratio(first_errors, second_errors) / order_increase)
 
 
 def _limited_space_decay(decay: Array) -> Array:
@@ -185,14 +187,15 @@ def _measured_time_order(
     each, on the meshes `previous` and `mesh` with different numbers of time intervals."""
     # Radau IIA has the order 2 stages - 1, which stiff problems may reduce to stages + 1.
     min_order = mesh.stage_count + 1
-    steps = np.log(mesh.full_intervals / previous.full_intervals)
+    log_interval_ratio = np.log(mesh.full_intervals / previous.full_intervals)
     max_order = CALIBRATION_SETTINGS.max_time_order_ratio * min_order
-    order: Array = np.clip(_log_ratio(first_errors, second_errors) / steps, min_order, max_order)
+    order: Array = np.clip(_log_ratio(first_errors, second_errors) / log_interval_ratio, min_order, max_order)
     return order
 
 
 def _log_ratio(first_errors: Array, second_errors: Array) -> Array:
-    """Natural logarithm of before/after, for errors of a common shape; 0 is replaced by a tiny number."""
+    """Natural logarithm of first_errors/second_errors, arrays of a common shape; 0 is replaced by a tiny
+    number."""
     min_error = EXPONENT_SETTINGS.min_divisor
-    quotient: Array = np.log(np.maximum(first_errors, min_error) / np.maximum(second_errors, min_error))
-    return quotient
+    log_ratio: Array = np.log(np.maximum(first_errors, min_error) / np.maximum(second_errors, min_error))
+    return log_ratio

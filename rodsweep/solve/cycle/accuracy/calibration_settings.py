@@ -12,7 +12,8 @@ class CalibrationSettings:
     """Safety factor on measured errors of period, extrema and multiplier."""
     min_largest_y_error_ratio: float = 0.16
     """Lower limit of the error estimate of the largest y, divided by the distance between the tip's paths on
-    two meshes with different elements: one number may agree on two meshes by coincidence, a path does not."""
+    two meshes with different elements: a single number may agree on two meshes by coincidence, a path does
+    not."""
     min_period_error_ratio: float = 0.16
     """Lower limit of the error estimate of the period, divided by the distance between the tip's paths on two
     meshes with different elements."""

@@ -19,32 +19,38 @@ def cheapest_mesh(calibration: Calibration, accuracy: float) -> OrbitMesh:
     predict errors within a fraction of the relative accuracy; the next finer mesh if no such mesh is allowed.
     """
     calibrated = calibration.mesh
-    allowed = ORBIT_MESH_SETTINGS
-    min_order = max(allowed.min_order, calibrated.order - CALIBRATION_SETTINGS.max_order_decrease)
+    limits = ORBIT_MESH_SETTINGS
+    min_order = max(limits.min_order, calibrated.order - CALIBRATION_SETTINGS.max_order_decrease)
     max_order = min(RESOLUTION_SETTINGS.max_order, calibrated.order + CALIBRATION_SETTINGS.max_order_increase)
     orders = np.arange(min_order, max_order + 1)
-    fewest = max(
-        allowed.min_intervals, ceil(CALIBRATION_SETTINGS.min_interval_ratio * calibrated.interval_count)
+    min_intervals = max(
+        limits.min_intervals, ceil(CALIBRATION_SETTINGS.min_interval_ratio * calibrated.interval_count)
     )
     max_intervals = min(
-        CALIBRATION_SETTINGS.max_interval_ratio * calibrated.interval_count, allowed.max_intervals
+        CALIBRATION_SETTINGS.max_interval_ratio * calibrated.interval_count, limits.max_intervals
     )
-    intervals = np.arange(fewest, max_intervals + 1)
+    interval_counts = np.arange(min_intervals, max_intervals + 1)
     # Rates are measured up to the current mesh. On finer meshes errors in space may decrease no faster
     # than the distance of the tip's paths, and errors in time with the smallest order.
     min_decay = np.minimum(calibration.space_decay, calibration.space_decay[PATH_INDEX])
     decay = np.where(orders < calibrated.order, calibration.space_decay[:, None], min_decay[:, None])
-    space = calibration.space_errors[:, None] * np.exp(decay * (calibrated.order - orders))
+    space_errors = calibration.space_errors[:, None] * np.exp(decay * (calibrated.order - orders))
     time_order = np.where(
-        intervals < calibrated.interval_count, calibration.time_order[:, None], calibrated.stage_count + 1
+        interval_counts < calibrated.interval_count,
+        calibration.time_order[:, None],
+        calibrated.stage_count + 1,
     )
-    time = calibration.time_errors[:, None] * (calibrated.full_intervals / (intervals - 1)) ** time_order
-    errors = errors_with_safety_factors(space[:, :, None], time[:, None, :], accuracy)
+    time_errors = (
+        calibration.time_errors[:, None] * (calibrated.full_intervals / (interval_counts - 1)) ** time_order
+    )
+    errors = errors_with_safety_factors(space_errors[:, :, None], time_errors[:, None, :], accuracy)
     period_error, y_error = errors[:2] / CALIBRATION_SETTINGS.planned_error_ratio
     extrema_error = errors[2] / CALIBRATION_SETTINGS.planned_extrema_error_ratio
     is_accurate = largest_weighted_error(period_error, y_error, extrema_error) <= accuracy
     meshes = [
-        replace(calibrated, order=int(orders[i]), interval_count=int(intervals[np.argmax(is_accurate[i])]))
+        replace(
+            calibrated, order=int(orders[i]), interval_count=int(interval_counts[np.argmax(is_accurate[i])])
+        )
         for i in np.flatnonzero(is_accurate.any(axis=1))
     ]
     return min(meshes, key=lambda mesh: mesh.cost, default=calibrated.finer)

@@ -61,20 +61,21 @@ COARSER_MESH_SETTINGS = CoarserMeshSettings()
 
 
 class CoarserMeshes:
-    """The cycle on a coarse mesh, on meshes finer only in space and on meshes finer only in time, from which
-    the cycle on a fine mesh is predicted."""
+    """Solutions of a cycle on a coarse mesh, on meshes finer in space only and on meshes finer in time only,
+    from which the cycle on a fine mesh is predicted."""
 
     def __init__(self, mesh: OrbitMesh, start: Orbit, accuracy: float, workspace: NewtonWorkspace) -> None:
         """Solves the cycle on the coarse mesh; raises Unsolvable. mesh: the fine mesh. start: an orbit near
         the cycle, on any mesh. accuracy: requested relative accuracy."""
-        fewer = _order_difference(start)
+        order_difference = _order_difference(start)
         order = max(
-            mesh.order - fewer, ORBIT_MESH_SETTINGS.min_order - COARSER_MESH_SETTINGS.min_order_difference
+            mesh.order - order_difference,
+            ORBIT_MESH_SETTINGS.min_order - COARSER_MESH_SETTINGS.min_order_difference,
         )
-        self._max_predicted_order = order + fewer + COARSER_MESH_SETTINGS.max_order_excess
-        intervals = round(mesh.full_intervals / (1 + COARSER_MESH_SETTINGS.added_interval_fraction)) + 1
+        self._max_predicted_order = order + order_difference + COARSER_MESH_SETTINGS.max_order_excess
+        interval_count = round(mesh.full_intervals / (1 + COARSER_MESH_SETTINGS.added_interval_fraction)) + 1
         self._fine_mesh = mesh
-        self.coarse_mesh = replace(mesh.with_order(order), interval_count=intervals)
+        self.coarse_mesh = replace(mesh.with_order(order), interval_count=interval_count)
         self._min_error = COARSER_MESH_SETTINGS.min_predicted_error_ratio * accuracy
         self._tolerance = FINER_MESH_SETTINGS.newton_tolerance_ratio * accuracy
         self._workspace = workspace
@@ -97,24 +98,26 @@ class CoarserMeshes:
     def predicted_orbit_and_errors(self, mesh: OrbitMesh) -> tuple[Orbit, Calibration]:
         """Returns (orbit, calibration): predicted orbit on the fine mesh `mesh`, and calibration of this mesh
         with predicted errors; raises Unsolvable."""
-        space = self._cycle_on_mesh(replace(mesh, interval_count=self.coarse_mesh.interval_count))
-        time = self._cycle_on_mesh(replace(self.coarse_mesh, interval_count=mesh.interval_count))
-        fine_in_space = mesh.interpolated_orbit(space.orbit)
-        fine_in_time = mesh.interpolated_orbit(time.orbit)
+        space_cycle = self._cycle_on_mesh(replace(mesh, interval_count=self.coarse_mesh.interval_count))
+        time_cycle = self._cycle_on_mesh(replace(self.coarse_mesh, interval_count=mesh.interval_count))
+        fine_in_space = mesh.interpolated_orbit(space_cycle.orbit)
+        fine_in_time = mesh.interpolated_orbit(time_cycle.orbit)
         coarse_orbit = mesh.interpolated_orbit(self._coarse_cycle.orbit)
         orbit = replace(
             fine_in_space, values=fine_in_space.values + fine_in_time.values - coarse_orbit.values
         )
-        order_factor = np.exp(_pessimistic_space_decay(space.orbit) * (mesh.order - self.coarse_mesh.order))
+        space_factor = np.exp(
+            _pessimistic_space_decay(space_cycle.orbit) * (mesh.order - self.coarse_mesh.order)
+        )
         # Between the time nodes the order is smaller: near the largest theta, local errors of fast modes
         # remain.
-        orders = mesh.stage_count + np.array([1.0, 1.0, -1.0, -1.0])
-        interval_factors = self._interval_ratio(mesh) ** orders
+        time_orders = mesh.stage_count + np.array([1.0, 1.0, -1.0, -1.0])
+        time_factors = self._interval_ratio(mesh) ** time_orders
         # The error of the multipliers may decrease more slowly than the errors of the paths. The difference
         # between the multipliers on the two finer meshes bounds this error.
-        multiplier_error = largest_multiplier_difference(space.multipliers, time.multipliers)
-        space_errors = np.append(self._errors_of_finer_mesh(space, order_factor), 0.0)
-        time_errors = np.append(self._errors_of_finer_mesh(time, interval_factors), multiplier_error)
+        multiplier_error = largest_multiplier_difference(space_cycle.multipliers, time_cycle.multipliers)
+        space_errors = np.append(self._errors_of_finer_mesh(space_cycle, space_factor), 0.0)
+        time_errors = np.append(self._errors_of_finer_mesh(time_cycle, time_factors), multiplier_error)
         return orbit, calibration_of(mesh, space_errors, time_errors, orbit, None)
 
     def _cycle_on_mesh(self, mesh: OrbitMesh) -> ComparedCycle:
@@ -125,13 +128,14 @@ class CoarserMeshes:
     def _solve_on_mesh(self, mesh: OrbitMesh, start: Orbit) -> ComparedCycle:
         return ComparedCycle(newton(mesh.interpolated_orbit(start), self._tolerance, self._workspace))
 
-    def _errors_of_finer_mesh(self, finer: ComparedCycle, factor: Array | float) -> Array:
+    def _errors_of_finer_mesh(self, finer_cycle: ComparedCycle, error_ratio: Array | float) -> Array:
         """Errors of a finer mesh, (4,), in the order of `path_differences`, from the difference between the
         cycles on this mesh and on the coarse mesh.
 
-        factor: errors of the coarse mesh divided by the errors of the finer mesh, for all errors or (4,).
+        error_ratio: errors of the coarse mesh divided by the errors of the finer mesh, for all errors or
+        (4,).
         """
-        errors: Array = path_differences(self._coarse_cycle.path, finer.path) / (factor - 1)
+        errors: Array = path_differences(self._coarse_cycle.motion, finer_cycle.motion) / (error_ratio - 1)
         doubly_accurate = [PERIOD_INDEX, Y_INDEX]
         errors[doubly_accurate] = np.maximum(errors[doubly_accurate], self._min_error)
         return errors
@@ -150,8 +154,8 @@ def _pessimistic_space_decay(orbit: Orbit) -> float:
 def _order_difference(orbit: Orbit) -> int:
     """Difference between the orders of a fine mesh and its coarse mesh, for a cycle near the orbit
     `orbit`."""
-    order_count = ceil(COARSER_MESH_SETTINGS.min_log_error_decrease / _pessimistic_space_decay(orbit))
+    difference = ceil(COARSER_MESH_SETTINGS.min_log_error_decrease / _pessimistic_space_decay(orbit))
     return min(
-        max(order_count, COARSER_MESH_SETTINGS.min_order_difference),
+        max(difference, COARSER_MESH_SETTINGS.min_order_difference),
         COARSER_MESH_SETTINGS.max_order_difference,
     )

@@ -73,18 +73,21 @@ def largest_weighted_error(period: Array | float, amplitude: Array | float, extr
     return largest
 
 
-def errors_with_safety_factors(space: Array, time: Array, accuracy: float) -> Array:
-    """The four errors of `CycleErrors`, (4, ...), from errors in space and in time, (5, ...) each:
-    those of `path_differences`, then of the multiplier. Safety factors and lower limits are applied.
-    accuracy: requested relative accuracy, for a lower limit."""
-    scaled_errors = CALIBRATION_SETTINGS.safety_factor * (space + time)
-    path_error = space[PATH_INDEX] + time[PATH_INDEX]
-    time_path_error = CALIBRATION_SETTINGS.time_path_error_factor * time[PATH_INDEX]
-    parts = [np.maximum(part[PERIOD_INDEX], part[Y_INDEX]) for part in (space, time)]
-    min_errors = CALIBRATION_SETTINGS.min_ratio_to_larger_error * (parts[0] + parts[1])
-    min_period_error = CALIBRATION_SETTINGS.min_period_error_ratio * space[PATH_INDEX] + time_path_error
+def errors_with_safety_factors(space_errors: Array, time_errors: Array, accuracy: float) -> Array:
+    """The four errors of `CycleErrors`, (4, ...), from the errors `space_errors` due to the elements and
+    `time_errors` due to the time intervals, (5, ...) each: the four errors of `path_differences`, then the
+    error of the multiplier. Safety factors and lower limits are applied. accuracy: requested relative
+    accuracy, for a lower limit."""
+    scaled_errors = CALIBRATION_SETTINGS.safety_factor * (space_errors + time_errors)
+    path_error = space_errors[PATH_INDEX] + time_errors[PATH_INDEX]
+    time_path_error = CALIBRATION_SETTINGS.time_path_error_factor * time_errors[PATH_INDEX]
+    larger_errors = [np.maximum(part[PERIOD_INDEX], part[Y_INDEX]) for part in (space_errors, time_errors)]
+    min_errors = CALIBRATION_SETTINGS.min_ratio_to_larger_error * (larger_errors[0] + larger_errors[1])
+    min_period_error = (
+        CALIBRATION_SETTINGS.min_period_error_ratio * space_errors[PATH_INDEX] + time_path_error
+    )
     min_height_error = np.maximum(
-        CALIBRATION_SETTINGS.min_largest_y_error_ratio * space[PATH_INDEX] + time_path_error,
+        CALIBRATION_SETTINGS.min_largest_y_error_ratio * space_errors[PATH_INDEX] + time_path_error,
         CYCLE_ERROR_SETTINGS.min_largest_y_error_over_accuracy * accuracy,
     )
     stated_errors = [
@@ -102,20 +105,22 @@ UNKNOWN_ERRORS = CycleErrors(nan, nan, nan, nan)
 
 
 def errors_of_two_integrations(first: CycleMotion, second: CycleMotion, distance: float) -> CycleErrors:
-    """Error estimates from the differences between the cycles `first` and `second` of two time integrations,
+    """Error estimates from the differences between the motions `first` and `second` of two time integrations,
     relative to the largest y and the period of `second`; NaN for the multiplier. distance: relative distance
-    of the settled motions from the cycle, which is added to the error estimates."""
-    a = first.extrema
-    b = second.extrema
-    size = abs(b["tip_y_max"])
-    period = abs(first.orbit.period / second.orbit.period - 1)
-    height = abs(a["tip_y_max"] - b["tip_y_max"]) / size
-    max_extremum_difference = max(abs(a[name] - b[name]) for name in a) / size
+    of the settled motions from the cycle, which is added to the errors."""
+    first_extrema = first.extrema
+    second_extrema = second.extrema
+    largest_y = abs(second_extrema["tip_y_max"])
+    period_difference = abs(first.orbit.period / second.orbit.period - 1)
+    y_difference = abs(first_extrema["tip_y_max"] - second_extrema["tip_y_max"]) / largest_y
+    max_extremum_difference = (
+        max(abs(first_extrema[name] - second_extrema[name]) for name in first_extrema) / largest_y
+    )
     # Errors of extrema are divided by the largest y; theta may be several times as large as y.
-    remaining_error = distance * max(1.0, abs(b["tip_theta_max"]) / size)
+    remaining_error = distance * max(1.0, abs(second_extrema["tip_theta_max"]) / largest_y)
     return CycleErrors(
-        float(INTEGRATION_SETTINGS.difference_safety_factor * period + distance),
-        float(INTEGRATION_SETTINGS.difference_safety_factor * height + distance),
+        float(INTEGRATION_SETTINGS.difference_safety_factor * period_difference + distance),
+        float(INTEGRATION_SETTINGS.difference_safety_factor * y_difference + distance),
         float(INTEGRATION_SETTINGS.difference_safety_factor * max_extremum_difference + remaining_error),
         nan,
     )

@@ -25,10 +25,10 @@ LAST_HARMONIC_COUNT = 3
 and theta; only the slopes determine the very last harmonic."""
 
 
-def error_indicators(solved: ConvergedOrbit, path: CycleMotion) -> Array:
+def error_indicators(solved: ConvergedOrbit, motion: CycleMotion) -> Array:
     """Indicators, (3,), of the errors due to the time intervals: w/(2 E), the estimated relative error of the
     amplitude, and the 2-norm of the last harmonics of the tip's path, divided by the largest y; not below
-    `CYCLE_ERROR_SETTINGS.rounding_error`. path: path of the orbit `solved`.
+    `CYCLE_ERROR_SETTINGS.rounding_error`. motion: motion of the orbit `solved`.
 
     w: energy lost by the collocation in the solved part of the period. E: energy of the motion. E is
     proportional to the squared amplitude, so the loss w changes the amplitude by the fraction w/(2 E). A
@@ -37,23 +37,23 @@ def error_indicators(solved: ConvergedOrbit, path: CycleMotion) -> Array:
     Near a fold or a Hopf point, where h = 1, this error is large.
     """
     orbit = solved.orbit
-    mean = orbit.means
-    loss = abs(mean.injection_mean - mean.dissipation_mean) * orbit.solved_duration
+    means = orbit.means
+    lost_energy = abs(means.injection_mean - means.dissipation_mean) * orbit.solved_duration
     # The squared energy norm is twice the elastic energy.
     twice_energy = float((orbit.form.energy_norm(orbit.equidistant_states) ** 2).mean())
-    relative_loss = loss / twice_energy
+    relative_loss = lost_energy / twice_energy
     amplitude_error = relative_loss / _decay_in_one_part(solved.matrix.multipliers_over_solved_part)
-    harmonics = float(np.linalg.norm(path.last_tip_coefficients[-LAST_HARMONIC_COUNT:]))
-    indicators = np.array([relative_loss, amplitude_error, harmonics / abs(path.extrema["tip_y_max"])])
+    last_harmonics = float(np.linalg.norm(motion.last_tip_coefficients[-LAST_HARMONIC_COUNT:]))
+    indicators = np.array([relative_loss, amplitude_error, last_harmonics / abs(motion.extrema["tip_y_max"])])
     return np.maximum(indicators, CYCLE_ERROR_SETTINGS.rounding_error)
 
 
 def _decay_in_one_part(multipliers: Complex) -> float:
     """Smallest |ln h| of the nontrivial multipliers h; 1 without a nontrivial multiplier. multipliers:
-    multipliers over the solved part of the period, with the trivial multiplier, (rank,)."""
+    multipliers over the solved part of the period, with the trivial multiplier, (m,)."""
     exponents = np.sort(np.abs(np.log(multipliers[multipliers != 0])))[
         1:
-    ]  # the exponent of the trivial one is 0
+    ]  # the exponent of the trivial multiplier is 0
     return float(exponents[0]) if len(exponents) else 1.0
 
 
@@ -79,10 +79,10 @@ def error_growth_factors(earlier_tails: Array, later_tails: Array) -> Array:
 
 
 def squared_tail_growth(earlier_tails: Array, later_tails: Array) -> Array:
-    """Growth factors of the squared absolute tails in space and in time between two orbits, (2,). before,
-    later_tails: relative tails and size, (3,) each."""
-    change: Array = ((later_tails * later_tails[2] / (earlier_tails * earlier_tails[2])) ** 2)[:2]
-    return change
+    """Growth factors of the squared absolute tails in space and in time between two orbits, (2,).
+    earlier_tails, later_tails: relative tails and size, (3,) each."""
+    growth: Array = ((later_tails * later_tails[2] / (earlier_tails * earlier_tails[2])) ** 2)[:2]
+    return growth
 
 
 def indicator_growth(earlier_indicators: Array, later_indicators: Array) -> tuple[float, float]:

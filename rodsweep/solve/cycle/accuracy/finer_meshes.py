@@ -50,11 +50,11 @@ def finer_meshes(mesh: OrbitMesh) -> tuple[tuple[OrbitMesh, OrbitMesh], float]:
     the error in time that the mesh finer in time removes."""
     interval_count = ceil((1 + FINER_MESH_SETTINGS.added_interval_fraction) * mesh.interval_count)
     # Errors in time fall with this power of the full intervals; the last two intervals have half the length.
-    fraction = 1 - (mesh.full_intervals / (interval_count - 1)) ** (mesh.stage_count + 1)
+    removed_fraction = 1 - (mesh.full_intervals / (interval_count - 1)) ** (mesh.stage_count + 1)
     return (
         mesh.with_order(mesh.order + FINER_MESH_SETTINGS.order_increase),
         replace(mesh, interval_count=interval_count),
-    ), fraction
+    ), removed_fraction
 
 
 def measured_calibration(
@@ -68,29 +68,33 @@ def measured_calibration(
     estimated from the coefficients of the orbit and the number of stages.
     """
     mesh = mesh_of(solved.orbit)
-    measured = ComparedCycle(solved)
-    finer, fraction = finer_meshes(mesh)
+    cycle = ComparedCycle(solved)
+    meshes, removed_fraction = finer_meshes(mesh)
     tolerance = FINER_MESH_SETTINGS.newton_tolerance_ratio * accuracy
     finer_orbits = (
-        newton(target.interpolated_orbit(solved.orbit), tolerance, solved.workspace) for target in finer
+        newton(target.interpolated_orbit(solved.orbit), tolerance, solved.workspace) for target in meshes
     )
-    space, time = (measured.differences_from(ComparedCycle(finer_orbit)) for finer_orbit in finer_orbits)
-    time = time / fraction
+    space_errors, time_errors = (
+        cycle.differences_from(ComparedCycle(finer_orbit)) for finer_orbit in finer_orbits
+    )
+    time_errors = time_errors / removed_fraction
     if previous is not None and previous.mesh == mesh:
         # A second measurement on the same mesh may be small only because an error changes its sign nearby.
-        space, time = map(np.maximum, (space, time), previous.min_remeasured_errors(solved.orbit))
-    calibration = calibration_of(mesh, space, time, solved.orbit, previous)
-    return with_indicators(calibration, error_indicators(solved, measured.path))
+        space_errors, time_errors = map(
+            np.maximum, (space_errors, time_errors), previous.min_remeasured_errors(solved.orbit)
+        )
+    calibration = calibration_of(mesh, space_errors, time_errors, solved.orbit, previous)
+    return with_indicators(calibration, error_indicators(solved, cycle.motion))
 
 
 def with_indicators(calibration: Calibration, indicators: Array) -> Calibration:
-    """The calibration of a mesh at an orbit with the `error_indicators` of this orbit, (3,), the error of the
-    amplitude among them as a lower limit of the error of the largest y in time: this error may be small only
-    because it changes its sign near the cycle."""
-    time = calibration.time_errors.copy()
-    energy_error = indicators[AMPLITUDE_ERROR_INDEX] / CALIBRATION_SETTINGS.safety_factor
-    time[Y_INDEX] = max(time[Y_INDEX], energy_error)
-    return replace(calibration, time_errors=time, indicators=indicators)
+    """The calibration of a mesh at an orbit with the `error_indicators` of this orbit, (3,). The estimated
+    error of the amplitude, one of the indicators, is a lower limit of the error of the largest y in time,
+    which may be small only because it changes its sign near the cycle."""
+    time_errors = calibration.time_errors.copy()
+    amplitude_error = indicators[AMPLITUDE_ERROR_INDEX] / CALIBRATION_SETTINGS.safety_factor
+    time_errors[Y_INDEX] = max(time_errors[Y_INDEX], amplitude_error)
+    return replace(calibration, time_errors=time_errors, indicators=indicators)
 
 
 class ComparedCycle:
@@ -99,11 +103,11 @@ class ComparedCycle:
     def __init__(self, solved: ConvergedOrbit) -> None:
         self._converged_orbit = solved
         self.orbit = solved.orbit
-        self.path = CycleMotion(solved.orbit)
+        self.motion = CycleMotion(solved.orbit)
 
     @cached_property
     def multipliers(self) -> Complex:
-        """Nontrivial multipliers of the cycle, (rank - 1,), by descending modulus."""
+        """Nontrivial multipliers of the cycle, (multipliers,), by descending modulus."""
         return multipliers_and_trivial_error(
             with_matrix_within_distance(self._converged_orbit, FINER_MESH_SETTINGS.max_matrix_distance)
         )[0]
@@ -113,4 +117,4 @@ class ComparedCycle:
         differences of `path_differences`, and `largest_multiplier_difference` of the nontrivial
         multipliers."""
         change = largest_multiplier_difference(self.multipliers, fine.multipliers)
-        return np.append(path_differences(self.path, fine.path), change)
+        return np.append(path_differences(self.motion, fine.motion), change)

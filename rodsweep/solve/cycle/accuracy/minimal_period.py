@@ -36,19 +36,18 @@ class MinimalPeriodSettings:
 MINIMAL_PERIOD_SETTINGS = MinimalPeriodSettings()
 
 
-def common_harmonic_divisor(path: CycleMotion, min_ratio: float) -> int:
+def common_harmonic_divisor(motion: CycleMotion, min_ratio: float) -> int:
     """Greatest common divisor of the numbers of all harmonics of the bending strain larger than `min_ratio`
     times the largest harmonic; 0 if all harmonics are 0. If the tip's angle alone gives 1, the harmonics of
     the strain are not computed: a motion whose tip does not repeat within the period does not repeat."""
-    if _divisor_from_harmonic_sizes(path.tip_angle_harmonics, min_ratio) == 1:
+    if _divisor_from_harmonic_sizes(motion.tip_angle_harmonics, min_ratio) == 1:
         return 1
-    return int(_divisor_from_harmonic_sizes(path.bending_harmonics, min_ratio))
+    return int(_divisor_from_harmonic_sizes(motion.bending_harmonics, min_ratio))
 
 
 @compiled
 def _divisor_from_harmonic_sizes(sizes: Array, min_ratio: float) -> int:
-    """`common_harmonic_divisor` for sizes of the harmonics 1, 2, ..., (harmonics,), and the same limit
-    `min_ratio`."""
+    """Compiled `common_harmonic_divisor`. sizes: sizes of the harmonics 1, 2, ..., (harmonics,)."""
     divisor = 0
     min_size = min_ratio * sizes.max()
     for k in range(len(sizes)):
@@ -58,28 +57,28 @@ def _divisor_from_harmonic_sizes(sizes: Array, min_ratio: float) -> int:
     return divisor
 
 
-def possible_period_divisor(path: CycleMotion, error: float) -> int:
-    """Number g such that the minimal period may be 1/g of the period of `path`; g = 1 proves the period
-    minimal, and g = 0 means that all harmonics are 0.
+def possible_period_divisor(motion: CycleMotion, extrema_error: float) -> int:
+    """Number g such that the minimal period may be 1/g of the period of the motion `motion`; g = 1 proves the
+    period minimal, and g = 0 means that all harmonics are 0.
 
-    error: relative error of the extrema.
+    extrema_error: relative error of the extrema.
     """
     return common_harmonic_divisor(
-        path,
+        motion,
         max(
-            MINIMAL_PERIOD_SETTINGS.certain_harmonic_in_errors * error,
+            MINIMAL_PERIOD_SETTINGS.certain_harmonic_in_errors * extrema_error,
             MINIMAL_PERIOD_SETTINGS.min_certain_harmonic_ratio,
         ),
     )
 
 
 def restricted_to_minimal_period(orbit: Orbit) -> Orbit:
-    """The orbit over the minimal period that its large harmonics show, as a start for Newton's method; the
-    orbit itself if its period is minimal."""
-    g = common_harmonic_divisor(CycleMotion(orbit), MINIMAL_PERIOD_SETTINGS.min_harmonic_ratio)
-    if g == 1:
+    """The part of `orbit` over the minimal period that its large harmonics show, as a start for Newton's
+    method; `orbit` itself if its period is minimal."""
+    divisor = common_harmonic_divisor(CycleMotion(orbit), MINIMAL_PERIOD_SETTINGS.min_harmonic_ratio)
+    if divisor == 1:
         return orbit
     times = node_times(orbit.interval_count, orbit.stage_count)
     # A symmetric orbit bends in odd harmonics only, so its divisor is odd and the shorter orbit is symmetric.
-    values = np.append(orbit.states_at(times / g), orbit.period / g)
+    values = np.append(orbit.states_at(times / divisor), orbit.period / divisor)
     return replace(orbit, values=values, grading=UNIFORM_TIME)

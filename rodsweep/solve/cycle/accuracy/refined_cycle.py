@@ -18,14 +18,14 @@ from .minimal_period import possible_period_divisor
 class RefinedCycle:
     """A solved cycle with its measures, Floquet multipliers and errors.
 
-    converged_orbit: orbit and matrix. calibration: source of the errors. path: motion of the orbit over its
-    period. multipliers: nontrivial multipliers, (rank - 1,), by descending modulus. trivial_multiplier_error:
-    distance of the computed trivial multiplier from 1.
+    converged_orbit: orbit and matrix. calibration: source of the errors. motion: motion of the orbit over its
+    period. multipliers: nontrivial multipliers, (multipliers,), by descending modulus.
+    trivial_multiplier_error: distance of the computed trivial multiplier from 1.
     """
 
     converged_orbit: ConvergedOrbit
     calibration: Calibration
-    path: CycleMotion
+    motion: CycleMotion
     measures: CycleMeasures
     multipliers: Complex
     trivial_multiplier_error: float
@@ -44,7 +44,7 @@ class RefinedCycle:
     def possible_period_divisor(self) -> int:
         """Number g such that the minimal period may be 1/g of the period; g = 1 proves the period minimal,
         and g = 0 means that all harmonics are 0."""
-        return possible_period_divisor(self.path, self.errors.extrema_error)
+        return possible_period_divisor(self.motion, self.errors.extrema_error)
 
     @property
     def largest_modulus_error(self) -> float:
@@ -74,11 +74,11 @@ class RefinedCycle:
                 f"the cycle's errors, up to {error:.1e}, exceed the requested accuracy",
             )
         if self.possible_period_divisor != 1:
-            is_multiple = (
+            message = (
                 f"the period found may be {self.possible_period_divisor} times the minimal period: the "
                 "harmonics that distinguish the two are within their errors"
             )
-            return CycleStatus.not_settled, is_multiple
+            return CycleStatus.not_settled, message
         if self.stable is None:
             return (
                 CycleStatus.not_settled,

@@ -36,15 +36,15 @@ from .refinement_settings import REFINEMENT_SETTINGS
 
 
 def cycle_with_calibrated_errors(
-    calibration: Calibration, solved: ConvergedOrbit, accuracy: float, path: CycleMotion | None = None
+    calibration: Calibration, solved: ConvergedOrbit, accuracy: float, motion: CycleMotion | None = None
 ) -> RefinedCycle:
     """The solved orbit `solved` as a cycle, with measures, multipliers and the errors of a calibration that
     is scaled to this orbit. The error of the largest multiplier includes the effects of the matrix, assembled
     at a nearby orbit, and of the amplitude error. The errors of the extrema include rounding near a Hopf
-    point or a fold. accuracy: requested relative accuracy. path: path of the orbit, if known."""
+    point or a fold. accuracy: requested relative accuracy. motion: motion of the orbit, if known."""
 
-    path = path or CycleMotion(solved.orbit)
-    measures = path.measures
+    motion = motion or CycleMotion(solved.orbit)
+    measures = motion.measures
     errors = with_amplitude_rounding(calibration.errors(accuracy), solved, measures)
     multipliers, trivial_error = multipliers_and_trivial_error(solved)
     max_modulus = max(float(np.abs(multipliers[0])), 1.0) if len(multipliers) else 1.0
@@ -54,7 +54,7 @@ def cycle_with_calibrated_errors(
     )
     exponent_error = 2 * errors.amplitude_error * multiplier_per_relative_exponent(multipliers)
     errors = replace(errors, multiplier_error=max(errors.multiplier_error, exponent_error) + matrix_error)
-    return RefinedCycle(solved, calibration, path, measures, multipliers, trivial_error, errors)
+    return RefinedCycle(solved, calibration, motion, measures, multipliers, trivial_error, errors)
 
 
 def refined_cycle_of_any_period(
@@ -79,13 +79,13 @@ def refined_cycle_of_any_period(
             near_orbit = rough_orbit.orbit
             stages = cheapest_stage_count(accuracy)
             if parameter_name is None:
-                first = mesh_from_tails(
+                first_mesh = mesh_from_tails(
                     near_orbit, REFINEMENT_SETTINGS.first_mesh_accuracy_ratio * mesh_accuracy, stages
                 )
                 fewest = REFINEMENT_SETTINGS.min_intervals_for_prediction
-                first = replace(first, interval_count=max(first.interval_count, fewest))
+                first_mesh = replace(first_mesh, interval_count=max(first_mesh.interval_count, fewest))
                 with suppress(Unsolvable):
-                    return _predicted_cycle(first, near_orbit, accuracy, workspace)
+                    return _predicted_cycle(first_mesh, near_orbit, accuracy, workspace)
             solved = _solve_on_mesh(
                 mesh_from_tails(near_orbit, mesh_accuracy, stages), rough_orbit, mesh_accuracy, parameter_name
             )
@@ -141,11 +141,11 @@ def _predicted_cycle(
     ):
         raise Unsolvable("coarser meshes do not predict the cycle")
     solved = with_matrix_within_distance(solved, min(accuracy, REFINEMENT_SETTINGS.max_matrix_distance))
-    path = CycleMotion(solved.orbit)
-    calibration = with_indicators(best[1], error_indicators(solved, path))
+    motion = CycleMotion(solved.orbit)
+    calibration = with_indicators(best[1], error_indicators(solved, motion))
     if calibration.errors(accuracy).largest_weighted_error > accuracy >= error:
         raise Unsolvable("coarser meshes do not predict the error of the amplitude")
-    return cycle_with_calibrated_errors(calibration, solved, accuracy, path)
+    return cycle_with_calibrated_errors(calibration, solved, accuracy, motion)
 
 
 def cycle_with_measured_errors(
@@ -172,10 +172,10 @@ def cycle_with_measured_errors(
             break
         max_error = REFINEMENT_SETTINGS.max_error_increase * cycle.errors.largest_weighted_error
         target = regraded(cheapest_mesh(calibration, accuracy), solved.orbit)
-        finer = finer_mesh(calibration.mesh, target)
-        if not finer.is_allowed:
+        next_mesh = finer_mesh(calibration.mesh, target)
+        if not next_mesh.is_allowed:
             break
-        solved = _solve_on_mesh(finer, solved, accuracy, parameter_name)
+        solved = _solve_on_mesh(next_mesh, solved, accuracy, parameter_name)
     if best_cycle is None:
         raise mesh_limit_error()
     return best_cycle
@@ -187,7 +187,7 @@ def _solve_on_mesh(
     """The orbit `solved` solved again on the mesh `mesh`, with a matrix assembled at the solution, so that
     its multipliers are exact to rounding error; raises Unsolvable. accuracy: requested relative accuracy.
     parameter_name: parameter along which the tangent of the orbit is computed, or None."""
-    # `newton_step` makes one more, quadratically convergent step, so half of the digits suffice here.
+    # `newton_step` adds a quadratically convergent step, so half of the digits suffice here.
     first_change = (newton_tolerance(accuracy) / ORBIT_NEWTON_SETTINGS.quadratic_error_factor) ** 0.5
     solution = newton(mesh.interpolated_orbit(solved.orbit), first_change, solved.workspace)
     return newton_step(require_similar_size(solution, solved.orbit.max_energy_norm), parameter_name)
@@ -217,7 +217,7 @@ def refined_cycle(
     cycle = refined_cycle_of_any_period(
         restricted_to_minimal_period(orbit), accuracy, workspace, parameter_name
     )
-    if common_harmonic_divisor(cycle.path, MINIMAL_PERIOD_SETTINGS.min_harmonic_ratio) > 1:
+    if common_harmonic_divisor(cycle.motion, MINIMAL_PERIOD_SETTINGS.min_harmonic_ratio) > 1:
         cycle = refined_cycle_of_any_period(
             restricted_to_minimal_period(cycle.orbit), accuracy, workspace, parameter_name
         )

@@ -55,11 +55,13 @@ class AmplitudeEquation:
     may add. Arguments of the methods: times of returns, (k,), and states z at the returns, (k, unknowns).
     """
 
-    def __init__(self, period: float, linear_growth_rate: float, growth_excess: float, noise: float) -> None:
+    def __init__(
+        self, period: float, linear_growth_rate: float, growth_excess: float, growth_error: float
+    ) -> None:
         self.period = period
         self.linear_growth_rate = linear_growth_rate
         self.growth_excess = growth_excess
-        self.growth_error = noise
+        self.growth_error = growth_error
         self.cubic_coefficient = nan
         """Coefficient c; NaN until a contribution c |z|^2 to the growth exceeds the noise."""
 
@@ -89,30 +91,32 @@ class AmplitudeEquation:
         shrink at every return, and the last growth equals the linear growth within `linear_tolerance`.
         Second: c |z|^2 is within this tolerance by the measured c, and the last growth is not larger than the
         linear growth, within tolerance and noise. times: (k,); states: (k, unknowns)."""
-        growth, linear = self.measured_and_linear_growth(times, states)
+        growth, linear_growth = self.measured_and_linear_growth(times, states)
         sizes = np.linalg.norm(states, axis=1)
-        tolerance = AMPLITUDE_EQUATION_SETTINGS.linear_tolerance * abs(linear)
+        tolerance = AMPLITUDE_EQUATION_SETTINGS.linear_tolerance * abs(linear_growth)
         decreases = np.diff(np.log(sizes)) + self.growth_excess * np.diff(times) < 0
         # Where higher powers of |z| cancel c |z|^2, the rates agree although a cycle may lie at smaller |z|.
         is_linear = (
-            isnan(self.cubic_coefficient) and bool(decreases.all()) and abs(growth - linear) < tolerance
+            isnan(self.cubic_coefficient)
+            and bool(decreases.all())
+            and abs(growth - linear_growth) < tolerance
         )
-        # With a known c the deviation from the linear rate is |c| |z|^2, whatever the noise.
+        # With a known c the deviation from the linear rate is |c| |z|^2, independent of the noise.
         is_small = (
             abs(self.cubic_coefficient) * sizes[-1] ** 2 < tolerance
-            and growth - linear < tolerance + self.growth_error
+            and growth - linear_growth < tolerance + self.growth_error
         )
-        return linear < 0 and (is_linear or is_small) and self._has_period_of_mode(times)
+        return linear_growth < 0 and (is_linear or is_small) and self._has_period_of_mode(times)
 
     def decays_faster(self, times: Array, states: Array) -> bool:
         """Whether a motion decays at least 1 - max_slow_growth times as fast as the leading mode, so that no
         cycle is near. The decay of a slow mode with c > 0 may be smaller by `growth_error`. times: (k,);
         states: (k, unknowns)."""
-        growth, linear = self.measured_and_linear_growth(times, states)
+        growth, linear_growth = self.measured_and_linear_growth(times, states)
         is_known = self.cubic_coefficient > 0 and self.is_slow_mode(times, states)
-        return linear < 0 and growth < linear * (1 - AMPLITUDE_EQUATION_SETTINGS.max_slow_growth) + (
-            self.growth_error if is_known else 0
-        )
+        return linear_growth < 0 and growth < linear_growth * (
+            1 - AMPLITUDE_EQUATION_SETTINGS.max_slow_growth
+        ) + (self.growth_error if is_known else 0)
 
     def factor_to_cycle(self, times: Array, states: Array) -> float | None:
         """Factor by which the state is to be scaled: to the predicted amplitude of the cycle, or by a fixed
@@ -121,31 +125,31 @@ class AmplitudeEquation:
         None if the motion is not slow, if the factor is close to 1, or if the growth is within the noise.
         times: (k,); states: (k, unknowns).
         """
-        growth, linear = self.measured_and_linear_growth(times, states)
+        growth, linear_growth = self.measured_and_linear_growth(times, states)
         if not self.is_slow_mode(times, states):
             return None
-        size = float(np.linalg.norm(states[-1]))
+        amplitude = float(np.linalg.norm(states[-1]))
         # d|z|/dt = linear |z| - c |z|^3, so linear - growth = c |z|^2.
-        cubic_coefficient = (linear - growth) / size**2
-        if abs(linear - growth) > self.growth_error * (
+        cubic_coefficient = (linear_growth - growth) / amplitude**2
+        if abs(linear_growth - growth) > self.growth_error * (
             1 if isnan(self.cubic_coefficient) else AMPLITUDE_EQUATION_SETTINGS.min_significant_growth
         ):
             self.cubic_coefficient = cubic_coefficient
         coefficient = cubic_coefficient if isnan(self.cubic_coefficient) else self.cubic_coefficient
-        if isnan(self.cubic_coefficient) and linear > 0:
+        if isnan(self.cubic_coefficient) and linear_growth > 0:
             factor = (
                 AMPLITUDE_EQUATION_SETTINGS.max_jump_factor
             )  # c is within the noise at this small amplitude
-        elif linear > 0 and coefficient > 0:
+        elif linear_growth > 0 and coefficient > 0:
             factor = float(
                 np.clip(
                     # The amplitude at which linear = c |z|^2.
-                    np.sqrt(linear / coefficient) / size,
+                    np.sqrt(linear_growth / coefficient) / amplitude,
                     1 / AMPLITUDE_EQUATION_SETTINGS.max_jump_factor,
                     AMPLITUDE_EQUATION_SETTINGS.max_jump_factor,
                 )
             )
-        elif linear > 0 or (coefficient < 0 and growth > self.growth_error):
+        elif linear_growth > 0 or (coefficient < 0 and growth > self.growth_error):
             # The growth increases with the amplitude.
             factor = 1 / AMPLITUDE_EQUATION_SETTINGS.decaying_state_factor
         elif coefficient > 0 or growth < -self.growth_error:

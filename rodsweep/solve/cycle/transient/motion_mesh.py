@@ -64,14 +64,14 @@ def motion_mesh(rod: Rod, accuracy: float) -> Mesh:
     """The first mesh for the integration of the motion of `rod` to the relative accuracy `accuracy`."""
     wave_number = MOTION_MESH_SETTINGS.wave_number_per_root_force * abs(rod.F) ** 0.5
     if not rod.is_uniform_and_linear:
-        modal = arm_mesh(rod, MOTION_MESH_SETTINGS.expected_modes, accuracy)
+        modal_mesh = arm_mesh(rod, MOTION_MESH_SETTINGS.expected_modes, accuracy)
         mesh = arm_elements(rod, wave_number, accuracy)
-        finest = max(modal, mesh, key=lambda each: each.node_count)
-        return mesh_with_edges(finest.edges, finest.order)
-    wave = max(
+        finest_mesh = max(modal_mesh, mesh, key=lambda each: each.node_count)
+        return mesh_with_edges(finest_mesh.edges, finest_mesh.order)
+    max_wave_number = max(
         expected_wave_number(MOTION_MESH_SETTINGS.expected_modes, most_amplified_wave(rod)[1]), wave_number
     )
-    resolution = resolution_for(wave, accuracy)
+    resolution = resolution_for(max_wave_number, accuracy)
     return uniform_mesh(resolution.element_count, resolution.order)
 
 

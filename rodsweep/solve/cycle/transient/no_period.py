@@ -7,14 +7,14 @@ from ....wording import counted
 from .returns import RETURN_SETTINGS, repetition
 
 
-def no_period_text(return_count: int, work: str, last_returns: Sequence[tuple[float, Array]]) -> str:
+def no_period_text(return_count: int, limit_text: str, last_returns: Sequence[tuple[float, Array]]) -> str:
     """Message on a motion in which no period was found; says so if the motion almost repeats at its last
     returns.
 
-    return_count: number of returns of the tip. work: clause on other limits of the work, or empty.
-    last_returns: time and bending moments, (nodes,), of each of the last returns.
+    return_count: number of returns of the tip. limit_text: clause on another limit that was reached, or
+    empty. last_returns: time and bending moments, (nodes,), of each of the last returns.
     """
-    text = f"no periodic motion within {counted(return_count, 'return')} of the tip{work}"
+    text = f"no periodic motion within {counted(return_count, 'return')} of the tip{limit_text}"
     moments = [state for _, state in last_returns][-1 - RETURN_SETTINGS.max_returns_per_period :]
     if len(moments) < 2:
         return text

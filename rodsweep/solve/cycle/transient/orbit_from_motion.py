@@ -51,15 +51,17 @@ def orbit_from_motion(
         / NEWTON_FROM_MOTION_SETTINGS.peak_search_times
     )
     period_states = spline(times)
-    top = float(times[int(np.argmax(system.tip_coordinates(period_states)[1]))])
+    time_of_largest_y = float(times[int(np.argmax(system.tip_coordinates(period_states)[1]))])
     symmetry = (
         REFLECTION
         if relative_asymmetry(system, period_states) < NEWTON_FROM_MOTION_SETTINGS.max_asymmetry
         else NO_SYMMETRY
     )
-    intervals = NEWTON_FROM_MOTION_SETTINGS.intervals_per_return * return_count // symmetry.period_parts
+    interval_count = NEWTON_FROM_MOTION_SETTINGS.intervals_per_return * return_count // symmetry.period_parts
     duration = period / symmetry.period_parts
-    times_of_nodes = top + duration * node_times(intervals, NEWTON_FROM_MOTION_SETTINGS.stages)
+    times_of_nodes = time_of_largest_y + duration * node_times(
+        interval_count, NEWTON_FROM_MOTION_SETTINGS.stages
+    )
     times_of_nodes = np.where(times_of_nodes > run.times[-1], times_of_nodes - period, times_of_nodes)
     states = collocation_states(system, form, spline(times_of_nodes))
     return Orbit.from_states(form, symmetry, period, states, NEWTON_FROM_MOTION_SETTINGS.stages)
@@ -67,7 +69,7 @@ def orbit_from_motion(
 
 def relative_asymmetry(system: ExplicitSystem, states: Array) -> float:
     """Norm of the difference between m3(t) and the reflection -m3(t + T/2), divided by the norm of m3; m3:
-    bending moments, T: period. states: at m equidistant times over a period, (m, n)."""
+    bending moments, T: period. states: states at m equidistant times over a period, (m, n)."""
     moments = system.layout.stress_field(states, "m3")
     mirrored = -np.roll(moments, len(moments) // 2, axis=0)
     return float(np.linalg.norm(moments - mirrored) / np.linalg.norm(moments))
@@ -77,14 +79,14 @@ def collocation_states(system: ExplicitSystem, form: StressForm, z: Array) -> Ar
     """States of the collocation problem `form`, (m, unknowns), from states z of the integrated system, (m,
     unknowns of the system), on the same mesh."""
     S = system.stresses(z)
-    V = np.empty(S.shape)
+    velocities = np.empty(S.shape)
     G = np.empty((len(S), S.shape[-1]))
     if form.unknown_velocities:
         for k, state in enumerate(system.layout.state(S, S)):
             velocity = np.empty(G.shape)
             write_balance(state, velocity, G, system.nodal_rod, system.mesh.matrices)
-            V[:, k] = velocity
-    return form.layout.state(S, V)
+            velocities[:, k] = velocity
+    return form.layout.state(S, velocities)
 
 
 def scaled_state(system: ExplicitSystem, z: Array, factor: float) -> Array:

@@ -1,5 +1,5 @@
-"""Returns of a motion to the Poincare section where the tip's theta rises through 0; most motions return once
-per period.
+"""Returns of a motion to the Poincare section, where the tip's theta rises through 0; most motions return
+once per period.
 
 A motion is integrated from return to return. A cycle is near if the states at two returns agree.
 """
@@ -34,9 +34,9 @@ class ReturnSettings:
     max_steps_per_run: int = 20_000
     """Maximum number of time steps in one run."""
     searched_last_states: int = 200
-    """If a run fails, this number of its last states is searched for a section whose strain energy is not
-    convex. The equations are ill-posed for such a section, and the integrator may fail only some steps
-    later."""
+    """If a run fails, this number of its last states is searched for a cross-section whose strain energy is
+    not convex. The equations are ill-posed for such a cross-section, and the integrator may fail only some
+    steps later."""
     bisection_count: int = 50
     """Number of bisections of a time step that locate a return in time; enough for all digits."""
 
@@ -51,15 +51,15 @@ def tip_angle_row(system: ExplicitSystem) -> Array:
     )
 
 
-def return_limit(row: Array, z: Array, return_count: int) -> RunLimit:
+def return_limit(angle_row: Array, z: Array, return_count: int) -> RunLimit:
     """Limit that ends a run from the state z, (unknowns,), after `return_count` returns of the tip or after
-    RETURN_SETTINGS.max_steps_per_run time steps. row: `tip_angle_row` of the system, (unknowns,)."""
+    RETURN_SETTINGS.max_steps_per_run time steps. angle_row: `tip_angle_row` of the system, (unknowns,)."""
     count = 0
-    last_angle = float(row @ z)
+    last_angle = float(angle_row @ z)
 
     def enough(state: Array) -> bool:
         nonlocal count, last_angle
-        angle = float(row @ state)
+        angle = float(angle_row @ state)
         count += int(last_angle < 0 <= angle)
         last_angle = angle
         return count >= return_count
@@ -85,9 +85,8 @@ def run_failure(system: ExplicitSystem, run: Trajectory, return_count: int) -> R
         return RunFailure(True, f"the axial stretch h1 is {h1:.3g} {place}")
     if not run.message and _loses_convexity(system, run.states[-RETURN_SETTINGS.searched_last_states :]):
         reason = (
-            f"after {counted(return_count, 'return')} of the tip a section has lost its stiffness: its "
-            "strain "
-            "energy is not convex"
+            f"after {counted(return_count, 'return')} of the tip a cross-section has lost its stiffness: its "
+            "strain energy is not convex, so the model ends there"
         )
         return RunFailure(True, reason)
     reason = "the integrator finds no time step with an acceptable error"
@@ -97,7 +96,7 @@ def run_failure(system: ExplicitSystem, run: Trajectory, return_count: int) -> R
 
 
 def _loses_convexity(system: ExplicitSystem, states: Array) -> bool:
-    """Whether the strain energy of a section is not convex in one of the `states`, (k, unknowns)."""
+    """Whether the strain energy of a cross-section is not convex in one of the `states`, (k, unknowns)."""
     return any(np.isfinite(state).all() and not system.has_convex_energy(state) for state in states[::-1])
 
 
@@ -106,15 +105,15 @@ def section_crossings(system: ExplicitSystem, run: Trajectory) -> tuple[Array, A
 
     Between two time steps a run is interpolated by the cubic Hermite polynomial.
     """
-    row = tip_angle_row(system)
-    angle = run.states @ row
+    angle_row = tip_angle_row(system)
+    angle = run.states @ angle_row
     times: list[float] = []
     states: list[Array] = []
     for k in np.nonzero((angle[:-1] < 0) & (angle[1:] >= 0))[0]:
         h = run.times[k + 1] - run.times[k]
-        ends = run.states[k : k + 2]
-        cubic = np.concatenate((ends, h * system.state_derivative(ends)))
-        angles = (cubic @ row).tolist()
+        end_states = run.states[k : k + 2]
+        cubic = np.concatenate((end_states, h * system.state_derivative(end_states)))
+        angles = (cubic @ angle_row).tolist()
         low = 0.0
         high = 1.0
         # Bisection of a scalar cubic: no step can leave the interval, and the full state is evaluated once.
@@ -152,21 +151,22 @@ def repetition(moments: Sequence[Array]) -> tuple[int, float]:
     distances = [
         (float(np.linalg.norm(moments[-1] - moments[-1 - m]) / size), m) for m in range(1, len(moments))
     ]
-    # The smallest m with a distance near the minimum: multiples of a period repeat as well.
+    # The smallest m with a distance near the minimum, because the motion repeats after multiples of a period,
+    # too.
     tolerance = max(2 * min(distances)[0], RETURN_SETTINGS.max_equal_return_distance)
     return next((m, distance) for distance, m in distances if distance <= tolerance)
 
 
-def not_settled_text(waited: int, return_count: int, return_distance: float) -> str:
-    """Message that explains why a motion has not settled after the time of `waited` returns.
+def not_settled_text(total_count: int, return_count: int, return_distance: float) -> str:
+    """Message that explains why a motion has not settled after `total_count` returns of the tip.
 
-    return_count: number of returns with a known state. return_distance: relative distance of the last return
-    from an earlier return; NaN for too few returns, inf for a decayed motion.
+    return_count: number of returns with a recorded state. return_distance: relative distance of the last
+    return from an earlier return; NaN for too few returns, inf for a decayed motion.
     """
     if isfinite(return_distance):
         return (
-            f"the motion does not repeat: after {waited} returns of the tip the state still differs by a "
-            f"relative {return_distance:.1e} from that at an earlier return"
+            f"the motion does not repeat: after {total_count} returns of the tip the state still differs by "
+            f"a relative {return_distance:.1e} from the state at an earlier return"
         )
     if isnan(return_distance):
         return f"the tip returned to theta = 0 only {counted(return_count, 'time')}, so no period is known"

@@ -72,26 +72,29 @@ class ShapeTrace:
             self.step_count += len(times)
 
     def motion_shapes(
-        self, returns: Sequence[float], period: float, frame_count: int, node_count: int
+        self, return_times: Sequence[float], period: float, frame_count: int, node_count: int
     ) -> MotionShapes:
         """Shapes on `node_count` Lobatto nodes, `frame_count` shapes per return of the tip, until the arm is
         at rest, at most SHAPE_TRACE_SETTINGS.max_stored_shapes.
 
-        returns: times of the last returns of the tip, in tau2. period: period of the leading mode, in tau2,
-        used if there are fewer than SHAPE_TRACE_SETTINGS.min_returns returns.
+        return_times: times of the last returns of the tip, in tau2. period: period of the leading mode, in
+        tau2, used in place of the time per return if there are fewer than SHAPE_TRACE_SETTINGS.min_returns
+        returns.
         """
         from scipy.interpolate import CubicSpline  # slow import: 0.1 s, for few runs
 
-        step = (
-            float(np.median(np.diff(returns))) if len(returns) >= SHAPE_TRACE_SETTINGS.min_returns else period
+        time_step = (
+            float(np.median(np.diff(return_times)))
+            if len(return_times) >= SHAPE_TRACE_SETTINGS.min_returns
+            else period
         ) / frame_count
-        shape_times = step * np.arange(
-            min(int(self.run_times[-1][-1] / step) + 1, SHAPE_TRACE_SETTINGS.max_stored_shapes)
+        shape_times = time_step * np.arange(
+            min(int(self.run_times[-1][-1] / time_step) + 1, SHAPE_TRACE_SETTINGS.max_stored_shapes)
         )
-        run_of = np.searchsorted([times[0] for times in self.run_times], shape_times, side="right") - 1
+        run_indices = np.searchsorted([times[0] for times in self.run_times], shape_times, side="right") - 1
         states = np.empty((len(shape_times), self.system.unknown_count))
         for number, (times, steps) in enumerate(zip(self.run_times, self.run_states, strict=True)):
-            is_in_run = run_of == number
+            is_in_run = run_indices == number
             if is_in_run.any():
                 states[is_in_run] = (
                     CubicSpline(times, steps)(shape_times[is_in_run]) if len(times) > 1 else steps[:1]
@@ -101,4 +104,4 @@ class ShapeTrace:
         )
         is_complete = not self.is_full and len(shape_times) < SHAPE_TRACE_SETTINGS.max_stored_shapes
         moving_shapes = np.flatnonzero(np.abs(shapes[1, :, -1]) > SHAPE_TRACE_SETTINGS.max_rest_deflection)
-        return MotionShapes(step, shapes[:, : int(moving_shapes.max(initial=0)) + 2], is_complete)
+        return MotionShapes(time_step, shapes[:, : int(moving_shapes.max(initial=0)) + 2], is_complete)

@@ -63,27 +63,27 @@ class TipTrace:
         to the end of the last run."""
         times = np.linspace(0.0, self.run_times[-1][-1], count)
         starts = np.array([run[0] for run in self.run_times])
-        runs = np.searchsorted(starts, times, side="right") - 1
-        out = np.empty((4, count))
-        out[0] = times
+        run_indices = np.searchsorted(starts, times, side="right") - 1
+        time_and_tip = np.empty((4, count))
+        time_and_tip[0] = times
         for number, (step_times, tips) in enumerate(zip(self.run_times, self.run_tip_motions, strict=True)):
-            is_in_run = runs == number
+            is_in_run = run_indices == number
             if len(step_times) > 1 and is_in_run.any():
-                out[1:, is_in_run] = interpolated_between_steps(
+                time_and_tip[1:, is_in_run] = interpolated_between_steps(
                     step_times, tips[:3], tips[3:], times[is_in_run]
                 )
             else:
-                out[1:, is_in_run] = tips[:3, :1]
-        return out
+                time_and_tip[1:, is_in_run] = tips[:3, :1]
+        return time_and_tip
 
 
 def interpolated_between_steps(steps: Array, values: Array, rates: Array, times: Array) -> Array:
     """Values at `times`, (m, k), by the quintic polynomial of each time step, which has the values, rates and
     second derivatives of its two ends; by the cubic polynomial for a run with a single step, and for a step
-    that is more than MAX_STEP_RATIO times as long as one beside it.
+    that is more than MAX_STEP_RATIO times as long as a neighbouring step.
 
-    steps: times of the ends of the steps, increasing, (n,), n >= 2. values, rates: at these times, (m, n).
-    times: from the first to the last of `steps`, (k,).
+    steps: times of the ends of the steps, increasing, (n,), n >= 2. values, rates: values and time
+    derivatives at these times, (m, n). times: times between the first and the last of `steps`, (k,).
     """
     left_steps = np.clip(np.searchsorted(steps, times, side="right") - 1, 0, len(steps) - 2)
     h = steps[left_steps + 1] - steps[left_steps]
@@ -119,7 +119,8 @@ def _second_derivatives(steps: Array, values: Array, rates: Array, step_indices:
     values and rates at each of these times and its two neighbours (at an end of the run, the two nearest
     times).
 
-    steps: (n,), n >= 3. values, rates: (m, n). step_indices: indices, (used,).
+    steps: increasing times, (n,), n >= 3. values, rates: values and time derivatives at these times, (m, n).
+    step_indices: indices of the times at which the second derivatives are computed, (used,).
     """
     neighbours = np.clip(step_indices, 1, len(steps) - 2)[:, None] + np.array([-1, 0, 1])
     x = steps[neighbours] - steps[step_indices][:, None]

@@ -47,7 +47,7 @@ class TorusTestSettings:
     trial_angles_per_width: int = 4
     """The spacing of the trial angles, before the best angle is refined, is 2/(trial_angles_per_width k) rad
     for k returns; with one harmonic, the minimum of the residual is 2 pi/k wide."""
-    angle_tolerance_share: float = 1e-4
+    angle_tolerance_ratio: float = 1e-4
     """Tolerance of the fitted angle divided by half the width of the residual's minimum."""
     max_period_difference: float = 0.1
     """Largest relative difference between the mean return time on a torus and the period of the cycle; the
@@ -66,12 +66,12 @@ class TorusFrequency:
     prediction_error: float
 
 
-def classify_quasiperiodic(end: TransientOutcome, transient: TransientIntegration) -> TransientOutcome:
+def classify_quasiperiodic(outcome: TransientOutcome, transient: TransientIntegration) -> TransientOutcome:
     """An outcome with the status `torus` if the motion of `transient` is on a torus; otherwise the outcome
-    `end` of this motion, unchanged."""
-    if end.status != CycleStatus.not_settled or end.cycle is not None:
-        return end
-    # Only the last returns are stored, so some or all of the returns to skip may be missing already.
+    `outcome` of this motion, unchanged."""
+    if outcome.status != CycleStatus.not_settled or outcome.cycle is not None:
+        return outcome
+    # Only the last returns are stored, so some or all of the skipped returns may not be stored.
     skipped_count = max(
         0,
         int(TORUS_TEST_SETTINGS.skipped_fraction * transient.returns)
@@ -79,7 +79,7 @@ def classify_quasiperiodic(end: TransientOutcome, transient: TransientIntegratio
     )
     past_returns = list(transient.past_returns)[skipped_count:]
     if len(past_returns) < 2 * TORUS_TEST_SETTINGS.min_distinct_returns:
-        return end
+        return outcome
     times = np.array([time for time, _ in past_returns])
     moments = np.array([moment for _, moment in past_returns])
     for cycle in _unstable_cycles(transient):
@@ -99,11 +99,11 @@ def classify_quasiperiodic(end: TransientOutcome, transient: TransientIntegratio
             return TransientOutcome(
                 CycleStatus.torus,
                 message,
-                end.return_count,
+                outcome.return_count,
                 unstable_cycle=cycle,
                 modulation_ratio=ratio,
             )
-    return end
+    return outcome
 
 
 def _unstable_cycles(transient: TransientIntegration) -> Iterator[RefinedCycle]:
@@ -133,40 +133,44 @@ def unstable_pair_angle(cycle: RefinedCycle) -> float | None:
     return float(abs(np.angle(outer_multipliers[0])))
 
 
-def torus_frequency_of(returns: Array, angle: float) -> TorusFrequency | None:
+def torus_frequency_of(return_states: Array, angle: float) -> TorusFrequency | None:
     """Torus frequency of a motion whose returns advance on a closed curve by about `angle` rad per return;
-    None if the returns do not fill a closed curve. returns: states at successive returns, (k, n).
+    None if the returns do not fill a closed curve. return_states: states at successive returns, (k, n).
 
     The Fourier series is fitted to the first half of the returns, and predicts the second half.
     """
-    half = len(returns) // 2
-    numbers = np.arange(len(returns))
-    first_half = returns[:half]
-    second_half = returns[half:]
+    half = len(return_states) // 2
+    numbers = np.arange(len(return_states))
+    first_half = return_states[:half]
+    second_half = return_states[half:]
     best_angle = fitted_angle(first_half, angle)
-    size = float(np.linalg.norm(second_half - second_half.mean(axis=0)))
+    modulation_size = float(np.linalg.norm(second_half - second_half.mean(axis=0)))
     if (
-        size == 0
+        modulation_size == 0
         or largest_phase_gap(best_angle * numbers[:half])
         > 2 * np.pi / TORUS_TEST_SETTINGS.min_distinct_returns
     ):
         return None
     basis = fourier_basis(best_angle * numbers, TORUS_TEST_SETTINGS.harmonics)
-    # Fitted on the first half, tested on the second: a fit alone would explain any motion.
+    # The series is fitted to the first half and tested on the second: a fit alone would explain any motion.
     series = np.linalg.lstsq(basis[:half], first_half, rcond=None)[0]
-    return TorusFrequency(best_angle, float(np.linalg.norm(second_half - basis[half:] @ series)) / size)
+    return TorusFrequency(
+        best_angle, float(np.linalg.norm(second_half - basis[half:] @ series)) / modulation_size
+    )
 
 
-def fitted_angle(returns: Array, angle: float) -> float:
+def fitted_angle(return_states: Array, angle: float) -> float:
     """Angle per return, in rad, near `angle`, for which a Fourier series fits the returns best in the
-    least-squares sense. returns: states at successive returns, (k, n)."""
+    least-squares sense. return_states: states at successive returns, (k, n)."""
     from scipy.optimize import minimize_scalar  # slow import: 0.1 s, for few runs
 
-    numbers = np.arange(len(returns))
+    numbers = np.arange(len(return_states))
 
     def residual(trial_angle: float, harmonic_count: int) -> float:
         basis = fourier_basis(trial_angle * numbers, harmonic_count)
-        return float(np.linalg.norm(returns - basis @ np.linalg.lstsq(basis, returns, rcond=None)[0]))
+        return float(
+            np.linalg.norm(return_states - basis @ np.linalg.lstsq(basis, return_states, rcond=None)[0])
+        )
 
     # With one harmonic the minimum is 2 pi/k wide, with m harmonics 2 pi/(k m); k: number of returns.
     trial_angles = np.linspace(
@@ -175,20 +179,20 @@ def fitted_angle(returns: Array, angle: float) -> float:
         int(
             TORUS_TEST_SETTINGS.trial_angles_per_width
             * TORUS_TEST_SETTINGS.max_angle_difference
-            * len(returns)
+            * len(return_states)
         )
         + 1,
     )
     best_angle = min(map(float, trial_angles), key=lambda at: residual(at, 1))
     for harmonics in range(1, TORUS_TEST_SETTINGS.harmonics + 1):
-        half_width = np.pi / (len(returns) * harmonics)
+        half_width = np.pi / (len(return_states) * harmonics)
         bounds = (best_angle - half_width, best_angle + half_width)
         minimum = minimize_scalar(
             residual,
             bounds=bounds,
             args=(harmonics,),
             method="bounded",
-            options={"xatol": TORUS_TEST_SETTINGS.angle_tolerance_share * half_width},
+            options={"xatol": TORUS_TEST_SETTINGS.angle_tolerance_ratio * half_width},
         )
         best_angle = float(minimum.x)
     return best_angle

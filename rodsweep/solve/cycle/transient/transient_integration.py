@@ -51,7 +51,7 @@ class TransientIntegration:
         straight: StraightRodStability,
         request: CycleRequest,
         parameter_name: str | None,
-        unstable: RefinedCycle | None,
+        unstable_cycle: RefinedCycle | None,
         workspace: NewtonWorkspace,
     ) -> None:
         self.system = ExplicitSystem(integrable_rod(form.rod), form.mesh)
@@ -61,18 +61,18 @@ class TransientIntegration:
         self.workspace = workspace
         self.accuracy = request.accuracy
         self.max_returns = request.most_periods
-        self.unstable_cycle = unstable
+        self.unstable_cycle = unstable_cycle
         self.leading_mode = leading_mode(self.system)
         self.record = self._new_record(request)
         self.tip_angle_row = tip_angle_row(self.system)
         rate = straight.growth_rate(self.leading_mode.w.real)
         period = self.leading_mode.period
-        self.first_scheme, self.scheme, noise, steps = schemes_for_growth(
+        self.first_scheme, self.scheme, growth_error, max_steps = schemes_for_growth(
             rate * period, request.transient > 0
         )
-        self.max_steps = steps * max(request.most_periods, TRANSIENT_SETTINGS.min_returns_for_max_steps)
+        self.max_steps = max_steps * max(request.most_periods, TRANSIENT_SETTINGS.min_returns_for_max_steps)
         excess = rate - integrated_growth_rate(form.rod, self.system.rod, straight, rate)
-        self.amplitude_equation = AmplitudeEquation(period, rate, excess, noise)
+        self.amplitude_equation = AmplitudeEquation(period, rate, excess, growth_error)
         self.step = period / TRANSIENT_SETTINGS.first_steps_per_period
         """First time step of the next run, in tau2."""
         self.past_returns: deque[tuple[float, Array]] = deque(maxlen=TRANSIENT_SETTINGS.max_stored_returns)
@@ -93,17 +93,17 @@ class TransientIntegration:
     def follow(self, z: Array) -> TransientOutcome:
         """Outcome of the motion from the state z, (unknowns,)."""
         z = self._state_after_fast_decay(z)
-        first = True
+        is_first_run = True
         while self.returns < self.max_returns and self.steps < self.max_steps and not self.unsolved_message:
             report(lambda: SolvePosition(f"{self.returns} of at most {self.max_returns} returns of the tip"))
-            run = self._run_of_returns(z, first)
-            if end := run_failure(self.system, run, self.returns):
-                status = CycleStatus.left_the_model if end.left_the_model else CycleStatus.failed
-                return self._result(status, end.message)
+            run = self._run_of_returns(z, is_first_run)
+            if failure := run_failure(self.system, run, self.returns):
+                status = CycleStatus.left_the_model if failure.left_the_model else CycleStatus.failed
+                return self._result(status, failure.message)
             z = run.states[-1]
             times, states = section_crossings(self.system, run)
             self._record_returns(run, times, states)
-            # Rounding errors hide the growth of so small a motion of an unstable rod.
+            # An unstable rod is excluded, because rounding errors exceed the growth of so small a motion.
             if self.straight.stable is not False and np.linalg.norm(z) < RETURN_SETTINGS.straight_norm:
                 return self._result(CycleStatus.straight, "the motion has decayed to rounding error")
             if self.straight.stable is False and not self._bends_visibly(z):
@@ -112,15 +112,15 @@ class TransientIntegration:
                 # The rod is unstable, but the state has no component along the growing mode beyond rounding.
                 z = self._state_after_jump(TRANSIENT_SETTINGS.restart_deflection * self.leading_mode.z.real)
                 continue
-            is_first = first
-            first = False
+            is_first = is_first_run
+            is_first_run = False
             if len(times) < 3 or (is_first and self.amplitude_equation.is_slow_mode(times, states)):
                 continue
-            shown = self.record is not None and self.record.needs_more_motion(z)
-            if not (is_first or shown) and self.amplitude_equation.decays_at_linear_rate(times, states):
+            continues = self.record is not None and self.record.needs_more_motion(z)
+            if not (is_first or continues) and self.amplitude_equation.decays_at_linear_rate(times, states):
                 return self._result(CycleStatus.straight, "the motion decays at the rate of the leading mode")
-            jumps = not is_first and self.jump_count < TRANSIENT_SETTINGS.max_jumps
-            factor = self.amplitude_equation.factor_to_cycle(times, states) if jumps else None
+            may_jump = not is_first and self.jump_count < TRANSIENT_SETTINGS.max_jumps
+            factor = self.amplitude_equation.factor_to_cycle(times, states) if may_jump else None
             if factor is not None:
                 if not self.record or self.record.is_full:  # a motion with a stored path has no jumps
                     z = self._state_after_jump(scaled_state(self.system, z, factor))
@@ -189,8 +189,8 @@ class TransientIntegration:
         return TransientOutcome(status, text, self.returns, cycle)
 
     def _run_of_returns(self, z: Array, first: bool) -> Trajectory:
-        """A run from the state z, (unknowns,), over `returns_per_run` returns, or `returns_in_first_run` in
-        the `first` run, of at most `max_run_duration_ratio` times the expected time of these returns."""
+        """A run from the state z, (unknowns,), over `returns_per_run` returns, or `returns_in_first_run` if
+        `first`, of at most `max_run_duration_ratio` times the expected time of these returns."""
         returns = TRANSIENT_SETTINGS.returns_in_first_run if first else TRANSIENT_SETTINGS.returns_per_run
         scheme = self.first_scheme if first else self.scheme
         limit = return_limit(self.tip_angle_row, z, returns)
@@ -205,9 +205,9 @@ class TransientIntegration:
         return run
 
     def _cycle_from_returns(self, run: Trajectory) -> RefinedCycle | None:
-        """The stable cycle near the end of a run, if the returns repeat and Newton's method converges; else
-        None, also until the next attempt is due: the returns between attempts double with each attempt. After
-        too many failures of Newton's method near a periodic motion, sets `unsolved_message`."""
+        """The stable cycle near the end of a run, if the returns repeat and Newton's method converges;
+        otherwise, or before the next attempt is due, None. The number of returns between attempts doubles
+        with each attempt. After too many failures near a periodic motion, sets `unsolved_message`."""
         states = [state for _, state in self.past_returns]
         count, distance = repetition(states[-1 - RETURN_SETTINGS.max_returns_per_period :])
         often_failed = self.successive_failures >= TRANSIENT_SETTINGS.max_successive_failures

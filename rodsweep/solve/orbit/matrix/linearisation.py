@@ -31,7 +31,7 @@ class Linearisation:
     """Newton's matrix at an orbit. `correction` works until another matrix is assembled in its workspace.
 
     step: Newton's step at the orbit, (N,). tangent: derivative of the orbit values with respect to the
-    coordinate of the parameter `parameter`, (N,); None if no parameter was given.
+    coordinate of the parameter `parameter_name`, (N,); None if no parameter was given.
     """
 
     def __init__(self, orbit: Orbit, workspace: NewtonWorkspace, parameter_name: str | None = None) -> None:
@@ -47,8 +47,10 @@ class Linearisation:
             if parameter_name is None
             else parameter_derivatives(orbit.form, parameter_name)
         )
-        count = 2 if parameter_name is None else 3
-        steps, self._period_derivative = eliminate_at_orbit(orbit.values, count, derivatives, p, factors)
+        column_count = 2 if parameter_name is None else 3
+        steps, self._period_derivative = eliminate_at_orbit(
+            orbit.values, column_count, derivatives, p, factors
+        )
         self.step = steps[0]
         self.tangent = None if parameter_name is None else steps[1]
 
@@ -61,13 +63,13 @@ class Linearisation:
 
     @cached_property
     def multipliers_over_solved_part(self) -> Complex:
-        """Multipliers over the solved part of the period, (rank,). Another matrix in the same workspace does
-        not change them."""
+        """Multipliers over the solved part of the period, (multipliers,). Another matrix in the same
+        workspace does not change them."""
         return multipliers_over_solved_part(self._memory.propagator, self.orbit)
 
     def multipliers(self) -> Complex:
-        """Floquet multipliers larger than rounding error, by descending modulus, (rank,), with the trivial
-        multiplier."""
+        """Floquet multipliers larger than rounding error, by descending modulus, (multipliers,), with the
+        trivial multiplier."""
         return multipliers_over_period(self.multipliers_over_solved_part, self.orbit)
 
 

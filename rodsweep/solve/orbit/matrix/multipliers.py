@@ -36,12 +36,12 @@ def nonzero_eigenvalues(A: Array) -> Complex:
 
     Raises LinAlgError if A has entries that are not finite.
     """
-    values: Complex = _eigenvalues_by_rank(
+    eigenvalues: Complex = _eigenvalues_by_rank(
         np.ascontiguousarray(A), FLOQUET_MULTIPLIER_SETTINGS.negligible_column_ratio
     )
-    if not len(values):
+    if not len(eigenvalues):
         raise np.linalg.LinAlgError("the flow derivative of the cycle is not finite")
-    return values
+    return eigenvalues
 
 
 def multipliers_over_solved_part(propagator: Array, orbit: Orbit) -> Complex:
@@ -53,8 +53,8 @@ def multipliers_over_solved_part(propagator: Array, orbit: Orbit) -> Complex:
 def multipliers_over_period(solved_multipliers: Complex, orbit: Orbit) -> Complex:
     """Floquet multipliers, (m,), by descending modulus. solved_multipliers: multipliers over the solved part,
     (m,)."""
-    values: Complex = solved_multipliers**orbit.symmetry.period_parts
-    return values[np.argsort(-np.abs(values), kind="stable")]
+    multipliers: Complex = solved_multipliers**orbit.symmetry.period_parts
+    return multipliers[np.argsort(-np.abs(multipliers), kind="stable")]
 
 
 @compiled_for_vectors

@@ -78,8 +78,9 @@ class ShootingIntervals:
         return out
 
     def multipliers(self, orbit: Orbit) -> Complex:
-        """Nonzero multipliers of the map S^-1 P over the solved part of the period, (rank,); P: product of
-        the maps of all shooting intervals, S: symmetry. Raises LinAlgError if the map is not finite.
+        """Nonzero multipliers of the map S^-1 P over the solved part of the period, (multipliers,); P:
+        product of the maps of all shooting intervals, S: symmetry. Raises LinAlgError if the map is not
+        finite.
 
         P itself is not formed, because multipliers far below its norm would lose all digits. Orthogonal
         iteration gives a triangular matrix whose rows are ordered by their growth.

@@ -28,7 +28,7 @@ class WorkspaceSettings:
     max_buffer_size: int = 2**28
     """Largest size of a buffer, in double-precision numbers: 2.1 GB. The mesh with the most time intervals,
     unknowns and stages would need more than twice as much, more than many machines have for one rank."""
-    max_matrix_share: float = 0.125
+    max_matrix_work_fraction: float = 0.125
     """Largest work of a single matrix, divided by the limit of the work on a rod. Several matrices are needed
     for one cycle or special point; a matrix of a larger share would use up the limit, and the memory of the
     machine, before a result is found."""
@@ -103,21 +103,24 @@ class NewtonWorkspace:
         return self._work
 
     @contextmanager
-    def further_limit(self, work: float) -> Iterator[None]:
-        """In the `with` block the limit of the work is lower, if necessary, so that the block does at most
-        the given further `work`, in multiplications."""
-        outer = self._max_work
-        self._max_work = min(outer, self._work + work)
+    def further_limit(self, further_work: float) -> Iterator[None]:
+        """Context in which at most `further_work` multiplications are done; a lower limit of the work stays
+        in force."""
+        previous_max_work = self._max_work
+        self._max_work = min(previous_max_work, self._work + further_work)
         try:
             yield
         finally:
-            self._max_work = outer
+            self._max_work = previous_max_work
 
     def add_work(self, work: float) -> None:
         """Counts the work of the next matrix; raises WorkLimitReached if the matrix exceeds the limit.
         work: number of multiplications."""
-        if work > WORKSPACE_SETTINGS.max_matrix_share * self._max_work or self._work + work > self._max_work:
-            raise WorkLimitReached("the limit of the work (option `work`) is reached")
+        if (
+            work > WORKSPACE_SETTINGS.max_matrix_work_fraction * self._max_work
+            or self._work + work > self._max_work
+        ):
+            raise WorkLimitReached("the limit of the work on a rod (option `work`) is reached")
         self._work += work
 
     def reserve(self, size: int) -> int:

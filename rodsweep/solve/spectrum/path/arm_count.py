@@ -31,17 +31,17 @@ def confirmed_line(
     path: ParameterPath,
     interval: ArmInterval,
     p: float,
-    followed: tuple[Complex, Array],
+    eigenvalues_and_errors: tuple[Complex, Array],
     mode_count: int,
     rightmost: float = math.inf,
 ) -> float | None:
     """Real part, at most `rightmost`, of a line for which a count at path variable p confirms that all
-    eigenvalues to its right are followed; None if no count confirms this.
+    eigenvalues to its right are followed; None if no count confirms this for any line.
 
-    interval: an interval that contains p. followed: eigenvalues at p by descending real part, and their
-    errors, (m,) each. mode_count: number of requested modes, which lie to the right of the line.
+    interval: an interval that contains p. eigenvalues_and_errors: eigenvalues at p by descending real part,
+    and their errors, (m,) each. mode_count: number of requested modes, which lie to the right of the line.
     """
-    w, error = followed
+    w, error = eigenvalues_and_errors
     if w[-1].real > 0:  # more modes grow, and the count would include them
         return None
     determinant = ArmDeterminant(path.rod_at(p), propagators_at(interval.family, p))

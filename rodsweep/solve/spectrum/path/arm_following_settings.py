@@ -7,7 +7,7 @@ from dataclasses import dataclass
 class ArmFollowingSettings:
     """Settings for arms along a path: number of followed modes, families of interpolated arms, hulls."""
 
-    further_modes: tuple[int, ...] = (3, 9)
+    further_mode_counts: tuple[int, ...] = (3, 9)
     """Numbers of modes followed in addition to the wanted modes. The second number is tried if, with the
     first number, fewer than `min_proved_fraction` of the points are proved or too few growing modes."""
     min_proved_fraction: float = 0.5
@@ -24,7 +24,7 @@ class ArmFollowingSettings:
     min_reused_W_factor: float = 1.25
     """The family of the previous interval is used again if its W is at least this multiple of the largest |w|
     at the first point of the new interval."""
-    max_points_growth: int = 2
+    max_point_count_ratio: int = 2
     """Maximum number of points of a new family, divided by the number reached with the previous family."""
     min_points: int = 4
     """Minimum number of points for which a family of arms is made."""

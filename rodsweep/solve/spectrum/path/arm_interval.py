@@ -37,24 +37,24 @@ from .prediction import FollowedEigenvalues, slice_track, start_track
 
 
 class ArmInterval(NamedTuple):
-    """Points p of a path, (n,), whose eigenvalues were followed with one family of arms.
+    """Interval of a path: points p, (n,), at which eigenvalues were followed with one family of arms.
 
-    track: the eigenvalues followed to these points. proved_modes: number of leading modes proved complete at
+    track: the eigenvalues followed to these points. proved_counts: number of leading modes proved complete at
     each point, (n,). arm_count: number of given points inside the family, of which the first n were reached.
-    further_modes: number of modes followed in addition to the wanted modes.
+    further_mode_count: number of modes followed in addition to the wanted modes.
     """
 
     p: Array
     track: FollowedEigenvalues
-    proved_modes: NDArray[np.int64]
+    proved_counts: NDArray[np.int64]
     family: ArmFamily
     hulls: PathHulls
     arm_count: int
-    further_modes: int
+    further_mode_count: int
 
     def proved_points(self, mode_count: int) -> int:
         """Number of points at which at least `mode_count` leading modes are proved complete."""
-        return int((self.proved_modes >= mode_count).sum())
+        return int((self.proved_counts >= mode_count).sum())
 
 
 def follow_interval(
@@ -74,8 +74,8 @@ def follow_interval(
     best: ArmInterval | None = None
     if len(p) < ARM_FOLLOWING_SETTINGS.min_points:
         return None
-    for added_modes in ARM_FOLLOWING_SETTINGS.further_modes:
-        if previous is not None and added_modes < previous.further_modes:
+    for added_modes in ARM_FOLLOWING_SETTINGS.further_mode_counts:
+        if previous is not None and added_modes < previous.further_mode_count:
             continue
         if best is not None and not (
             _follows_too_few_modes(best)
@@ -99,18 +99,21 @@ def _follows_too_few_modes(interval: ArmInterval) -> bool:
 
 
 def _is_better_interval(interval: ArmInterval, other: ArmInterval, mode_count: int) -> bool:
-    """Whether `interval` has more proved points than `other`, or as many while `other` follows too few."""
+    """Whether `interval` has more proved points than `other`, or as many and `other` follows too few
+    modes."""
     proved = interval.proved_points(mode_count)
     other_proved = other.proved_points(mode_count)
     return proved > other_proved or (proved == other_proved and _follows_too_few_modes(other))
 
 
-def _proves_middle(path: ParameterPath, interval: ArmInterval, request: SpectrumRequest, added: int) -> bool:
-    """Whether following `added` additional modes would prove completeness at the middle point among the
-    points without a proof."""
-    unproved = np.flatnonzero(interval.proved_modes < request.modes)
+def _proves_middle(
+    path: ParameterPath, interval: ArmInterval, request: SpectrumRequest, added_mode_count: int
+) -> bool:
+    """Whether following `added_mode_count` additional modes would prove completeness at the middle point
+    among the points without a proof."""
+    unproved = np.flatnonzero(interval.proved_counts < request.modes)
     p = float(interval.p[unproved[len(unproved) // 2]])
-    roots = _leading_roots(path, p, request, added)
+    roots = _leading_roots(path, p, request, added_mode_count)
     if roots is None or len(roots.w) < request.modes:
         return False
     arm = arm_determinant(path.rod_at(p))
@@ -131,38 +134,38 @@ def _follow_with_further_modes(
     """The first points of p, (n,), that are reached as in `follow_interval`, with exactly `added_mode_count`
     modes followed in addition to the wanted modes; None if the first point fails or no family is found."""
     settings = ARM_FOLLOWING_SETTINGS
-    first = _eigenvalues_of_previous_interval(previous, float(p[0]), request, added_mode_count)
-    if first is None:
+    first_w = _eigenvalues_of_previous_interval(previous, float(p[0]), request, added_mode_count)
+    if first_w is None:
         roots = _leading_roots(path, float(p[0]), request, added_mode_count)
         # Following takes no unpaired complex eigenvalues.
-        first = None if roots is None else roots.w[has_conjugate(roots.w)]
+        first_w = None if roots is None else roots.w[has_conjugate(roots.w)]
     n = len(p)
     family_data = None
-    if first is not None and previous is not None:
+    if first_w is not None and previous is not None:
         inside_count = int(((p >= previous.family.p_low) & (p <= previous.family.p_high)).sum())
         if (
             inside_count >= settings.min_points
-            and settings.min_reused_W_factor * np.abs(first).max() <= previous.family.largest_w
+            and settings.min_reused_W_factor * np.abs(first_w).max() <= previous.family.largest_w
         ):
             family_data = (previous.family, previous.hulls)
             n = inside_count
         else:
-            n = min(n, max(settings.max_points_growth * len(previous.p), settings.min_points))
-    while first is not None and family_data is None and n >= settings.min_points:
-        family_data = family_and_hulls(path, p[:n], first, request.modes)
+            n = min(n, max(settings.max_point_count_ratio * len(previous.p), settings.min_points))
+    while first_w is not None and family_data is None and n >= settings.min_points:
+        family_data = family_and_hulls(path, p[:n], first_w, request.modes)
         # On half the interval the propagators need a lower degree.
         n = n if family_data is not None else n // 2
-    if first is None or family_data is None:
+    if first_w is None or family_data is None:
         return None
     family, hulls = family_data
-    track = start_track(first, n)
+    track = start_track(first_w, n)
     proved_counts = np.zeros(n, np.int64)
     reached = follow_eigenvalues_of_arms(track, family, hulls, p[:n], request.modes, proved_counts)
     if reached == 0:
         return None
-    arms = previous.arm_count if previous is not None and family is previous.family else n
+    arm_count = previous.arm_count if previous is not None and family is previous.family else n
     reached_track, counts = slice_track(track, 0, reached), proved_counts[:reached]
-    return ArmInterval(p[:reached], reached_track, counts, family, hulls, arms, added_mode_count)
+    return ArmInterval(p[:reached], reached_track, counts, family, hulls, arm_count, added_mode_count)
 
 
 def family_and_hulls(
@@ -170,7 +173,7 @@ def family_and_hulls(
 ) -> tuple[ArmFamily, PathHulls] | None:
     """(family of the arms at all p, (n,); hulls that contain the spectra of these arms); None if all p are
     equal, if the arms are not smooth in p, or if no elements resolve an arm. first_eigenvalues: eigenvalues
-    at the first point, (m,), in descending order. mode_count: requested number."""
+    at the first point, (m,), in descending order. mode_count: number of requested modes."""
     low = float(p.min())
     high = float(p.max())
     if not low < high:
@@ -181,13 +184,15 @@ def family_and_hulls(
         hulls = hulls_along(path, low, high, ARM_FOLLOWING_SETTINGS.hulls_per_interval)
         W = ARM_FOLLOWING_SETTINGS.w_bound_ratio * float(np.abs(first_eigenvalues).max())
         line = min(ARM_FOLLOWING_SETTINGS.w_bound_ratio * float(first_eigenvalues[mode_count - 1].real), 0.0)
-        hull = max(zip(hulls.a.tolist(), hulls.c.tolist(), strict=True))
-        ends = [
+        largest_hull = max(zip(hulls.a.tolist(), hulls.c.tolist(), strict=True))
+        proof_w = [
             points[-1]
-            for k in COMPLETENESS_SETTINGS.point_counts
-            if len(points := points_right_of_hull(line, *hull, k))
+            for point_count in COMPLETENESS_SETTINGS.point_counts
+            if len(points := points_right_of_hull(line, *largest_hull, point_count))
         ]
-        near_ends = [end for end in ends if end <= ARM_FOLLOWING_SETTINGS.w_bound_ratio * W]
+        near_ends = [
+            largest_w for largest_w in proof_w if largest_w <= ARM_FOLLOWING_SETTINGS.w_bound_ratio * W
+        ]
         family = interpolated_family(path, low, high, max([W, *near_ends]))
     except (ValueError, FloatingPointError):
         return None
@@ -199,7 +204,7 @@ def _eigenvalues_of_previous_interval(
 ) -> Complex | None:
     """Eigenvalues, (m,), at p, from the previous interval `previous`; None unless p is the last point of this
     interval, `added_mode_count` modes were followed there, and all its points are proved complete."""
-    if previous is None or previous.further_modes != added_mode_count or previous.p[-1] != p:
+    if previous is None or previous.further_mode_count != added_mode_count or previous.p[-1] != p:
         return None
     if previous.proved_points(request.modes) < len(previous.p):
         return None
@@ -212,8 +217,10 @@ def _leading_roots(
     """The leading eigenvalues at path variable p, without a proof: the wanted modes and `added_mode_count`
     more modes; None if the solve fails."""
     try:
-        modes = request.modes + added_mode_count
-        search = SpectrumSearch(path.rod_at(p), replace(request, modes=modes, certify=False), requested=modes)
+        mode_count = request.modes + added_mode_count
+        search = SpectrumSearch(
+            path.rod_at(p), replace(request, modes=mode_count, certify=False), requested_count=mode_count
+        )
         with np.errstate(all="ignore"):
             search.outcome()
     except FAILURES:

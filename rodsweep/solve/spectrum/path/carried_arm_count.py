@@ -18,9 +18,10 @@ from .carried_count import leading_eigenvalues
 
 
 class ArmCountCarrier:
-    """Carries counts along the arms of an interval, to fill `proved_modes` at points without a proof. modes:
-    number of requested modes. w, error: followed eigenvalues by descending real part, (points, m). lines:
-    real part of the rightmost line left of all requested eigenvalues, (points,)."""
+    """Carries counts along the arms of an interval, to fill `proved_counts` at points without a proof. modes:
+    number of requested modes. w, error: followed eigenvalues by descending real part, and their errors,
+    (points, m). lines: real part, at each point, of the rightmost line to the left of all requested
+    eigenvalues, (points,)."""
 
     def __init__(self, path: ParameterPath, interval: ArmInterval, mode_count: int):
         self.path = path
@@ -31,15 +32,15 @@ class ArmCountCarrier:
         self.lines = np.minimum(last.real, 0.0) - NO_CROSSING_SETTINGS.line_distance_ratio * np.abs(last)
 
     def carry_counts(self) -> None:
-        """Fills `interval.proved_modes` wherever a count can be carried."""
+        """Fills `interval.proved_counts` wherever a count can be carried."""
         # Where even the last followed eigenvalue grows, not all growing eigenvalues are followed.
-        unproved = np.flatnonzero((self.interval.proved_modes < self.modes) & (self.w[:, -1].real <= 0))
+        unproved = np.flatnonzero((self.interval.proved_counts < self.modes) & (self.w[:, -1].real <= 0))
         for run in np.split(unproved, np.flatnonzero(np.diff(unproved) > 1) + 1):
             first = int(run[0]) if len(run) else 0
             end = first + len(run)
             skipped_count = 1
             while end - first >= NO_CROSSING_SETTINGS.arm_count:
-                points, lines = self._longest_chain(first, end - 1)
+                points, lines = self._carried_points(first, end - 1)
                 if not lines:
                     # Further points often fail, too, so every further failure skips twice as many points.
                     first += skipped_count
@@ -50,31 +51,31 @@ class ArmCountCarrier:
                 first = points[-1] + 1
                 skipped_count = 1
 
-    def _longest_chain(self, index: int, last_index: int) -> tuple[list[int], list[float]]:
-        """Returns (points, lines): the longest chain found of points from `index` to `last_index`; no unknown
-        eigenvalue crosses lines[k] between points[k] and points[k + 1]. No lines if no count can be carried
-        from the first point."""
-        shortest = NO_CROSSING_SETTINGS.arm_count - 1
+    def _carried_points(self, index: int, last_index: int) -> tuple[list[int], list[float]]:
+        """Returns (points, lines). points: indices of the points, from `index` to at most `last_index`, from
+        each of which the count is carried to the next. lines: real parts; no unknown eigenvalue crosses
+        lines[k] between points[k] and points[k + 1]; empty if the count cannot be carried from `index`."""
+        min_stride = NO_CROSSING_SETTINGS.arm_count - 1
         points = [index]
         lines: list[float] = []
-        confirmed = None
+        confirmed_line = None
         stride = last_index - index
-        while last_index - index >= shortest:
+        while last_index - index >= min_stride:
             next_index = min(index + stride, last_index)
-            if last_index - next_index < shortest:
+            if last_index - next_index < min_stride:
                 next_index = last_index
             line = float(self.lines[index : next_index + 1].min())
-            if confirmed is None or confirmed > line:
-                confirmed = self._confirmed_line(index, line)
-                if confirmed is None:
+            if confirmed_line is None or confirmed_line > line:
+                confirmed_line = self._confirmed_line(index, line)
+                if confirmed_line is None:
                     break
             if self._is_line_free(line, index, next_index):
                 points.append(next_index)
                 lines.append(line)
-                confirmed = line
+                confirmed_line = line
                 index = next_index
                 stride *= 2
-            elif next_index - index < 2 * shortest:
+            elif next_index - index < 2 * min_stride:
                 break
             else:
                 stride = (next_index - index) // 2
@@ -95,10 +96,11 @@ class ArmCountCarrier:
         return proves_no_crossing(line, rods, p, known_w, interval.family, interval.hulls)
 
     def _store_proved_modes(self, points: list[int], lines: list[float]) -> None:
-        """Fills `interval.proved_modes` along a chain where no followed eigenvalue is close to the line."""
+        """Fills `interval.proved_counts` between successive `points`, where no followed eigenvalue is close
+        to the line."""
         for (first, last), line in zip(pairwise(points), lines, strict=True):
             part = slice(first, last + 1)
             w = self.w[part]
             is_clear = (np.abs(w.real - line) > 2 * self.error[part]).all(axis=1)
-            counts = np.where(is_clear, (w.real > line).sum(axis=1), self.interval.proved_modes[part])
-            self.interval.proved_modes[part] = counts
+            counts = np.where(is_clear, (w.real > line).sum(axis=1), self.interval.proved_counts[part])
+            self.interval.proved_counts[part] = counts

@@ -107,8 +107,9 @@ def _widest_open_gap(
 
 @compiled
 def _interval_end(track: FollowedEigenvalues, i: int, gap: int, p: Array, coefficients: Array) -> IntervalEnd:
-    """Point i of a path as an end of a moving line, which lies in the middle of a gap there.
-    gap: number of eigenvalues to the right of the gap. p: (points,). coefficients: (points, 4)."""
+    """End, at point i of a path, of an interval over which a vertical line moves; at point i the line lies in
+    the middle of a gap. gap: number of eigenvalues to the right of the gap. p: (points,). coefficients:
+    (points, 4)."""
     F, nu, c2, gamma3 = coefficients[i]
     return IntervalEnd(p[i], Coefficients(F, nu, c2, gamma3), line_in_gap(track, i, gap)[0])
 

@@ -66,19 +66,20 @@ class FollowedArms:
         )
 
     def eigenvalue_slope(self, w: complex, p: float) -> tuple[complex, float] | None:
-        """Returns (dw/dp, error of w) for an eigenvalue w that `spectrum` returned at p; None for others."""
+        """Returns (dw/dp, error of w) for an eigenvalue w that `spectrum` returned at p; None for any other
+        w."""
         for eigenvalues in self._proved_by_p.get(p, []):
             for k in np.flatnonzero(eigenvalues.track.w[0] == w).tolist():
                 return complex(eigenvalues.track.slope[0, k]), float(eigenvalues.track.error[0, k])
         return None
 
-    def spectrum(self, p: float, modes: int) -> Spectrum | None:
-        """The leading `modes` eigenvalues at p; None unless followed, accurate and proved complete."""
+    def spectrum(self, p: float, mode_count: int) -> Spectrum | None:
+        """The leading `mode_count` eigenvalues at p; None unless followed, accurate and proved complete."""
         self._follow_to(p)
-        proved = self._proved_by_p.setdefault(p, [])
-        if not any(modes <= eigenvalues.max_tried_modes for eigenvalues in proved):
-            proved += self._proved_eigenvalues_at(p, modes)
-        spectra = (eigenvalues.spectrum(modes, self.request.accuracy) for eigenvalues in proved)
+        proved_at_p = self._proved_by_p.setdefault(p, [])
+        if not any(mode_count <= eigenvalues.max_tried_mode_count for eigenvalues in proved_at_p):
+            proved_at_p += self._proved_eigenvalues_at(p, mode_count)
+        spectra = (eigenvalues.spectrum(mode_count, self.request.accuracy) for eigenvalues in proved_at_p)
         return next((spectrum for spectrum in spectra if spectrum is not None), None)
 
     def followed_roots(self, p: float) -> KnownRoots | None:
@@ -132,7 +133,7 @@ class FollowedArms:
         i = int(np.argmin(np.abs(interval.p - p)))
         start = float(interval.p[i])
         if p == start and mode_count <= self.request.modes:
-            return slice_track(interval.track, i, i + 1), int(interval.proved_modes[i])
+            return slice_track(interval.track, i, i + 1), int(interval.proved_counts[i])
         for steps in ARM_FOLLOWING_SETTINGS.steps_from_nearest:
             grid = np.array([start]) if p == start else start + (p - start) * np.arange(steps + 1) / steps
             track = start_track(interval.track.w[i], len(grid))
@@ -146,22 +147,24 @@ class FollowedArms:
 
 
 class ProvedEigenvalues(NamedTuple):
-    """Eigenvalues at one path variable p; the leading `proved_modes` eigenvalues are proved complete.
-    max_tried_modes: largest number of modes whose proof was tried."""
+    """Eigenvalues at one path variable p; the leading `proved_count` eigenvalues are proved complete.
+    max_tried_mode_count: largest number of modes whose proof was tried."""
 
-    max_tried_modes: int
+    max_tried_mode_count: int
     track: FollowedEigenvalues
-    proved_modes: int
+    proved_count: int
 
-    def spectrum(self, modes: int, accuracy: float) -> Spectrum | None:
-        """The leading `modes` eigenvalues if they were followed, have the relative accuracy `accuracy` and
-        are proved complete; else None."""
-        if self.track.w.shape[1] < modes:
+    def spectrum(self, mode_count: int, accuracy: float) -> Spectrum | None:
+        """The leading `mode_count` eigenvalues if they were followed, have the relative accuracy `accuracy`
+        and are proved complete; else None."""
+        if self.track.w.shape[1] < mode_count:
             return None
-        is_good, unstable_counts = assess_points(self.track, np.array([self.proved_modes]), modes, accuracy)
+        is_good, unstable_counts = assess_points(
+            self.track, np.array([self.proved_count]), mode_count, accuracy
+        )
         if not is_good[0]:
             return None
-        w, error = leading_eigenvalues(self.track, modes)
+        w, error = leading_eigenvalues(self.track, mode_count)
         return Spectrum(
             status=SpectrumStatus.ok,
             eigenvalues=w[0],

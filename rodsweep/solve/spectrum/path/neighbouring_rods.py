@@ -36,7 +36,7 @@ from .prediction import FollowedEigenvalues, slice_track, start_track
 class NeighbouringRodsSettings:
     """Settings for eigenvalues followed along neighbouring rods of a sweep."""
 
-    further_modes: int = 2
+    further_mode_count: int = 2
     """Number of modes followed in addition to the requested modes. The line of a count lies in a gap between
     these additional modes."""
 
@@ -87,7 +87,7 @@ def follow_spectra(rods: NeighbouringRods, request: SpectrumRequest) -> Followed
     rod and proved complete; `is_solved` is False for every other rod."""
     start_time = time.perf_counter()
     n = len(rods)
-    columns = _unsolved_fields(n, request.modes)
+    fields = _unsolved_fields(n, request.modes)
     is_solved = np.zeros(n, np.bool_)
     start = 0
     stride = 1
@@ -99,31 +99,31 @@ def follow_spectra(rods: NeighbouringRods, request: SpectrumRequest) -> Followed
             stride *= 2
             continue
         indices = slice(start, start + len(followed_w.is_accepted))
-        columns["eigenvalues"][indices] = followed_w.w
-        columns["error_estimate"][indices] = errors_with_rounding(
+        fields["eigenvalues"][indices] = followed_w.w
+        fields["error_estimate"][indices] = errors_with_rounding(
             followed_w.w, followed_w.error, rods.path.rod
         )
-        columns["unstable_count"][indices] = followed_w.unstable_count
-        columns["certified"][indices] = True
+        fields["unstable_count"][indices] = followed_w.unstable_count
+        fields["certified"][indices] = True
         is_solved[indices] = followed_w.is_accepted
         start = indices.stop
         stride = 1
     seconds = np.full(n, (time.perf_counter() - start_time) / max(1, int(is_solved.sum())))
-    return FollowedSpectra(Spectrum(seconds=seconds, **columns), is_solved)
+    return FollowedSpectra(Spectrum(seconds=seconds, **fields), is_solved)
 
 
-def _unsolved_fields(n: int, mode_count: int) -> dict[str, Any]:
-    """Arrays for the fields of a `Spectrum` of n rods, filled with the values of an unsolved rod."""
-    zeros = np.zeros(n, np.int64)
+def _unsolved_fields(rod_count: int, mode_count: int) -> dict[str, Any]:
+    """Arrays for the fields of a `Spectrum` of several rods, filled with the values of an unsolved rod."""
+    zeros = np.zeros(rod_count, np.int64)
     return {
-        "eigenvalues": np.full((n, mode_count), COMPLEX_NAN),
-        "error_estimate": np.full((n, mode_count), np.nan),
+        "eigenvalues": np.full((rod_count, mode_count), COMPLEX_NAN),
+        "error_estimate": np.full((rod_count, mode_count), np.nan),
         "unstable_count": zeros - 1,
-        "certified": np.zeros(n, np.bool_),
+        "certified": np.zeros(rod_count, np.bool_),
         "elements": zeros.copy(),
         "order": zeros.copy(),
         "status": zeros + SpectrumStatus.ok,
-        "message": np.full(n, "", object),
+        "message": np.full(rod_count, "", object),
     }
 
 
@@ -138,13 +138,13 @@ def _followed_eigenvalues(
         return None  # the linear rod to which uniform rubber is equivalent has the closed form and its proof
     if has_varying_taper or not rod.is_uniform_and_linear:
         return follow_spectra_of_arms(rods.path, rods.path_variables[start:], request)
-    seed = _first_eigenvalues(rods.rod_at(start), request)
-    if seed is None:
+    first = _first_eigenvalues(rods.rod_at(start), request)
+    if first is None:
         return None
-    first, proved_count = seed
+    first_w, proved_count = first
     modes = request.modes
     later_rods = NeighbouringRods(rods.path, rods.values[start:])
-    track = start_track(first, len(later_rods))
+    track = start_track(first_w, len(later_rods))
     n = follow_eigenvalues(
         track, later_rods.coefficients, later_rods.path_variables, rods.path.direction, modes
     )
@@ -164,18 +164,18 @@ def follow_spectra_of_arms(path: ParameterPath, p: Array, request: SpectrumReque
     interval = follow_interval(path, p, request, counts_follow=True)
     if interval is None:
         return None
-    if (interval.proved_modes < request.modes).sum() >= ARM_FOLLOWING_SETTINGS.min_unproved_points:
-        number = ARM_FOLLOWING_SETTINGS.hulls_per_unproved_interval
-        hulls = hulls_along(path, interval.family.p_low, interval.family.p_high, number)
+    if (interval.proved_counts < request.modes).sum() >= ARM_FOLLOWING_SETTINGS.min_unproved_points:
+        hull_count = ARM_FOLLOWING_SETTINGS.hulls_per_unproved_interval
+        hulls = hulls_along(path, interval.family.p_low, interval.family.p_high, hull_count)
         interval = interval._replace(hulls=hulls)
     ArmCountCarrier(path, interval, request.modes).carry_counts()
-    for i in np.flatnonzero(interval.proved_modes < request.modes).tolist():
+    for i in np.flatnonzero(interval.proved_counts < request.modes).tolist():
         point_track = slice_track(interval.track, i, i + 1)
-        interval.proved_modes[i] = confirmed_count_at(
+        interval.proved_counts[i] = confirmed_count_at(
             path, interval, float(interval.p[i]), request.modes, point_track
         )
     is_accepted, unstable_counts = assess_points(
-        interval.track, interval.proved_modes, request.modes, request.accuracy
+        interval.track, interval.proved_counts, request.modes, request.accuracy
     )
     return FollowedPoints(*leading_eigenvalues(interval.track, request.modes), unstable_counts, is_accepted)
 
@@ -217,11 +217,11 @@ def _proved_counts_along(
 
 
 def _first_eigenvalues(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int] | None:
-    """Returns (eigenvalues, proved_count); None after a failure or without a proof. eigenvalues: to follow,
-    (m,), without unpaired complex eigenvalues. proved_count: number of eigenvalues proved complete."""
+    """Returns (eigenvalues, proved_count); None after a failure or without a proof. eigenvalues: start of the
+    followed eigenvalues, (m,), none complex and unpaired. proved_count: number proved complete."""
     try:
-        modes = request.modes + NEIGHBOURING_RODS_SETTINGS.further_modes
-        search = SpectrumSearch(rod, replace(request, modes=modes - 1, certify=True), requested=modes)
+        count = request.modes + NEIGHBOURING_RODS_SETTINGS.further_mode_count
+        search = SpectrumSearch(rod, replace(request, modes=count - 1, certify=True), requested_count=count)
         with np.errstate(all="ignore"):
             outcome = search.outcome()
     except FAILURES:

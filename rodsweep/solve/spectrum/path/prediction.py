@@ -35,8 +35,9 @@ EIGENVALUE_PREDICTION_SETTINGS = EigenvaluePredictionSettings()
 
 
 class FollowedEigenvalues(NamedTuple):
-    """Followed eigenvalues w, their slopes dw/dp and absolute errors, (points, m) each. descending_order:
-    their indices at each point by descending real part, then descending frequency, (points, m)."""
+    """Track of m eigenvalues along the points of a path: eigenvalues w, their slopes dw/dp and absolute
+    errors, (points, m) each. descending_order: their indices at each point by descending real part, then
+    descending frequency, (points, m)."""
 
     w: Complex
     slope: Complex
@@ -51,13 +52,14 @@ class KnownRoots(NamedTuple):
     error: Array
 
 
-def start_track(first: Complex, point_count: int) -> FollowedEigenvalues:
-    """A track of `point_count` points; only the first is filled, with `first`, (m,), in descending order."""
-    shape = (point_count, len(first))
+def start_track(first_eigenvalues: Complex, point_count: int) -> FollowedEigenvalues:
+    """A track of `point_count` points; only the first is filled, with `first_eigenvalues`, (m,), in
+    descending order."""
+    shape = (point_count, len(first_eigenvalues))
     order = np.zeros(shape, np.int64)
-    order[0] = np.arange(len(first))
+    order[0] = np.arange(len(first_eigenvalues))
     track = FollowedEigenvalues(np.empty(shape, complex), np.empty(shape, complex), np.empty(shape), order)
-    track.w[0] = first
+    track.w[0] = first_eigenvalues
     return track
 
 
@@ -71,7 +73,8 @@ def slice_track(track: FollowedEigenvalues, start: int, stop: int) -> FollowedEi
 
 @compiled
 def find_conjugates(w: Complex, conjugate: NDArray) -> None:
-    """Writes the index of the conjugate of each eigenvalue w into `conjugate`, (m,); -1 for real ones."""
+    """Writes the index of the conjugate of each eigenvalue w into `conjugate`, (m,); -1 for a real
+    eigenvalue."""
     for k in range(len(w)):
         conjugate[k] = -1
         if w[k].imag != 0:
@@ -83,7 +86,7 @@ def find_conjugates(w: Complex, conjugate: NDArray) -> None:
 @compiled
 def _pair_meeting_eigenvalues(w: Complex, slope: Complex, step: float, partner: NDArray) -> None:
     """Pairs real eigenvalues that are about to meet, the earliest meeting first: writes the index of each
-    one's partner into `partner`, (m,). w, slope: eigenvalues and dw/dp, (m,). step: change of p."""
+    eigenvalue's partner into `partner`, (m,). w, slope: eigenvalues and dw/dp, (m,). step: change of p."""
     while True:
         min_steps = EIGENVALUE_PREDICTION_SETTINGS.max_steps_to_meeting
         a = -1

@@ -153,7 +153,7 @@ def correct_until_converged(function: FoldFunction | TorusFunction, orbit: Orbit
     Unsolvable."""
     value = function.value(orbit)
     previous_change = np.inf
-    for number in range(AUGMENTED_SETTINGS.max_corrections):
+    for correction_index in range(AUGMENTED_SETTINGS.max_corrections):
         function.correct_vectors(orbit)
         previous_value = value
         value = function.value(orbit)
@@ -166,7 +166,7 @@ def correct_until_converged(function: FoldFunction | TorusFunction, orbit: Orbit
         if change > previous_change:
             break
         # The first value belongs to the cycle of the matrix; by chance it may be as close as the second.
-        previous_change = change if number > 0 else np.inf
+        previous_change = change if correction_index > 0 else np.inf
     raise Unsolvable("the iteration for the test function of the special point does not converge")
 
 
@@ -178,6 +178,8 @@ def _real_and_imaginary(vector: Array) -> Array:
 def pair_nearest_unit_circle(matrix: BorderedMatrix) -> complex | None:
     """Complex multiplier nearest to the unit circle, over the solved time interval of the orbit of `matrix`;
     None if all multipliers are real."""
-    h = matrix.multipliers_over_solved_part
-    pairs = h[np.abs(h.imag) > SPECIAL_POINT_SETTINGS.real_multiplier_tolerance * np.abs(h)]
+    multipliers = matrix.multipliers_over_solved_part
+    pairs = multipliers[
+        np.abs(multipliers.imag) > SPECIAL_POINT_SETTINGS.real_multiplier_tolerance * np.abs(multipliers)
+    ]
     return complex(pairs[np.argmin(np.abs(np.abs(pairs) - 1))]) if len(pairs) else None

@@ -84,19 +84,19 @@ class NearbyCycleSolver:
             # The change of the test function, divided by `slope`, is a distance across the curve.
             change_after_step = max(change, abs(value - previous_value) / slope)
             # At the first correction the ratio is estimated from the distance to the cycle of the matrix.
-            rate = (
+            correction_ratio = (
                 change_after_step / previous_change
                 if previous_change
                 else min(1.0, self.contraction_rate * distance)
             )
             if previous_change and not self._family.has_small_cycles:
-                contraction = AUGMENTED_SETTINGS.contraction_safety_factor * rate / distance
+                contraction = AUGMENTED_SETTINGS.contraction_safety_factor * correction_ratio / distance
                 self.contraction_rate = max(AUGMENTED_SETTINGS.min_contraction_rate, contraction)
-            if change_after_step * min(rate, 1.0) <= max(
+            if change_after_step * min(correction_ratio, 1.0) <= max(
                 tolerance, AUGMENTED_SETTINGS.tolerance_to_distance_ratio * abs(value) / slope
             ):
                 return orbit, value
-            if previous_change and rate > AUGMENTED_SETTINGS.max_correction_ratio:
+            if previous_change and correction_ratio > AUGMENTED_SETTINGS.max_correction_ratio:
                 if change_after_step <= AUGMENTED_SETTINGS.rounding_correction:
                     return orbit, value
                 self._assemble_matrix(orbit)
