@@ -41,7 +41,7 @@ class EnvironmentIncomplete(UserError):
     exit_status = 3
 
 
-def import_refusal(modules: str, reason: object, extra: str = "solvers") -> EnvironmentIncomplete:
+def import_failure_error(modules: str, reason: object, extra: str = "solvers") -> EnvironmentIncomplete:
     """EnvironmentIncomplete for modules whose import failed, with a message that says how to install them.
 
     modules: names of the modules, for the message. reason: error raised by the import. extra: name of the

@@ -91,20 +91,20 @@ def report(make_position: PositionMaker = SolvePosition) -> None:
     make_position: function that returns the position. By default the position is empty, and the report only
     lets a listener end the solve.
     """
-    for listener, outside in _listeners.get():
-        listener(partial(_position_in_whole_solve, make_position, outside))
+    for listener, enclosing_part_count in _listeners.get():
+        listener(partial(_position_in_whole_solve, make_position, enclosing_part_count))
 
 
-def _position_in_whole_solve(make_position: PositionMaker, outside: int) -> SolvePosition:
+def _position_in_whole_solve(make_position: PositionMaker, enclosing_part_count: int) -> SolvePosition:
     """Position within the whole solve that a listener observes; a position without text is returned
     unchanged.
 
-    make_position: function that returns the position within the innermost part. outside: number of parts that
-    enclose the listener's `with` block.
+    make_position: function that returns the position within the innermost part. enclosing_part_count: number
+    of parts that enclose the listener's `with` block.
     """
     position = make_position()
     if not position.text:
         return position
-    for part in reversed(_solve_parts.get()[outside:]):
+    for part in reversed(_solve_parts.get()[enclosing_part_count:]):
         position = part.position_in_whole(position)
     return position

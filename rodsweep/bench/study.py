@@ -1,4 +1,4 @@
-"""Parts of all benchmarks: methods timed in turn on cases, errors of the results, and tables in Markdown."""
+"""Functions for all benchmarks: timing of methods in turn, errors of results, and tables in Markdown."""
 
 import resource
 import time
@@ -158,7 +158,7 @@ def result_or_error(run: Callable[[Any], Outcome], case: Any) -> Outcome | Excep
         return error
 
 
-Judge = Callable[[Any], dict[str, Any]]
+ErrorMeasure = Callable[[Any], dict[str, Any]]
 """Function from a result of a method to a dictionary with `error` and further fields of `Measurement`."""
 
 
@@ -167,29 +167,29 @@ class CaseWithErrorMeasure(NamedTuple):
 
     name: str
     case: Any
-    judge: Judge
+    measure_error: ErrorMeasure
 
 
 def measure_case(
-    name: str, case: Any, contenders: Sequence[TimedMethod], rounds: int, judge: Judge
+    name: str, case: Any, contenders: Sequence[TimedMethod], round_count: int, measure_error: ErrorMeasure
 ) -> list[Measurement]:
-    """Measurements of all contenders on one case, timed in turn. judge: function from a method's result to
-    the fields of `Measurement`."""
-    return measure_cases([CaseWithErrorMeasure(name, case, judge)], contenders, rounds)
+    """Measurements of all contenders on one case, timed in turn. measure_error: function from a method's
+    result to the fields of `Measurement`."""
+    return measure_cases([CaseWithErrorMeasure(name, case, measure_error)], contenders, round_count)
 
 
 def measure_cases(
-    entries: Sequence[CaseWithErrorMeasure], contenders: Sequence[TimedMethod], rounds: int
+    cases: Sequence[CaseWithErrorMeasure], contenders: Sequence[TimedMethod], round_count: int
 ) -> list[Measurement]:
-    """Measurements of all contenders on all cases `entries`, timed in turn."""
-    pairs = [(entry, contender) for entry in entries for contender in contenders]
+    """Measurements of all contenders on all cases `cases`, timed in turn."""
+    pairs = [(entry, contender) for entry in cases for contender in contenders]
     runs = [partial(result_or_error, contender.run, entry.case) for entry, contender in pairs]
-    times = time_runs(runs, [0 if contender.is_slow else rounds for _, contender in pairs])
+    times = time_runs(runs, [0 if contender.is_slow else round_count for _, contender in pairs])
     measurements = []
     for (entry, c), timed in zip(pairs, times, strict=True):
         failed = isinstance(timed.outcome, Exception)
-        judged = {"failure": f"failed ({type(timed.outcome).__name__})"}
-        fields = {"error": inf} | (judged if failed else entry.judge(timed.outcome))
+        failure_fields = {"failure": f"failed ({type(timed.outcome).__name__})"}
+        fields = {"error": inf} | (failure_fields if failed else entry.measure_error(timed.outcome))
         names = {"case": entry.name, "method": c.method, "setting": c.setting, "group": c.group}
         fields |= names | {"seconds": timed.median, "least_seconds": min(timed.seconds)}
         measurements.append(Measurement(**fields))

@@ -47,10 +47,10 @@ def print_job_check(job: Job) -> None:
         f"may compile for up to three minutes more), {cost.memory_bytes / 1e6:.0f} MB of memory per rank, "
         f"{job.points.count * job.layout.bytes_per_point / 1e6:.3g} MB of results"
     )
-    if cost.doubt:
+    if cost.underestimated_rods:
         console.print(
-            f"this estimate is uncertain: {cost.doubt} may take a hundred times as long, and several GB of "
-            "memory; try a single point or row first"
+            f"this estimate is uncertain: {cost.underestimated_rods} may take a hundred times as long, and "
+            "several GB of memory; try a single point or row first"
         )
     if cost.too_large_mesh_count:
         sampled = min(MAX_SAMPLED_POINTS, job.points.count)

@@ -114,7 +114,7 @@ def even_functions_by_roots(
     """
     R = M * M - 4 * square
     difference = cmath.sqrt(R)
-    # The sign without cancellation in M + apart; the smaller root follows from the product.
+    # The sign without cancellation in M + difference; the smaller root follows from the product.
     if (M.conjugate() * difference).real < 0:
         difference = -difference
     u = (M + difference) / 2

@@ -23,8 +23,8 @@ from .even_functions import (
 from .exponents import EXPONENT_SETTINGS, ROUNDING_UNIT, entire_cosh, modulus, squared_exponents
 
 EvenSum = tuple[EvenFunctionValues, complex, float]
-"""(s and d with derivatives, sum z+' E(z+) + z-' E(z-) times exp(-S), rounding error). The rounding error is
-of D exp(-S) in results of `even_parts`, and of the sum in results of `even_sum_by_squares`."""
+"""(s and d with derivatives, sum z+' E(z+) + z-' E(z-) times exp(-S), rounding error). `even_parts` returns
+the rounding error of D exp(-S), `even_sum_by_squares` the rounding error of the sum."""
 
 
 @compiled

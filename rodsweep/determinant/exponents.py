@@ -23,11 +23,11 @@ class ExponentSettings(KernelConstants):
     """A divisor with a smaller modulus is replaced by this number, which is far below every nonzero number in
     the formulas of D and has a finite inverse."""
     max_exponent: float = 600.0
-    """In exp(x), an x above this number is replaced by this number, since exp overflows at 709."""
+    """An exponent above this number is replaced by this number, since exp overflows at 709."""
     cosh_series_below: float = 0.1
-    """For |z| below this number, E(z) and dE/dz are computed by series: the closed form of dE/dz cancels."""
+    """E(z) and dE/dz are computed by series for |z| below this number: the closed form of dE/dz cancels."""
     sinh_series_below: float = 0.25
-    """For |q^2| below this number, sinh(q)/q and its slope are computed by series, because the closed form of
+    """sinh(q)/q and its slope are computed by series for |q^2| below this number, because the closed form of
     the slope would cancel."""
     field_ranges: ClassVar = {"max_exponent": (0.0, 709.0)}
 
@@ -56,8 +56,8 @@ def modulus(z: complex) -> float:
 
 @compiled
 def squared_exponents(w: complex, coefficients: Coefficients) -> tuple[complex, complex, complex]:
-    """(P, z+, z-) of a uniform rod at w != 0, in the notation of `rodsweep.determinant.value`. The smaller of
-    z+ and z- follows from the product z+ z-, without cancellation."""
+    """Returns (P, z+, z-) of a uniform rod at w != 0, in the notation of `rodsweep.determinant.value`. The
+    smaller of z+ and z- follows from the product z+ z-, without cancellation."""
     F, nu, c2, gamma3 = coefficients
     g = nu + F * c2
     P = cmath.sqrt(w * (g * nu + c2 * gamma3 * w))

@@ -77,10 +77,10 @@ class ParameterPath:
         """The path variable p at which the varying parameter has `value`."""
         return self.parameter.coordinate(value)
 
-    def value(self, p: float, error: float) -> tuple[float, float]:
-        """Returns (value of the varying parameter at p, error of this value). error: error of p."""
+    def value(self, p: float, p_error: float) -> tuple[float, float]:
+        """Returns (value of the varying parameter at p, error of this value). p_error: error of p."""
         # k = 1/p, so dk = dp/p^2.
-        return self.parameter.value(p), error / p**2 if self.is_compliance_path else error
+        return self.parameter.value(p), p_error / p**2 if self.is_compliance_path else p_error
 
     def rod_at(self, p: float) -> Rod:
         """The rod at p. Raises ValueError if the rod is invalid, for example crushed."""

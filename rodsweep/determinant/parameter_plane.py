@@ -101,11 +101,11 @@ class ParameterPlane:
         rod = self.rod_at(x, y)
         if not self.are_rods_uniform_and_linear:
             return self._determinant_of_arms(w, x, y)
-        (D, D_w, _, S, rounding_error), D_x = self._determinant_along_axis(w, rod, self.axes[0])
+        (D, D_w, _, log_scale, rounding_error), D_x = self._determinant_along_axis(w, rod, self.axes[0])
         _, D_y = self._determinant_along_axis(w, rod, self.axes[1])
         # The rounding errors of w, x and y add to the rounding error of D.
         rounding = rounding_error + ROUND_OFF * (abs(D_x) + abs(D_y) + abs(w * D_w))
-        return ValueOnPlane(D, D_w, D_x, D_y, S, rounding)
+        return ValueOnPlane(D, D_w, D_x, D_y, log_scale, rounding)
 
     def determinant_value(self, w: complex, x: float, y: float) -> DeterminantValue:
         """D and dD/dw at w, for the rod at scaled coordinates (x, y)."""
@@ -119,27 +119,27 @@ class ParameterPlane:
     ) -> tuple[tuple[tuple[float, float], ...], float]:
         """Returns (stencil, step) of a difference along axis number `axis_index`, 0 or 1, at scaled
         coordinates (x, y): `CENTRAL_STENCIL`, or `ONE_SIDED_STENCIL` if the rod two steps back is invalid."""
-        h = self.difference_step_at(x, y, axis_index, PLANE_DIFFERENCE_SETTINGS.max_difference_step)
-        two_steps_back = (x - 2 * h, y) if axis_index == 0 else (x, y - 2 * h)
-        return (CENTRAL_STENCIL if self.is_valid_at(*two_steps_back) else ONE_SIDED_STENCIL), h
+        step = self.difference_step_at(x, y, axis_index, PLANE_DIFFERENCE_SETTINGS.max_difference_step)
+        two_steps_back = (x - 2 * step, y) if axis_index == 0 else (x, y - 2 * step)
+        return (CENTRAL_STENCIL if self.is_valid_at(*two_steps_back) else ONE_SIDED_STENCIL), step
 
     def _determinant_of_arms(self, w: complex, x: float, y: float) -> ValueOnPlane:
         """`determinant` for arms without a closed form of D; derivatives by x and y are fourth-order
         differences."""
-        D, D_w, S, rounding_error = self.determinant_value(w, x, y)
+        D, D_w, log_scale, rounding_error = self.determinant_value(w, x, y)
         slopes = []
         for axis_index in range(2):
-            stencil, h = self.difference_stencil(x, y, axis_index)
+            stencil, step = self.difference_stencil(x, y, axis_index)
             slope = 0j
             for offset, weight in stencil:
                 neighbour = self.determinant_value(
-                    w, *((x + offset * h, y) if axis_index == 0 else (x, y + offset * h))
+                    w, *((x + offset * step, y) if axis_index == 0 else (x, y + offset * step))
                 )
-                slope += weight * neighbour.D * exp(neighbour.log_scale - S) / h
+                slope += weight * neighbour.D * exp(neighbour.log_scale - log_scale) / step
             slopes.append(slope)
         D_x, D_y = slopes
         rounding = rounding_error + ROUND_OFF * (abs(D_x) + abs(D_y) + abs(w * D_w))
-        return ValueOnPlane(D, D_w, D_x, D_y, S, rounding)
+        return ValueOnPlane(D, D_w, D_x, D_y, log_scale, rounding)
 
     @staticmethod
     def _determinant_along_axis(

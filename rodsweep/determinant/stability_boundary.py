@@ -24,7 +24,7 @@ class BoundaryPointSettings:
     max_steps: int = 12
     """Newton's method fails if it has not converged after this number of steps."""
     max_step: float = 0.5
-    """Newton's method fails after a step larger than this number, in units of the scaled axes or of h."""
+    """Newton's method fails after a step of more than this in a coordinate of v = (x, y, h)."""
     converged_step_in_rounding_errors: float = 4.0
     """Newton's method has converged if |step| <= this number times the rounding error of the point."""
     min_jacobian_determinant: float = EXPONENT_SETTINGS.min_divisor
@@ -41,7 +41,8 @@ BOUNDARY_POINT_SETTINGS = BoundaryPointSettings()
 
 
 class BoundarySolution(NamedTuple):
-    """A point v = (x, y, h) on a stability boundary, the equations' Jacobian at v, (2, 3), and its error."""
+    """A point v = (x, y, h) on a stability boundary, h = log |w|; Jacobian of the equations at v, (2, 3);
+    error of v."""
 
     v: Array
     jacobian: Array
@@ -97,16 +98,16 @@ class StabilityBoundary:
             inverse = np.linalg.inv(matrix)
             step = inverse @ right_side
             error = float(np.abs(inverse[:, :2]).sum(axis=1).max()) * rounding
-            size = float(np.abs(step).max())
+            step_size = float(np.abs(step).max())
             v = v + step
-            if size <= BOUNDARY_POINT_SETTINGS.converged_step_in_rounding_errors * error or (
-                size < BOUNDARY_POINT_SETTINGS.stagnant_step
-                and size > BOUNDARY_POINT_SETTINGS.converging_step_ratio * previous_size
+            if step_size <= BOUNDARY_POINT_SETTINGS.converged_step_in_rounding_errors * error or (
+                step_size < BOUNDARY_POINT_SETTINGS.stagnant_step
+                and step_size > BOUNDARY_POINT_SETTINGS.converging_step_ratio * previous_size
             ):
-                return BoundarySolution(v, jacobian, max(error, size))
-            if size > BOUNDARY_POINT_SETTINGS.max_step or not np.isfinite(v).all():
+                return BoundarySolution(v, jacobian, max(error, step_size))
+            if step_size > BOUNDARY_POINT_SETTINGS.max_step or not np.isfinite(v).all():
                 return None
-            previous_size = size
+            previous_size = step_size
         return None
 
     def _hopf_equations(self, v: Array) -> tuple[Array, Array, float]:

@@ -66,9 +66,9 @@ def onset_between(
     complex_w = after_w[0].item()
     squared_half_gap = ((first_w.real - second_w.real) / 2) ** 2
     squared_frequency = complex_w.imag**2
-    guess = low + (high - low) * squared_half_gap / (squared_half_gap + squared_frequency)
+    guess_F = low + (high - low) * squared_half_gap / (squared_half_gap + squared_frequency)
     centre = ((first_w.real + second_w.real) / 2 + complex_w.real) / 2
-    zero = double_eigenvalue_newton(centre, guess, *rods, high - low)
+    zero = double_eigenvalue_newton(centre, guess_F, *rods, high - low)
     if not low <= zero.p <= high:
         return None
     return StabilityChange("onset", zero.p, zero.error_of_p, zero.eta_or_x, 0.0)

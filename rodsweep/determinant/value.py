@@ -48,7 +48,8 @@ DETERMINANT_SETTINGS = DeterminantSettings()
 
 
 class DeterminantValue(NamedTuple):
-    """D and D_w = dD/dw, both times exp(-S), S = `log_scale`. rounding_error: bound for D exp(-S)."""
+    """D and D_w = dD/dw, both times exp(-S), S = `log_scale`. rounding_error: bound of the rounding error of
+    D exp(-S)."""
 
     D: complex
     D_w: complex
@@ -57,7 +58,7 @@ class DeterminantValue(NamedTuple):
 
 
 class ExponentDerivatives(NamedTuple):
-    """P, its derivatives P_w and P_ww by w, z+ (`z_plus`) and z- (`z_minus`), see the module docstring."""
+    """P = (z+ - z-)/4, its derivatives P_w and P_ww by w, z+ (`z_plus`) and z- (`z_minus`)."""
 
     P: complex
     P_w: complex

@@ -35,15 +35,17 @@ def balance_coefficients_at_nodes(rod: Rod, mesh: Mesh) -> BalanceCoefficients:
     return BalanceCoefficients(compliance, drag, rod.F, rest_strain)
 
 
-def balance_coefficient_derivatives_at_nodes(rod: Rod, name: str, mesh: Mesh) -> BalanceCoefficients:
+def balance_coefficient_derivatives_at_nodes(
+    rod: Rod, parameter_name: str, mesh: Mesh
+) -> BalanceCoefficients:
     """The derivative of `balance_coefficients_at_nodes` with respect to the coordinate of the parameter
-    `name`: 1/k for a stiffness k, else the parameter itself."""
-    if rod.is_uniform_and_linear and name != "taper":
-        return rod.balance_coefficient_derivative(name)
+    `parameter_name`: 1/k for a stiffness k, else the parameter itself."""
+    if rod.is_uniform_and_linear and parameter_name != "taper":
+        return rod.balance_coefficient_derivative(parameter_name)
     sections = _sections_inside_elements(rod, mesh)
-    changes = rod.section_derivatives(name, mesh.one_sided_nodes, sections)
-    compliance, drag, rest = _mean_coefficients_at_nodes(changes, mesh)
-    return BalanceCoefficients(compliance, drag, 1.0 if name == "F" else 0.0, rest)
+    derivatives = rod.section_derivatives(parameter_name, mesh.one_sided_nodes, sections)
+    compliance, drag, rest_strain = _mean_coefficients_at_nodes(derivatives, mesh)
+    return BalanceCoefficients(compliance, drag, 1.0 if parameter_name == "F" else 0.0, rest_strain)
 
 
 def relative_bending_compliance_at_nodes(material: RodMaterial, mesh: Mesh) -> Array:
@@ -56,7 +58,8 @@ def relative_bending_compliance_at_nodes(material: RodMaterial, mesh: Mesh) -> A
 
 
 def jumps_on_mesh(rod: Rod, mesh: Mesh) -> Jumps:
-    """The nodes of a mesh at which the material of a rod jumps, and the material on both sides of them."""
+    """The nodes of a mesh at which the material of a rod jumps, and the material on both sides of each
+    jump."""
     indices, nodes = _indices_beside_jumps(rod.material, mesh)
     if not len(nodes):
         return NO_JUMPS
@@ -72,32 +75,32 @@ def jumps_on_mesh(rod: Rod, mesh: Mesh) -> Jumps:
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def _shares_of_sides(material: RodMaterial, taper: float, mesh: Mesh) -> Array:
     """The `jump_sides` of an arm, (k, 2, 7), with the weights of both sides in the means, and 0 in the
-    columns of the coefficients. Cached, because the weights are independent of all parameters but the
-    taper."""
+    columns of the coefficients. Cached, because the weights are independent of all parameters except
+    the taper."""
     indices, _ = _indices_beside_jumps(material, mesh)
     points = mesh.one_sided_nodes[indices]
     weights = _points_of_nodes(mesh).weights[indices]
     relative_compliances = material.relative_compliances(taper, points.ravel()).reshape(3, *points.shape)
-    fractions = [
+    strain_weights = [
         values / values.sum(axis=1, keepdims=True)
         for values in (weights * relative_compliances[0], weights * relative_compliances[2])
     ]
-    mean = weights / weights.sum(axis=1, keepdims=True)
+    mean_weights = weights / weights.sum(axis=1, keepdims=True)
     coefficients = np.zeros(points.shape)
-    shares = [coefficients, coefficients, coefficients, *fractions, mean, coefficients]
+    shares = [coefficients, coefficients, coefficients, *strain_weights, mean_weights, coefficients]
     return np.ascontiguousarray(np.stack(shares, axis=-1))
 
 
-def jump_derivatives(rod: Rod, name: str, mesh: Mesh) -> Array:
+def jump_derivatives(rod: Rod, parameter_name: str, mesh: Mesh) -> Array:
     """Derivatives of nu, c1 and c3 on both sides of each jump with respect to the coordinate of the parameter
-    `name`, (k, 2, 3). Returns `NO_JUMP_DERIVATIVE` for a rod without jumps and for a linear law, for which
-    the stress at a jump depends only on the mean strain."""
+    `parameter_name`, (k, 2, 3). Returns `NO_JUMP_DERIVATIVE` for a rod without jumps and for a linear law,
+    for which the stress at a jump depends only on the mean strain."""
     indices, nodes = _indices_beside_jumps(rod.material, mesh)
     if rod.material.constitutive_law is LINEAR or not len(nodes):
         return NO_JUMP_DERIVATIVE
-    changes = rod.section_derivatives(name, mesh.one_sided_nodes[indices].ravel())
-    c1, _, c3 = changes.compliance
-    return np.ascontiguousarray(np.stack([changes.nu, c1, c3], axis=-1).reshape(*indices.shape, 3))
+    derivatives = rod.section_derivatives(parameter_name, mesh.one_sided_nodes[indices].ravel())
+    c1, _, c3 = derivatives.compliance
+    return np.ascontiguousarray(np.stack([derivatives.nu, c1, c3], axis=-1).reshape(*indices.shape, 3))
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
@@ -109,12 +112,14 @@ def _sections_inside_elements(rod: Rod, mesh: Mesh) -> CrossSections:
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def _indices_beside_jumps(material: RodMaterial, mesh: Mesh) -> tuple[IntegerArray, IntegerArray]:
-    """Returns (points, nodes) of the k jumps. points: indices in the `one_sided_nodes` of the
-    points left and right of each jump, (k, 2). nodes: node of each jump, (k,). Cached."""
+    """Returns (indices, nodes) of the k jumps, cached. indices: indices, in `Elements.one_sided_nodes`, of
+    the points just left and just right of each jump, (k, 2). nodes: index of the node at each jump, (k,)."""
     jumps = material.jump_positions
-    ends = np.array([e for e in range(1, mesh.element_count) if mesh.edges[e] in jumps], np.int64)
-    nodes = np.array([mesh.node_ranges[e].start for e in ends], np.int64)
-    right_indices = nodes + ends
+    elements_behind_jumps = np.array(
+        [e for e in range(1, mesh.element_count) if mesh.edges[e] in jumps], np.int64
+    )
+    nodes = np.array([mesh.node_ranges[e].start for e in elements_behind_jumps], np.int64)
+    right_indices = nodes + elements_behind_jumps
     return np.stack([right_indices - 1, right_indices], axis=-1), nodes
 
 

@@ -50,12 +50,12 @@ class ExplicitSystem(RodOnMesh):
         """Values of z1 at which the stretch h1 is 0, at all nodes except the tip, (nodes,). At a jump, h1
         reaches 0 first on one side if the law is linear, and the value belongs to this side; for another law
         h1 reaches 0 on both sides at once."""
-        crushed = -self.nodal_rod.rest_strain[0, :-1] / self.sqrt_compliance[0, :-1]
+        z1 = -self.nodal_rod.rest_strain[0, :-1] / self.sqrt_compliance[0, :-1]
         if self.has_continuous_stresses:
             for node, sides in zip(self.nodal_rod.jumps, self.nodal_rod.jump_sides, strict=True):
                 # The larger value belongs to the side that is crushed first.
-                crushed[node] = self.sqrt_compliance[0, node] * (-sides[:, 0] / sides[:, 1]).max()
-        return np.ascontiguousarray(crushed)
+                z1[node] = self.sqrt_compliance[0, node] * (-sides[:, 0] / sides[:, 1]).max()
+        return np.ascontiguousarray(z1)
 
     def stresses(self, z: Values) -> Values:
         scaled_stresses = self.layout.stresses(z)
@@ -72,19 +72,19 @@ class ExplicitSystem(RodOnMesh):
 
     def state_derivative(self, z: Array) -> Array:
         """dz/dt of states z, both (..., unknowns), with time in tau2."""
-        out = np.empty(z.shape)
-        flat = z.reshape(-1, self.unknown_count), out.reshape(-1, self.unknown_count)
+        rates = np.empty(z.shape)
+        flat = z.reshape(-1, self.unknown_count), rates.reshape(-1, self.unknown_count)
         write_rates(*flat, self.sqrt_compliance, self.nodal_rod, self.mesh.matrices)
-        return out
+        return rates
 
     def jacobian(self, z: Array) -> Array:
         """Jacobians d(dz/dt)/dz, (..., unknowns, unknowns), of states z, (..., unknowns); time in tau2."""
         size = self.unknown_count
-        out = np.empty((*z.shape, size))
+        jacobians = np.empty((*z.shape, size))
         states = z.reshape(-1, size)
-        matrices = out.reshape(-1, size, size)
+        matrices = jacobians.reshape(-1, size, size)
         write_rate_jacobians(states, matrices, self.sqrt_compliance, self.nodal_rod, self.mesh.matrices)
-        return out.swapaxes(-1, -2)
+        return jacobians.swapaxes(-1, -2)
 
     def tip_position_and_velocity(self, z: Array, direction: Array) -> tuple[Array, Array]:
         """Returns (position, velocity) of the tip, (3, ...) each: (x, y, theta) at z, and its time derivative
@@ -103,10 +103,10 @@ class ExplicitSystem(RodOnMesh):
     def _shape_and_velocities(self, z: Array, direction: Array) -> Complex:
         """Complex-step evaluation of (x, y, theta) at all nodes, (3, ..., nodes + 1): the shape at z in the
         real part, the imaginary step times the velocity for dz/dt = direction in the imaginary part."""
-        change = self.element_strain_rates(z, TIP_VELOCITY_SETTINGS.imaginary_step * direction)
-        strains = self.element_strains(z) + 1j * change
+        strain_rates = self.element_strain_rates(z, TIP_VELOCITY_SETTINGS.imaginary_step * direction)
+        strains = self.element_strains(z) + 1j * strain_rates
         return shape_from_strains(self.mesh, strains, np.zeros(3)).astype(complex, copy=False)
 
-    def _broadcast_sqrt_compliance(self, field: Values) -> Array:
-        """`sqrt_compliance`, reshaped to broadcast against a field (3, ..., nodes + 1)."""
-        return self.sqrt_compliance.reshape(3, *(1,) * (field.ndim - 2), -1)
+    def _broadcast_sqrt_compliance(self, values: Values) -> Array:
+        """`sqrt_compliance`, reshaped to broadcast against `values`, (3, ..., nodes + 1)."""
+        return self.sqrt_compliance.reshape(3, *(1,) * (values.ndim - 2), -1)

@@ -68,38 +68,38 @@ def nodal_rod(
     law: int = 0,
     jumps: Jumps = NO_JUMPS,
 ) -> NodalRod:
-    """The `NodalRod` of a rod on a mesh. coefficients: of the balance at the nodes. unknown_velocities:
-    indices of the components of V that are unknowns. law: number of the constitutive law. jumps: jumps of the
-    material on this mesh."""
-    size = mesh.node_count + 1
-    rest_strain = _expanded_to_nodes(coefficients.rest_strain, size)
-    compliance = _expanded_to_nodes(coefficients.compliance, size)
-    resistance = _cached_drag_arrays(
+    """The `NodalRod` of a rod on a mesh. coefficients: coefficients of the balance at the nodes.
+    unknown_velocities: indices of the components of V that are unknowns. law: number of the constitutive law.
+    jumps: jumps of the material on this mesh."""
+    node_count = mesh.node_count + 1
+    rest_strain = _expanded_to_nodes(coefficients.rest_strain, node_count)
+    compliance = _expanded_to_nodes(coefficients.compliance, node_count)
+    drag_arrays = _cached_drag_arrays(
         coefficients.drag.tobytes(), coefficients.drag.shape, mesh, unknown_velocities
     )
-    return NodalRod(coefficients.tip_stress, rest_strain, compliance, *resistance, law, *jumps)
+    return NodalRod(coefficients.tip_stress, rest_strain, compliance, *drag_arrays, law, *jumps)
 
 
 def nodal_rod_derivative(
-    change: BalanceCoefficients, mesh: Mesh, sides: Array = NO_JUMP_DERIVATIVE
+    derivative: BalanceCoefficients, mesh: Mesh, jump_derivatives: Array = NO_JUMP_DERIVATIVE
 ) -> NodalRodDerivative:
-    """The `NodalRodDerivative` of a mesh. change: derivative of the coefficients by a parameter. sides:
-    derivatives of nu, c1 and c3 on both sides of each jump, (k, 2, 3)."""
-    fields = change.rest_strain, change.compliance, change.drag
-    rest_strain, compliance, drag = (_expanded_to_nodes(field, mesh.node_count + 1) for field in fields)
-    return NodalRodDerivative(change.tip_stress, rest_strain, compliance, drag, sides)
+    """The `NodalRodDerivative` of a mesh. derivative: derivative of the coefficients by a parameter.
+    jump_derivatives: derivatives of nu, c1 and c3 on both sides of each jump, (k, 2, 3)."""
+    arrays = derivative.rest_strain, derivative.compliance, derivative.drag
+    rest_strain, compliance, drag = (_expanded_to_nodes(values, mesh.node_count + 1) for values in arrays)
+    return NodalRodDerivative(derivative.tip_stress, rest_strain, compliance, drag, jump_derivatives)
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def _cached_drag_arrays(
-    drag: bytes, shape: tuple[int, ...], mesh: Mesh, unknown_velocities: tuple[int, ...]
+    drag_bytes: bytes, shape: tuple[int, ...], mesh: Mesh, unknown_velocities: tuple[int, ...]
 ) -> tuple[Array, Array, Array, IntegerArray]:
     """The result of `_drag_arrays`, cached by the bytes of the drag, because rods that differ only in F have
-    equal drags. drag, shape: bytes and shape of the array of drags. unknown_velocities: indices of the
+    equal drags. drag_bytes, shape: bytes and shape of the array of drags. unknown_velocities: indices of the
     components of V that are unknowns."""
     # Bytes can be a key of the cache, and the array is restored from the bytes.
-    values = np.frombuffer(drag).reshape(shape)
-    return _drag_arrays(values if len(shape) > 1 else values[:, None], mesh, unknown_velocities)
+    drags = np.frombuffer(drag_bytes).reshape(shape)
+    return _drag_arrays(drags if len(shape) > 1 else drags[:, None], mesh, unknown_velocities)
 
 
 def _drag_arrays(
@@ -116,8 +116,9 @@ def _drag_arrays(
     return drag, mobility, laplacian, np.array(unknown_velocities, np.int64)
 
 
-def _expanded_to_nodes(field: Array, size: int) -> Array:
-    """`field` as an array (d, size). field: (d, size), or one constant per component, (d,) or (d, 1)."""
-    out = np.empty((len(field), size))
-    out[:] = field.reshape(len(field), -1)
+def _expanded_to_nodes(values: Array, node_count: int) -> Array:
+    """`values` as an array (d, node_count). values: (d, node_count), or one constant per component, (d,) or
+    (d, 1)."""
+    out = np.empty((len(values), node_count))
+    out[:] = values.reshape(len(values), -1)
     return out

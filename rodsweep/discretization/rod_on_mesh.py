@@ -41,10 +41,10 @@ class RodOnMesh(ABC):
         """Stresses S of states x at all nodes, tip included, (3, ..., nodes + 1); the strain is E = E0 + C S.
         In a linear rod S is (n1 + F, n2, m3)."""
 
-    def with_coordinate(self, name: str, coordinate: float) -> Self:
-        """The same rod on the same mesh with another coordinate of the parameter `name` (see
+    def with_coordinate(self, parameter_name: str, coordinate: float) -> Self:
+        """The same rod on the same mesh with another coordinate of the parameter `parameter_name` (see
         `Rod.with_coordinate`). Raises ValueError for an invalid coordinate."""
-        return replace(self, rod=self.rod.with_coordinate(name, coordinate))
+        return replace(self, rod=self.rod.with_coordinate(parameter_name, coordinate))
 
     @cached_property
     def layout(self) -> StateLayout:
@@ -81,26 +81,26 @@ class RodOnMesh(ABC):
         """Strains (h1, h2, Pi) of states x at the nodes of every element, (3, ..., nodes + elements); at
         a jump, the strains of both sides."""
         S = self.stresses(x)
-        out = np.empty((*S.shape[:-1], self.mesh.element_nodes.size))
+        strains = np.empty((*S.shape[:-1], self.mesh.element_nodes.size))
         write_element_strains(
-            _flatten_middle_axes(S), self.nodal_rod, self.mesh.element_nodes, _flatten_middle_axes(out)
+            _flatten_middle_axes(S), self.nodal_rod, self.mesh.element_nodes, _flatten_middle_axes(strains)
         )
-        return out
+        return strains
 
-    def element_strain_rates(self, x: Array, change: Array) -> Array:
-        """Derivative of `element_strains` at states x along `change`, (3, ..., nodes + elements)."""
+    def element_strain_rates(self, x: Array, direction: Array) -> Array:
+        """Derivative of `element_strains` at states x along `direction`, (3, ..., nodes + elements)."""
         S = self.stresses(x)
-        dS = self.stresses(change)
+        dS = self.stresses(direction)
         dE = broadcast_to_field(self.nodal_rod.compliance, dS) * dS
-        out = np.empty((*S.shape[:-1], self.mesh.element_nodes.size))
+        rates = np.empty((*S.shape[:-1], self.mesh.element_nodes.size))
         write_element_strain_rates(
             _flatten_middle_axes(S),
             _flatten_middle_axes(dE),
             self.nodal_rod,
             self.mesh.element_nodes,
-            _flatten_middle_axes(out),
+            _flatten_middle_axes(rates),
         )
-        return out
+        return rates
 
     def shape(self, x: Array) -> Array:
         """Shape (x, y, theta) of states at all nodes, in L and rad, (3, ..., nodes + 1); the clamp is at the
@@ -119,10 +119,12 @@ class RodOnMesh(ABC):
         nu = broadcast_to_field(c.rest_strain, S)[0]
         (c1, c2, c3) = broadcast_to_field(c.compliance, S)
         density = self._strain_energy_density(nu, c1, c3, S[0], S[2])
-        for node, sides, numbers in zip(c.jumps, stresses_at_both_sides(c, S), c.jump_sides, strict=True):
+        for node, side_stresses, jump_sides in zip(
+            c.jumps, stresses_at_both_sides(c, S), c.jump_sides, strict=True
+        ):
             # The energy of the mean stress at a jump is not the mean of the energies of both sides.
             density[..., node] = 0.0
-            for (q1, q3), (nu, c1, c3, _, _, weight, _) in zip(sides, numbers, strict=True):
+            for (q1, q3), (nu, c1, c3, _, _, weight, _) in zip(side_stresses, jump_sides, strict=True):
                 density[..., node] += weight * self._strain_energy_density(nu, c1, c3, q1, q3)
         energy: Array = (density + c2 * S[1] ** 2 / 2) @ self.mesh.quadrature
         return energy
@@ -137,10 +139,10 @@ class RodOnMesh(ABC):
         # shortening/load tends to 1 for load -> 0. For c1 = 0 this limit replaces (h1 - 1)/c1 = 0/0.
         ratio = np.where(load == 0, 1.0, law.shortening(load) / np.where(load == 0, 1.0, load))
         scaled_strain = q1 - F * ratio  # (h1 - 1)/c1
-        stored: Values = (
+        energy_density: Values = (
             c1 * scaled_strain**2 * law.energy_over_square(h1) + law.bending_factor(h1) * c3 * q3**2 / 2
         )
-        return stored
+        return energy_density
 
     def stresses_on_mesh(self, target: Mesh, x: Array) -> Array:
         """Stresses S of states x at all nodes of the mesh `target`, (3, ..., nodes of target + 1)."""
@@ -149,10 +151,10 @@ class RodOnMesh(ABC):
             return interpolate_stress(self.rod, S, self.mesh, target)
         return interpolate_state_stress(self.nodal_rod, S, self.mesh, self.rod, target)
 
-    def stress_increments_on_mesh(self, target: Mesh, change: Array) -> Array:
-        """Increments of the stresses S for the increments `change` of states, at all nodes of the mesh
-        `target`, (3, ..., nodes of target + 1), by a linear map."""
-        return interpolate_stress(self.rod, self.stresses(change), self.mesh, target)
+    def stress_increments_on_mesh(self, target: Mesh, increments: Array) -> Array:
+        """Increments of the stresses S for the `increments` of states, (..., unknowns), at all nodes of the
+        mesh `target`, (3, ..., nodes of target + 1), by a linear map."""
+        return interpolate_stress(self.rod, self.stresses(increments), self.mesh, target)
 
     def least_stretch(self, x: Array) -> float:
         """Smallest stretch h1 of all nodes and states x, over both sides of each jump. The model requires a
@@ -165,12 +167,14 @@ class RodOnMesh(ABC):
         S = self.stresses(x)
         c = self.nodal_rod
         sections = np.stack([c.rest_strain[0], c.compliance[0], c.compliance[2], S[0], S[2]], axis=1)
-        for node, sides, numbers in zip(c.jumps, stresses_at_both_sides(c, S), c.jump_sides, strict=True):
+        for node, side_stresses, jump_sides in zip(
+            c.jumps, stresses_at_both_sides(c, S), c.jump_sides, strict=True
+        ):
             # The energy must be convex on each side; a section with the mean material does not exist.
-            left, right = np.column_stack([numbers[:, :3], sides])
+            left, right = np.column_stack([jump_sides[:, :3], side_stresses])
             sections[node] = left
             sections = np.vstack([sections, right])
-        tangents = (stress_tangent(c.law, LocalSection(*row[:3]), *row[3:]) for row in sections)
+        tangents = (stress_tangent(c.law, LocalSection(*section[:3]), *section[3:]) for section in sections)
         return all(T.M3 > 0 and T.N1 * T.M3 > T.N3 * T.M1 for T in tangents)
 
 

@@ -1,6 +1,6 @@
 """Indices of the fields in a flat state: stresses at all nodes except the tip, then unknown velocities.
 
-Other modules take indices into a state from here. Python code uses a `StateLayout`. Compiled code uses
+Other modules take indices into a state from this module. Python code uses a `StateLayout`. Compiled code uses
 `stress_index` and `velocity_index`, because an array view costs as much as a sum over the nodes.
 """
 
@@ -77,16 +77,16 @@ class StateLayout:
         to all nodes of the other mesh, (nodes of the other mesh + 1, nodes + 1)."""
         stress_count = self.components * self.node_count
         slices = [slice(first, first + self.node_count) for first in range(0, stress_count, self.node_count)]
-        parts = [x[..., stress] @ E[:-1, :-1].T for stress in slices]
+        stresses = [x[..., stress] @ E[:-1, :-1].T for stress in slices]
         return np.concatenate(
-            [*parts, *(self.velocities(x) @ E.T if self.unknown_velocities else ())], axis=-1
+            [*stresses, *(self.velocities(x) @ E.T if self.unknown_velocities else ())], axis=-1
         )
 
-    def state_with_stresses(self, values: dict[str, Array]) -> Array:
-        """A vector (unknowns,) with the given stresses: {name: values, (nodes,)}; all other entries are 0."""
+    def state_with_stresses(self, values_by_name: dict[str, Array]) -> Array:
+        """A state (unknowns,) with the given stresses by name, (nodes,) each; all other entries are 0."""
         vector = np.zeros(self.unknown_count)
-        for name, numbers in values.items():
-            self.stress_field(vector, name)[:] = numbers
+        for name, values in values_by_name.items():
+            self.stress_field(vector, name)[:] = values
         return vector
 
 

@@ -29,7 +29,7 @@ BENDING_STRESS_INDEX = 2
 JUMPING_COMPONENTS = STRETCHING_STRESS_INDEX, BENDING_STRESS_INDEX
 """The components of S that are discontinuous at a jump."""
 SHARE_COLUMNS = 3, 4
-"""Columns of the material on both sides of a jump with their weights in the means of JUMPING_COMPONENTS."""
+"""Columns in SIDE_COLUMNS of the weights of a side in the means of JUMPING_COMPONENTS over both sides."""
 
 
 @compiled
@@ -49,8 +49,8 @@ def write_unknowns_beside_jump(law: int, sides: Array, q1: Array, q3: Array, out
 def stresses_at_both_sides(rod: NodalRod, S: Array) -> Array:
     """S1 and S3 on both sides of each jump, (k, 2, 2, ...), with axes (jump, side, stress, ...). S: (3, ...,
     nodes + 1), with the mean of both sides at a jump."""
-    out = np.empty((len(rod.jumps), 2, 2, *S.shape[1:-1]))
-    for stresses, node, sides in zip(out, rod.jumps, rod.jump_sides, strict=True):
+    side_stresses = np.empty((len(rod.jumps), 2, 2, *S.shape[1:-1]))
+    for stresses, node, sides in zip(side_stresses, rod.jumps, rod.jump_sides, strict=True):
         q1, q3 = (
             np.ascontiguousarray(S[a, ..., node]).ravel()
             for a in (STRETCHING_STRESS_INDEX, BENDING_STRESS_INDEX)
@@ -58,19 +58,20 @@ def stresses_at_both_sides(rod: NodalRod, S: Array) -> Array:
         columns = np.empty((4, q1.size))
         write_unknowns_beside_jump(rod.law, sides, q1, q3, columns)
         stresses[...] = columns.reshape(stresses.shape)
-    return out
+    return side_stresses
 
 
 def stresses_by_element(rod: NodalRod, mesh: Mesh, S: Array) -> Array:
-    """S at the nodes of every element, (3, ..., nodes + elements); the two elements at a jump have the values
-    of their own side. S: (3, ..., nodes + 1), with the mean of both sides at a jump."""
-    fields: Array = S[..., mesh.element_nodes]
+    """S at the nodes of every element, (3, ..., nodes + elements); the elements left and right of a jump have
+    the values of the left and the right side. S: (3, ..., nodes + 1), with the mean of both sides at a
+    jump."""
+    element_stresses: Array = S[..., mesh.element_nodes]
     for node, sides in zip(rod.jumps, stresses_at_both_sides(rod, S), strict=True):
         index = index_before_jump(int(node), mesh.element_nodes)
         for side, values in enumerate(sides):
             for component, value in zip(JUMPING_COMPONENTS, values, strict=True):
-                fields[component, ..., index + side] = value
-    return fields
+                element_stresses[component, ..., index + side] = value
+    return element_stresses
 
 
 def interpolate_stress(rod: Rod, S: Values, source: Mesh, target: Mesh) -> Values:
@@ -82,18 +83,18 @@ def interpolate_stress(rod: Rod, S: Values, source: Mesh, target: Mesh) -> Value
     `target`, the new S is the mean of the values of the polynomials on both sides.
     """
     E = interpolation_matrix(source, target)
-    out = S @ E.T
+    target_S = S @ E.T
     target_jumps = NO_JUMPS if rod.material.constitutive_law is LINEAR else jumps_on_mesh(rod, target)
     if len(target_jumps.nodes):
         source_nodes = jumps_on_mesh(rod, source).nodes
         for column, component in zip(SHARE_COLUMNS, JUMPING_COMPONENTS, strict=True):
-            out[component] = (
+            target_S[component] = (
                 S[component]
                 @ _discontinuous_interpolation(
                     E, source, target, source_nodes, target_jumps.nodes, target_jumps.jump_sides[..., column]
                 ).T
             )
-    return out
+    return target_S
 
 
 def interpolate_state_stress(nodal: NodalRod, S: Values, source: Mesh, rod: Rod, target: Mesh) -> Values:
@@ -105,7 +106,7 @@ def interpolate_state_stress(nodal: NodalRod, S: Values, source: Mesh, rod: Rod,
     linear.
     """
     E = interpolation_matrix(source, target)
-    out = S @ E.T
+    target_S = S @ E.T
     target_jumps = jumps_on_mesh(rod, target)
     element = np.searchsorted(source.edges, target.node_positions, side="right") - 1
     sides_of_jumps = stresses_at_both_sides(nodal, S)
@@ -113,12 +114,12 @@ def interpolate_state_stress(nodal: NodalRod, S: Values, source: Mesh, rod: Rod,
         for side, side_values in enumerate(values):
             rows = element == _element_behind(source, node) - 1 + side
             for component, value in zip(JUMPING_COMPONENTS, side_values, strict=True):
-                out[component][..., rows] += (value - S[component, ..., node])[..., None] * E[rows, node]
+                target_S[component][..., rows] += (value - S[component, ..., node])[..., None] * E[rows, node]
     for node, sides, values in zip(target_jumps.nodes, target_jumps.jump_sides, sides_of_jumps, strict=True):
         for i, component in enumerate(JUMPING_COMPONENTS):
             fractions = sides[:, SHARE_COLUMNS[i]]
-            out[component, ..., node] = np.tensordot(fractions, values[:, i], 1)
-    return out
+            target_S[component, ..., node] = np.tensordot(fractions, values[:, i], 1)
+    return target_S
 
 
 def _discontinuous_interpolation(  # noqa: PLR0913, PLR0917 - of both meshes
@@ -134,28 +135,32 @@ def _discontinuous_interpolation(  # noqa: PLR0913, PLR0917 - of both meshes
     weights of both sides in the mean at each jump, (k, 2)."""
     # In elements with an end at a jump, E uses the mean at this end. Extrapolation from the other nodes
     # replaces this value.
-    out = E.copy()
+    matrix = E.copy()
     element = np.searchsorted(source.edges, target.node_positions, side="right") - 1
     elements_at_jumps = [_element_behind(source, node) for node in source_nodes]
 
-    def row_of(side: int, *, to_first_node: bool) -> Array:
-        p = source.orders[side]
+    def row_of(element_index: int, *, to_first_node: bool) -> Array:
+        p = source.orders[element_index]
         return _extrapolation_weights(
-            p, side in elements_at_jumps, side + 1 in elements_at_jumps, to_first_node
+            p, element_index in elements_at_jumps, element_index + 1 in elements_at_jumps, to_first_node
         )
 
     for e, node in zip(elements_at_jumps, source_nodes, strict=True):
-        for side in (e - 1, e):
-            rows = element == side
-            weights = out[rows, node].copy()
-            out[rows, node] = 0.0
-            out[rows, source.node_ranges[side]] += weights[:, None] * row_of(side, to_first_node=side == e)
+        for element_index in (e - 1, e):
+            rows = element == element_index
+            weights = matrix[rows, node].copy()
+            matrix[rows, node] = 0.0
+            matrix[rows, source.node_ranges[element_index]] += weights[:, None] * row_of(
+                element_index, to_first_node=element_index == e
+            )
     for e, node, (left_weight, right_weight) in zip(elements_at_jumps, target_nodes, fractions, strict=True):
         # States contain the mean of both sides at the node of a jump.
-        out[node] = 0.0
-        for side, weight in ((e - 1, left_weight), (e, right_weight)):
-            out[node, source.node_ranges[side]] += weight * row_of(side, to_first_node=side == e)
-    return out
+        matrix[node] = 0.0
+        for element_index, weight in ((e - 1, left_weight), (e, right_weight)):
+            matrix[node, source.node_ranges[element_index]] += weight * row_of(
+                element_index, to_first_node=element_index == e
+            )
+    return matrix
 
 
 def _element_behind(mesh: Mesh, node: int) -> int:
@@ -171,6 +176,8 @@ def _extrapolation_weights(order: int, jump_at_start: bool, jump_at_end: bool, t
     x = gauss_lobatto_rule(order)[0]
     # A value at a jump is a mean over both sides, not a value of the polynomial.
     used_nodes = slice(int(jump_at_start), order + 1 - int(jump_at_end))
-    row = np.zeros(order + 1)
-    row[used_nodes] = lagrange_interpolation_matrix(x[used_nodes], np.array([-1.0 if to_start else 1.0]))[0]
-    return row
+    weights = np.zeros(order + 1)
+    weights[used_nodes] = lagrange_interpolation_matrix(x[used_nodes], np.array([-1.0 if to_start else 1.0]))[
+        0
+    ]
+    return weights

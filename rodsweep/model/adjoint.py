@@ -1,5 +1,4 @@
-"""The adjoint L+ of the transverse operator L, and the Hermitian part (L + L+)/2, by their end conditions at
-the tip.
+"""The adjoint L+ of the transverse operator L, and the Hermitian part (L + L+)/2: end conditions at the tip.
 
 Appendix B: in the Gamma inner product (psi, xi) = int psi_y* y + gamma3 psi_theta* theta, with xi =
 (y, theta), L+ has the equations of L, with psi(0) = 0 and (K D psi + ad*_psi Sigma0)(1) = 0. Since Sigma0 =
@@ -53,12 +52,12 @@ def tip_layer_factor(rod: Rod) -> float:
     kappa^2 = g nu/c2. T = 0 for all other rods, which have no such layer."""
     if rod.rotational_drag > 0 or rod.c2 == 0:
         return 0.0
-    square = rod.g * rod.nu / rod.c2
+    squared_kappa = rod.g * rod.nu / rod.c2
     # For imaginary kappa tanh becomes tan. The series holds for either sign of kappa^2.
-    if abs(square) < TANH_SERIES_BELOW:
-        return 1 - square / 3 + 2 * square**2 / 15
-    kappa = sqrt(abs(square))
-    return tanh(kappa) / kappa if square > 0 else tan(kappa) / kappa
+    if abs(squared_kappa) < TANH_SERIES_BELOW:
+        return 1 - squared_kappa / 3 + 2 * squared_kappa**2 / 15
+    kappa = sqrt(abs(squared_kappa))
+    return tanh(kappa) / kappa if squared_kappa > 0 else tan(kappa) / kappa
 
 
 def hermitian_tip_coefficients(F: float, layer_factor: float) -> tuple[float, float]:

@@ -19,8 +19,8 @@ SparsityPattern = tuple[tuple[bool, ...], ...]
 class LieAlgebra(NamedTuple):
     """Structure constants of a Lie algebra, and the sparsity patterns of ad and ad*.
 
-    components: indices of the components. structure_constants: the nonzero ones. ad_pattern: pattern of ad;
-    ad_pattern[a][c] is True if (ad_E V)_a depends on V_c. coad_pattern: pattern of the derivative of ad*;
+    components: indices of the components. structure_constants: the nonzero constants. ad_pattern: pattern of
+    ad; ad_pattern[a][c] is True if (ad_E V)_a depends on V_c. coad_pattern: pattern of the derivative of ad*;
     coad_pattern[c][b] is True if (ad*_E Sigma)_c depends on Sigma_b or on E_b, which depends on Sigma_b.
     """
 
@@ -40,25 +40,29 @@ class LieAlgebra(NamedTuple):
         return [(a, b) for a in self.components for b in self.components if a != b]
 
 
-def algebra_from_constants(size: int, terms: list[StructureConstant]) -> LieAlgebra:
-    """The Lie algebra of dimension `size` whose nonzero structure constants are `terms`."""
+def algebra_from_constants(dimension: int, constants: list[StructureConstant]) -> LieAlgebra:
+    """The Lie algebra of dimension `dimension` whose nonzero structure constants are `constants`."""
     # Loops over the Jacobian skip all blocks that are not in these patterns.
-    ad_pairs = {(a, c) for a, _, c, _ in terms}
-    coad_pairs = {(c, component) for a, b, c, _ in terms for component in (a, b)}
+    ad_pairs = {(a, c) for a, _, c, _ in constants}
+    coad_pairs = {(c, component) for a, b, c, _ in constants for component in (a, b)}
     ad_pattern, coad_pattern = (
-        tuple(tuple((i, j) in pairs for j in range(size)) for i in range(size))
+        tuple(tuple((i, j) in pairs for j in range(dimension)) for i in range(dimension))
         for pairs in (ad_pairs, coad_pairs)
     )
-    return LieAlgebra(range(size), tuple(terms), ad_pattern, coad_pattern)
+    return LieAlgebra(range(dimension), tuple(constants), ad_pattern, coad_pattern)
 
 
-def _cross_product_constants(out: int, left: int, right: int) -> list[StructureConstant]:
+def _cross_product_constants(
+    product_start: int, left_start: int, right_start: int
+) -> list[StructureConstant]:
     """Structure constants of a cross product of two triples of components, as a part of ad_E V. The first
-    factor is the triple of components of E that starts at index `left`, the second factor the triple of V
-    that starts at `right`, and the product the triple of ad_E V that starts at `out`."""
+    factor is the triple of components of E that starts at index `left_start`, the second factor the triple of
+    V that starts at `right_start`, and the product the triple of ad_E V that starts at `product_start`."""
     cyclic_orders = [(0, 1, 2), (1, 2, 0), (2, 0, 1)]
-    positive = [(out + a, left + b, right + c, 1.0) for a, b, c in cyclic_orders]
-    return positive + [(out + a, left + c, right + b, -1.0) for a, b, c in cyclic_orders]
+    positive = [(product_start + a, left_start + b, right_start + c, 1.0) for a, b, c in cyclic_orders]
+    return positive + [
+        (product_start + a, left_start + c, right_start + b, -1.0) for a, b, c in cyclic_orders
+    ]
 
 
 SE2 = algebra_from_constants(3, [(0, 1, 2, 1.0), (0, 2, 1, -1.0), (1, 2, 0, 1.0), (1, 0, 2, -1.0)])

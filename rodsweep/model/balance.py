@@ -62,8 +62,8 @@ class BalanceCoefficients(NamedTuple):
         return axial_vector(-self.F, len(self.drag))
 
 
-def axial_vector(number: float, size: int) -> Values:
-    """The vector (number, 0, ..., 0) of length `size`."""
-    element = np.zeros(size)
-    element[0] = number
-    return element
+def axial_vector(value: float, size: int) -> Values:
+    """The vector (value, 0, ..., 0) of length `size`."""
+    vector = np.zeros(size)
+    vector[0] = value
+    return vector

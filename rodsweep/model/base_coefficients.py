@@ -19,8 +19,8 @@ def stiffnesses_and_drags_at_base(values: Mapping[str, Any]) -> Mapping[str, Any
     if not SCALING_PAIRS:
         return values
     base_values = dict(values)
-    for factor, scaled_name in SCALING_PAIRS:
-        base_values[scaled_name] = base_values[scaled_name] * values[factor]
+    for factor_name, scaled_name in SCALING_PAIRS:
+        base_values[scaled_name] = base_values[scaled_name] * values[factor_name]
     return base_values
 
 

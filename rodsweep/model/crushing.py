@@ -9,34 +9,37 @@ TAPER_ACCURACY = 1e-9
 
 
 def uncrushed_interval(
-    material: RodMaterial, rod: Mapping[str, float], varied: tuple[str, float, float], margin: float = 0.0
+    material: RodMaterial,
+    other_values: Mapping[str, float],
+    varied_parameter: tuple[str, float, float],
+    margin: float = 0.0,
 ) -> tuple[float, float]:
-    """(smallest, largest) value of a parameter at which the force does not crush the rod, within an interval;
-    the second is not above the first if the force crushes the rod everywhere in the interval.
+    """Returns (smallest, largest) value of a parameter, within an interval, at which the force does not crush
+    the rod. If the force crushes the rod everywhere in the interval, the second value is not above the first.
 
-    rod: values of the other parameters by name. varied: name of the parameter and ends of the interval.
-    margin: smallest relative distance from the crushing force. Only F, k1 and taper have an influence on
-    crushing; for another parameter the whole interval is returned.
+    other_values: values of the other parameters by name. varied_parameter: name of the parameter and ends of
+    the interval. margin: smallest relative distance of the force from the crushing force. For a parameter
+    other than F, k1 and taper, which does not influence crushing, the whole interval is returned.
     """
-    name, low, high = varied
+    name, low, high = varied_parameter
     if name == "taper":
-        return _smallest_uncrushed_taper(material, rod, (low, high), margin), high
-    relative_force = material.relative_crushing_force(rod.get("taper", 1.0))
+        return _smallest_uncrushed_taper(material, other_values, (low, high), margin), high
+    relative_force = material.relative_crushing_force(other_values.get("taper", 1.0))
     if name == "F":
-        return low, min(high, (1 - margin) * relative_force * rod["k1"])
+        return low, min(high, (1 - margin) * relative_force * other_values["k1"])
     if name == "k1":
-        return max(low, rod["F"] / relative_force * (1 + margin)), high
+        return max(low, other_values["F"] / relative_force * (1 + margin)), high
     return low, high
 
 
 def _smallest_uncrushed_taper(
-    material: RodMaterial, rod: Mapping[str, float], interval: tuple[float, float], margin: float
+    material: RodMaterial, other_values: Mapping[str, float], interval: tuple[float, float], margin: float
 ) -> float:
-    """Smallest taper of the interval at which the force does not crush the rod; the largest one if it crushes
-    the rod everywhere."""
+    """Smallest taper of the interval at which the force does not crush the rod; the largest taper of the
+    interval if the force crushes every rod of the interval."""
 
     def is_uncrushed(taper: float) -> bool:
-        return (1 - margin) * material.relative_crushing_force(taper) * rod["k1"] > rod["F"]
+        return (1 - margin) * material.relative_crushing_force(taper) * other_values["k1"] > other_values["F"]
 
     low, high = interval
     if is_uncrushed(low) or not is_uncrushed(high):

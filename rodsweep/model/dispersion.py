@@ -73,8 +73,8 @@ def most_amplified_local_waves(rod: Rod) -> tuple[Array, Array]:
     (points,) each. A local wave travels on an infinitely long uniform rod with the coefficients of the arm at
     the point. If all waves at a point decay, both numbers are 0."""
     nu, c2, c3, gamma2, gamma3, g = sampled_arm(rod).local
-    top = np.maximum(rod.F * c3 * g, 0.0)
-    rate, wave_number = _largest_growth(top, g * nu, c2 / c3, gamma3 / gamma2)
+    max_K = np.maximum(rod.F * c3 * g, 0.0)
+    rate, wave_number = _largest_growth(max_K, g * nu, c2 / c3, gamma3 / gamma2)
     return rate / (gamma2 * c3), wave_number
 
 
@@ -86,44 +86,47 @@ def expected_unstable_count(rod: Rod) -> float:
     return float(weights @ np.sqrt(np.maximum(rod.F * coefficients.c3 * coefficients.g, 0.0))) / math.pi
 
 
-def _largest_growth(top: Any, relaxation: Any, c2: Any, gamma3: Any) -> tuple[Any, Any]:
+def _largest_growth(max_K: Any, damping_at_0: Any, c2: Any, gamma3: Any) -> tuple[Any, Any]:
     """Returns (growth rate, wave number) of the most amplified wave for k3 = gamma2 = 1; the rate is 0 if
     every wave decays.
 
-    top: F g >= 0. relaxation: g nu, negative only for a pulled rod (F < 0). c2, gamma3: shear compliance and
-    rotational drag. All arguments are numbers or arrays of one shape; the results have this shape.
+    max_K: F g >= 0; waves with a larger K = kappa^2 decay. damping_at_0: g nu, negative only for a pulled rod
+    (F < 0). c2, gamma3: shear compliance and rotational drag. All arguments are numbers or arrays of one
+    shape; the results have this shape.
     """
-    if not np.min(relaxation) > 0:
-        return _largest_sampled_growth(*(np.asarray(x)[..., None] for x in (top, relaxation, c2, gamma3)))
+    if not np.min(damping_at_0) > 0:
+        return _largest_sampled_growth(*(np.asarray(x)[..., None] for x in (max_K, damping_at_0, c2, gamma3)))
     # At the largest w the derivative of the dispersion relation with respect to K is 0:
     # (c2 + gamma3) w + 2 K = F g. Without K the relation is quadratic in w. In units of `unit` no allowed
     # force overflows.
     drag_sum = c2 + gamma3
     with np.errstate(over="ignore"):
-        unit = np.maximum(top, relaxation)
-        relative_top = top / unit
-        damping = relaxation / unit
+        unit = np.maximum(max_K, damping_at_0)
+        relative_max_K = max_K / unit
+        damping = damping_at_0 / unit
         damping = damping + np.sqrt(
-            c2 * gamma3 * relative_top * relative_top + drag_sum * damping * relative_top + damping * damping
+            c2 * gamma3 * relative_max_K * relative_max_K
+            + drag_sum * damping * relative_max_K
+            + damping * damping
         )
-        denominator = drag_sum * relative_top + 2 * damping
-        return top * relative_top / denominator, np.sqrt(top * (damping / denominator))
+        denominator = drag_sum * relative_max_K + 2 * damping
+        return max_K * relative_max_K / denominator, np.sqrt(max_K * (damping / denominator))
 
 
-def _largest_sampled_growth(top: Any, relaxation: Any, c2: Any, gamma3: Any) -> tuple[Array, Array]:
+def _largest_sampled_growth(max_K: Any, damping_at_0: Any, c2: Any, gamma3: Any) -> tuple[Array, Array]:
     """`_largest_growth` by comparison of SAMPLE_COUNT wave numbers. On a pulled rod with g < 0 the growth
-    rate may have a maximum at K = 0 only, or no maximum; arguments: (..., 1)."""
+    rate may have a maximum at K = 0 only, or no maximum. Arguments: as in `_largest_growth`, (..., 1)."""
     product = c2 * gamma3
-    K = top * K_FRACTIONS
+    K = max_K * K_FRACTIONS
     with np.errstate(all="ignore"):
-        constant = K * (top - K)
-        linear = (c2 + gamma3) * K + relaxation
-        root_of_discriminant = np.sqrt(linear**2 + 4 * product * constant)
-        # The positive root r of product r^2 + linear r = drive. Each of the two formulas is free of
-        # cancellation for one sign of `linear`.
-        rates_if_damped = np.where(product > 0, (root_of_discriminant - linear) / (2 * product), 0.0)
-        rates = np.where(linear > 0, 2 * constant / (linear + root_of_discriminant), rates_if_damped)
+        constant = K * (max_K - K)
+        damping = (c2 + gamma3) * K + damping_at_0
+        root_of_discriminant = np.sqrt(damping**2 + 4 * product * constant)
+        # The positive root r of product r^2 + damping r = constant. Each of the two formulas is free of
+        # cancellation for one sign of `damping`.
+        rates_if_damped = np.where(product > 0, (root_of_discriminant - damping) / (2 * product), 0.0)
+        rates = np.where(damping > 0, 2 * constant / (damping + root_of_discriminant), rates_if_damped)
     rates = np.where(rates > 0, rates, 0.0)
     max_rate = rates.max(axis=-1)
     fractions = K_FRACTIONS[rates.argmax(axis=-1)]
-    return max_rate, np.where(max_rate > 0, np.sqrt(top[..., 0] * fractions), 0.0)
+    return max_rate, np.where(max_rate > 0, np.sqrt(max_K[..., 0] * fractions), 0.0)

@@ -32,10 +32,10 @@ class Range:
 
     def finite_description_for(self, value: float) -> str:
         """`description_for`, for a value that may not be inf even where the range contains inf."""
-        described = self.description.partition(", or inf")[0]
-        if "finite" not in described:
-            described = described.replace("a number", "a finite number")
-        return described + self.description_for(value).removeprefix(self.description)
+        description = self.description.partition(", or inf")[0]
+        if "finite" not in description:
+            description = description.replace("a number", "a finite number")
+        return description + self.description_for(value).removeprefix(self.description)
 
     def first_outside(self, values: Iterable[float]) -> float | None:
         """The first number in `values` that lies outside the range; None if the range contains all values."""
@@ -114,22 +114,22 @@ MAX_TAPER = 100.0
 """MIN_TAPER, MAX_TAPER: range of the taper. Taper 0 is excluded: a point has no stiffness."""
 
 
-def stiffness_parameter(name: str, symbol: str, meaning: str, rigid: str) -> Parameter:
-    """The table row of a stiffness that may be inf. name, symbol, meaning: fields of `Parameter`. rigid:
-    adjective for a rod with infinite stiffness."""
+def stiffness_parameter(name: str, symbol: str, meaning: str, rigid_adjective: str) -> Parameter:
+    """The table row of a stiffness that may be inf. name, symbol, meaning: fields of `Parameter`.
+    rigid_adjective: adjective for a rod with infinite stiffness."""
     return Parameter(
         name=name,
         symbol=symbol,
         unit="k3/L^2",
         meaning=meaning,
-        remark=f"; inf is {rigid}",
+        remark=f"; inf is {rigid_adjective}",
         allowed=Range(
             lambda value: value > 0 and 1 / value < inf,
-            f"a number above 0, or inf for an {rigid} rod",
+            f"a number above 0, or inf for an {rigid_adjective} rod",
             {"exclusiveMinimum": 0},
             f"(1/{name} overflows)",
         ),
-        rigid_adjective=rigid,
+        rigid_adjective=rigid_adjective,
     )
 
 
@@ -200,7 +200,7 @@ CRUSHING_PARAMETERS = ("F", "k1")
 
 
 def parameter_names_except(excluded: str, names: tuple[str, ...] = LINEAR_PARAMETERS) -> tuple[str, ...]:
-    """All names in `names` except `excluded`. names: by default of the transverse linear problem."""
+    """All names in `names` except `excluded`. names: by default `LINEAR_PARAMETERS`."""
     return tuple(name for name in names if name != excluded)
 
 
@@ -208,7 +208,7 @@ def with_parameter_fields(cls: type[Decorated]) -> type[Decorated]:
     """Class decorator that adds every parameter of `PARAMETERS`, in order, as a field with its default."""
     own_annotations = dict(cls.__annotations__)
     cls.__annotations__ = dict.fromkeys(PARAMETERS, float) | {
-        n: a for n, a in own_annotations.items() if n not in PARAMETERS
+        name: annotation for name, annotation in own_annotations.items() if name not in PARAMETERS
     }
     for name, parameter in PARAMETERS.items():
         if parameter.default is not None:

@@ -150,16 +150,16 @@ class Rod:
 
     @property
     def without_nonlinear_parameters(self) -> "Rod":
-        """The rod with the same parameters of the transverse linear problem, and defaults of all others."""
+        """The rod with the same parameters of the linear problem, and default nonlinear parameters."""
         return Rod(**{name: self.values[name] for name in TRANSVERSE_PARAMETERS}, material=self.material)
 
-    def coordinate(self, name: str) -> float:
-        """Coordinate of the parameter `name` of the rod: 1/k for a stiffness k, otherwise the value."""
-        return float(PARAMETERS[name].coordinate(getattr(self, name)))
+    def coordinate(self, parameter_name: str) -> float:
+        """Coordinate of a parameter of the rod: 1/k for a stiffness k, otherwise the value."""
+        return float(PARAMETERS[parameter_name].coordinate(getattr(self, parameter_name)))
 
-    def with_coordinate(self, name: str, coordinate: float) -> "Rod":
-        """The rod with another coordinate of the parameter `name`; ValueError for an invalid coordinate."""
-        return self.with_values(**{name: PARAMETERS[name].value(coordinate)})
+    def with_coordinate(self, parameter_name: str, coordinate: float) -> "Rod":
+        """The rod with another coordinate of one parameter; ValueError for an invalid coordinate."""
+        return self.with_values(**{parameter_name: PARAMETERS[parameter_name].value(coordinate)})
 
     def with_values(self, **values: float) -> "Rod":
         """The same rod with the given parameter values, by name. Raises ValueError for an invalid value."""
@@ -201,9 +201,9 @@ class Rod:
         """Axial drag at the base, in gamma2."""
         return float(stiffnesses_and_drags_at_base(self.values)["gamma1"])
 
-    def coefficient_derivative(self, name: str) -> Coefficients:
-        """Derivative of the affine `coefficients` with respect to the coordinate of the parameter `name`."""
-        slopes = self._derivatives_by_coordinate(name)
+    def coefficient_derivative(self, parameter_name: str) -> Coefficients:
+        """Derivative of the affine `coefficients` with respect to the coordinate of a parameter."""
+        slopes = self._derivatives_by_coordinate(parameter_name)
         F = slopes.get("F", 0.0)
         c1 = slopes.get("k1", 0.0)
         # 0.0 - x keeps a zero positive, where -x would be -0.0.
@@ -222,28 +222,29 @@ class Rod:
         return self.material.sections(self.F, stiffnesses_and_drags_at_base(self.values), u)
 
     def section_derivatives(
-        self, name: str, u: Array, sections: CrossSections | None = None
+        self, parameter_name: str, u: Array, sections: CrossSections | None = None
     ) -> CrossSections:
-        """Derivatives of `sections(u)` with respect to the coordinate of parameter `name`; u: (points,).
-        sections: `sections(u)`, if known."""
-        slopes = {"taper": 1.0} if name == "taper" else self._derivatives_by_coordinate(name)
+        """Derivatives of `sections(u)` with respect to the coordinate of a parameter; u: (points,). sections:
+        `sections(u)`, if known."""
+        is_taper = parameter_name == "taper"
+        slopes = {"taper": 1.0} if is_taper else self._derivatives_by_coordinate(parameter_name)
         known = self.sections(u) if sections is None else sections
         return self.material.section_derivatives(known, self.F, self.taper, slopes, u)
 
-    def balance_coefficient_derivative(self, name: str) -> BalanceCoefficients:
-        """Derivative of `balance_coefficients` with respect to the coordinate of the parameter `name`."""
-        slopes = self._derivatives_by_coordinate(name)
-        F, nu, c2, gamma3 = self.coefficient_derivative(name)
+    def balance_coefficient_derivative(self, parameter_name: str) -> BalanceCoefficients:
+        """Derivative of `balance_coefficients` with respect to the coordinate of a parameter."""
+        slopes = self._derivatives_by_coordinate(parameter_name)
+        F, nu, c2, gamma3 = self.coefficient_derivative(parameter_name)
         compliance = np.array([slopes.get("k1", 0.0), c2, 0.0])
         drag = np.array([slopes.get("gamma1", 0.0), 0.0, gamma3])
         return BalanceCoefficients(compliance, drag, F, axial_vector(nu, 3))
 
-    def _derivatives_by_coordinate(self, name: str) -> dict[str, float]:
-        """Nonzero derivatives of force, compliances and drags with respect to the coordinate of `name`.
+    def _derivatives_by_coordinate(self, parameter_name: str) -> dict[str, float]:
+        """Nonzero derivatives of force, compliances and drags with respect to the coordinate of a parameter.
 
         Keys are F, k1, k2, gamma1 and gamma3; keys of stiffnesses contain derivatives of compliances. Force,
         compliances and drags are products of coordinates: a derivative is the product of all other factors.
         """
-        unit_values = stiffnesses_and_drags_at_base({**self.values, name: 1.0})
-        keys = PARAMETERS[name].scaled_names or (name,)
+        unit_values = stiffnesses_and_drags_at_base({**self.values, parameter_name: 1.0})
+        keys = PARAMETERS[parameter_name].scaled_names or (parameter_name,)
         return {key: float(1 / unit_values[key] if key in STIFFNESSES else unit_values[key]) for key in keys}

@@ -59,30 +59,30 @@ def split_quantity(text: str) -> tuple[float, str]:
     return float(match[1]), match[2].replace("·", "*").replace(".", "*")
 
 
-def quantity_in_si(name: str, quantity: GivenQuantity, unit: str, example: str) -> float:
-    """Value, in the SI unit `unit`, of the quantity `name`, which the user wrote as `quantity`. example: a
+def quantity_in_si(name: str, quantity: GivenQuantity, si_unit: str, example: str) -> float:
+    """Value, in the SI unit `si_unit`, of the quantity `name`, which the user wrote as `quantity`. example: a
     valid text, for messages. Raises InputError, beginning with the name, for an invalid quantity."""
-    allowed = f"a number with a unit, as in '{example}'"
+    allowed_text = f"a number with a unit, as in '{example}'"
     if not isinstance(quantity, str):
-        value = _number_in_si(name, quantity, unit, allowed)
+        value = _number_in_si(name, quantity, si_unit, allowed_text)
     else:
         number, unit_text = split_quantity(quantity)
         if math.isnan(number):
-            raise InputError(f"{name} = '{quantity}' is not {allowed}")
+            raise InputError(f"{name} = '{quantity}' is not {allowed_text}")
         if not unit_text:
-            raise InputError(f"{name} = '{quantity}' has no unit; write {allowed}")
-        value = number * conversion_factor(f"{name} = '{quantity}'", unit_text, unit, allowed)
+            raise InputError(f"{name} = '{quantity}' has no unit; write {allowed_text}")
+        value = number * conversion_factor(f"{name} = '{quantity}'", unit_text, si_unit, allowed_text)
     if not math.isfinite(value):
         raise InputError(f"{name} = '{quantity}' is not a finite number")
     return value
 
 
-def _number_in_si(name: str, quantity: Any, unit: str, allowed: str) -> float:
-    """Value in the SI unit `unit` of `quantity`, a number in SI or a pint quantity. Raises InputError for
-    other objects. name, allowed: name of the quantity and allowed texts, for messages."""
+def _number_in_si(name: str, quantity: Any, si_unit: str, allowed_text: str) -> float:
+    """Value in the SI unit `si_unit` of `quantity`, a number in SI or a pint quantity. Raises InputError for
+    other objects. name, allowed_text: name of the quantity and allowed texts, for messages."""
     if hasattr(quantity, "to_base_units"):
-        return _number_in_si(name, quantity.magnitude, unit, allowed) * conversion_factor(
-            f"{name} = '{quantity!s:.60}'", f"{quantity.units:C}", unit, allowed
+        return _number_in_si(name, quantity.magnitude, si_unit, allowed_text) * conversion_factor(
+            f"{name} = '{quantity!s:.60}'", f"{quantity.units:C}", si_unit, allowed_text
         )
     try:
         if isinstance(quantity, bool | np.bool_ | complex) or np.ma.is_masked(quantity):
@@ -91,16 +91,17 @@ def _number_in_si(name: str, quantity: Any, unit: str, allowed: str) -> float:
     except (TypeError, ValueError, OverflowError):
         text = " ".join(str(quantity).split())
         raise InputError(
-            f"{name} = {text:.60} is not one quantity; write {allowed}, or one number in {unit}"
+            f"{name} = {text:.60} is not one quantity; write {allowed_text}, or one number in {si_unit}"
         ) from None
 
 
-def conversion_factor(beginning: str, unit_text: str, unit: str, allowed: str) -> float:
-    """Number by which a value in the unit `unit_text` is multiplied to get the value in `unit`. beginning,
-    allowed: beginning and end of messages. Raises InputError for an unknown unit or another dimension."""
+def conversion_factor(beginning: str, unit_text: str, si_unit: str, allowed_text: str) -> float:
+    """Number by which a value in the unit `unit_text` is multiplied to get the value in `si_unit`.
+    beginning, allowed_text: beginning and end of messages. Raises InputError for an unknown unit or another
+    dimension."""
     if unit_text.startswith(","):
         raise InputError(f"{beginning} has a decimal comma; write a point")
-    if unit in LOAD_UNITS and RELATIVE_LOAD_PATTERN.match(unit_text):
+    if si_unit in LOAD_UNITS and RELATIVE_LOAD_PATTERN.match(unit_text):
         raise InputError(
             f"{beginning} is not a load relative to flutter; write it like '1.2 of flutter' or "
             "'20 % below flutter', with a number of 0 or above"
@@ -112,50 +113,52 @@ def conversion_factor(beginning: str, unit_text: str, unit: str, allowed: str) -
     ):
         raise InputError(
             f"{beginning} has the unit '{unit_text[:MAX_UNIT_LENGTH]}', "
-            f"which is not understood; write {allowed}"
+            f"which is not understood; write {allowed_text}"
         )
     units = unit_registry()
     from pint.errors import PintError
 
     try:
-        return _cached_conversion_factor(unit_text, unit)
+        return _cached_conversion_factor(unit_text, si_unit)
     except PintError as error:
         is_known_unit = "from" in str(error)  # pint: "Cannot convert from ..." for another dimension
-        reason = f"is not measured in {unit}" if is_known_unit else f"has the unknown unit '{unit_text}'"
-        if is_known_unit and unit == "Pa*s" and units.Quantity(1.0, unit_text).check("[length]**2/[time]"):
+        reason = f"is not measured in {si_unit}" if is_known_unit else f"has the unknown unit '{unit_text}'"
+        if is_known_unit and si_unit == "Pa*s" and units.Quantity(1.0, unit_text).check("[length]**2/[time]"):
             reason = KINEMATIC_VISCOSITY_MESSAGE
-        raise InputError(f"{beginning} {reason}; {_suggestion(unit_text, unit)}write {allowed}") from None
+        raise InputError(
+            f"{beginning} {reason}; {_suggestion(unit_text, si_unit)}write {allowed_text}"
+        ) from None
     except Exception as error:  # pint's parser raises errors of many types for invalid units
         raise InputError(
-            f"{beginning} has the unit '{unit_text}', which is not understood; write {allowed}"
+            f"{beginning} has the unit '{unit_text}', which is not understood; write {allowed_text}"
         ) from error
 
 
 @lru_cache(CONVERSION_CACHE_SIZE)
-def _cached_conversion_factor(unit_text: str, unit: str) -> float:
-    """Conversion factor from the unit `unit_text` to `unit`, cached; raises the errors of pint."""
-    return float(unit_registry().Quantity(1.0, unit_text).to(unit).magnitude)
+def _cached_conversion_factor(unit_text: str, si_unit: str) -> float:
+    """Conversion factor from the unit `unit_text` to `si_unit`, cached; raises the errors of pint."""
+    return float(unit_registry().Quantity(1.0, unit_text).to(si_unit).magnitude)
 
 
-def _suggestion(unit_text: str, unit: str) -> str:
-    """The text "did you mean 'kPa'? " if `unit_text` is a misspelt unit of the kind of `unit`; else ""."""
+def _suggestion(unit_text: str, si_unit: str) -> str:
+    """The text "did you mean 'kPa'? " if `unit_text` is a misspelt unit of the kind of `si_unit`; else ""."""
     plain_text = "".join(unit_text.split()).casefold()
     for common_unit in COMMON_UNITS:
         if "".join(common_unit.split()).casefold() == plain_text and unit_registry()(common_unit).check(
-            unit_registry()(unit)
+            unit_registry()(si_unit)
         ):
             return f"did you mean '{common_unit}'? "
     return ""
 
 
-def unit_of(quantity: GivenQuantity, default: str) -> str:
-    """The unit in the text of a quantity; `default` for a number or a text without a unit."""
-    return (split_quantity(quantity)[1] or default) if isinstance(quantity, str) else default
+def unit_of(quantity: GivenQuantity, default_unit: str) -> str:
+    """The unit in the text of a quantity; `default_unit` for a number or a text without a unit."""
+    return (split_quantity(quantity)[1] or default_unit) if isinstance(quantity, str) else default_unit
 
 
-def value_in_unit(value: float, unit: str, si: str) -> float:
-    """Value in `unit` of the quantity that has the value `value` in the SI unit `si`."""
-    return value / conversion_factor("", unit, si, "")
+def value_in_unit(value: float, unit: str, si_unit: str) -> float:
+    """Value in `unit` of the quantity that has the value `value` in the SI unit `si_unit`."""
+    return value / conversion_factor("", unit, si_unit, "")
 
 
 def load_over_flutter(text: GivenQuantity) -> float | None:

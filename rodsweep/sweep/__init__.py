@@ -21,7 +21,7 @@ class _CalledPackage(ModuleType):
 
     @property
     def __wrapped__(self) -> Any:
-        """The function `rodsweep.api.sweeping.sweep`; `help` and completion read the arguments here."""
+        """The function `rodsweep.api.sweeping.sweep`, from which `help` and completion read the arguments."""
         return import_module("rodsweep.api.sweeping").sweep  # by name: `api` imports `sweep`, not the reverse
 
     @property

@@ -11,7 +11,8 @@ from .cost_estimate import CostEstimate, sampled_points
 from .points.points import Points
 
 COSTLIER_IF_LARGER = frozenset({"k1", "F"})
-"""Parameters for which large values make branches of cycles expensive; for all others, small values."""
+"""Parameters for which large values make branches of cycles expensive; for all other parameters, small
+values."""
 BRANCH_SECONDS_PER_FORCE = 0.004
 """All branches of a rod take BRANCH_SECONDS_PER_FORCE F (accuracy/1e-7)^BRANCH_ACCURACY_EXPONENT (1 + F/(k2
 t))^BRANCH_BENDING_EXPONENT/taper^2, in seconds. t: min(1, taper)^2. F: largest force on the branches, at most
@@ -30,27 +31,34 @@ MAX_MEASURED_LOAD = 0.9
 """Largest force, divided by the crushing force, for which the formula of BRANCH_SECONDS_PER_FORCE holds."""
 
 
-def branches_cost(points: Points, name: str, limits: tuple[float, float], accuracy: float) -> CostEstimate:
-    """Estimated cost of the branches of limit cycles of all rods in `points`, along the parameter `name`.
+def branches_cost(
+    points: Points, parameter_name: str, limits: tuple[float, float], accuracy: float
+) -> CostEstimate:
+    """Estimated cost of the branches of limit cycles of all rods in `points`, along the parameter
+    `parameter_name`.
 
     limits: smallest and largest value of this parameter. accuracy: relative accuracy of the cycles. For kinds
-    of rods whose times were not measured the estimate has a `doubt`. The estimate is 0 s if no sampled point
-    has a rod.
+    of rods whose times were not measured the estimate has `underestimated_rods`. The estimate is 0 s if no
+    sampled point has a rod.
     """
     indices = sampled_points(points)
-    values: dict[str, Array | float] = points.values_of(indices) | {name: limits[name in COSTLIER_IF_LARGER]}
+    values: dict[str, Array | float] = points.values_of(indices) | {
+        parameter_name: limits[parameter_name in COSTLIER_IF_LARGER]
+    }
     taper = np.asarray(values.get("taper", 1.0))
     min_area = np.minimum(taper, 1.0) ** 2
     F = np.clip(values["F"], 0.0, values["k1"] * min_area)  # a rod under tension has no cycles
-    per_force = BRANCH_SECONDS_PER_FORCE * (accuracy / 1e-7) ** BRANCH_ACCURACY_EXPONENT
+    seconds_per_force = BRANCH_SECONDS_PER_FORCE * (accuracy / 1e-7) ** BRANCH_ACCURACY_EXPONENT
     # A cone has as many waves along its length as a uniform rod under the force F/taper^2.
-    seconds = per_force * F / taper**2 * (1 + F / (values["k2"] * min_area)) ** BRANCH_BENDING_EXPONENT
+    seconds = (
+        seconds_per_force * F / taper**2 * (1 + F / (values["k2"] * min_area)) ** BRANCH_BENDING_EXPONENT
+    )
     if not indices.size:
         return CostEstimate(0.0)
     materials = [points.material_of(int(index)) for index in indices]
     return CostEstimate(
         float(np.mean(seconds)) * points.count,
-        doubt=_underestimated_rods_text(materials, values | {"F": F}, taper),
+        underestimated_rods=_underestimated_rods_text(materials, values | {"F": F}, taper),
     )
 
 
@@ -66,5 +74,5 @@ def _underestimated_rods_text(
         return "branches of arms with a profile"
     if bool(((taper < min_taper) | (taper > max_taper)).any()):
         return f"branches of cones with a taper outside {min_taper:g} to {max_taper:g}"
-    load = np.asarray(values["F"] / (values["k1"] * np.minimum(taper, 1.0) ** 2))
-    return "branches near the crushing force" if bool((load > MAX_MEASURED_LOAD).any()) else ""
+    relative_load = np.asarray(values["F"] / (values["k1"] * np.minimum(taper, 1.0) ** 2))
+    return "branches near the crushing force" if bool((relative_load > MAX_MEASURED_LOAD).any()) else ""

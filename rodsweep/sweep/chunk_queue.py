@@ -1,5 +1,5 @@
-"""Distribution of work items over ranks: independent items in small chunks whose size follows from each
-rank's time per item, and items that depend on earlier results one by one.
+"""Distribution of work items over ranks. Independent items are handed out in small chunks, whose size follows
+from each rank's time per item. Items that depend on earlier results are handed out one by one.
 
 A work item, item for short, is a point, a chain, a group of points, or a part of a curve. A rank with a
 slow chunk returns the unsolved items of the chunk with the next request. No rank ends while another rank may
@@ -58,12 +58,12 @@ class RankReport:
 
 class ChunkQueue:
     """Queue of the unsolved items, on the first rank; safe to use from two threads. ranges: ranges of items.
-    ranks: number of ranks."""
+    rank_count: number of ranks."""
 
     def __init__(self, ranges: list[IndexRange], rank_count: int):
         self.unsolved = deque(ranges)
         self.items_left = index_count(ranges)
-        self.ranks = rank_count
+        self.rank_count = rank_count
         self.outstanding: Counter[int] = Counter()
         """Number of chunks that a rank has received but not reported on, by rank."""
         self.stored_points = 0
@@ -102,16 +102,20 @@ class ChunkQueue:
     def next_chunk_in_advance(self, rank: int) -> IndexRange | None:
         """The next chunk for a rank that still works on a chunk; None if few items are left in the queue."""
         with self.change:
-            if self.unsolved and self.items_left >= MIN_ITEMS_AHEAD * self.ranks:
+            if self.unsolved and self.items_left >= MIN_ITEMS_AHEAD * self.rank_count:
                 return self._pop_chunk(rank)
             return None
 
     def _pop_chunk(self, rank: int) -> IndexRange:
         """Removes and returns the next chunk, sized by the rank's time per item; the lock must be held."""
         # At most half of an equal division: chunks shrink toward the end, where waiting costs most.
-        fair_size = max(1, self.items_left // (2 * self.ranks))
+        fair_size = max(1, self.items_left // (2 * self.rank_count))
         seconds_per_item = self.seconds_per_item.get(rank)
-        size = 1 if seconds_per_item is None else int(chunk_seconds(self.ranks) / max(seconds_per_item, 1e-7))
+        size = (
+            1
+            if seconds_per_item is None
+            else int(chunk_seconds(self.rank_count) / max(seconds_per_item, 1e-7))
+        )
         first, last = self.unsolved.popleft()
         end = min(last, first + max(1, min(size, fair_size, MAX_CHUNK_ITEMS)))
         if end < last:
@@ -139,7 +143,7 @@ class ItemChooser(Protocol):
 class DependentItemQueue(ChunkQueue):
     """`ChunkQueue` whose items depend on the results of solved items, one item in a chunk. item_chooser:
     chooses the next items from the results. results: results of solved items, by number of the item; at first
-    from an earlier run, later also from the reports. ranks: number of ranks."""
+    from an earlier run, later also from the reports. rank_count: number of ranks."""
 
     def __init__(self, item_chooser: ItemChooser, results: dict[int, Any], rank_count: int):
         super().__init__([], rank_count)

@@ -50,8 +50,8 @@ class ChunkServer:
     def __init__(
         self, ranks: Ranks, queue: ChunkQueue, stop: StopRequest, show_position: Callable[[str, float], None]
     ):
-        """show_position: function (text on the progress of a long point, fractions of all unfinished points
-        done, summed) that displays the progress."""
+        """show_position: function (text on the progress of a long point, sum of the fractions done of all
+        unfinished points) that displays the progress."""
         self.ranks = ranks
         self.queue = queue
         self.stop = stop
@@ -61,7 +61,7 @@ class ChunkServer:
         self.answered_in_advance: set[int] = set()
         """Ranks whose next request has been answered in advance."""
         self.working_ranks = set(range(1, ranks.size))
-        """Other ranks that have not been told that no work is left."""
+        """Other ranks that have not yet received NO_WORK_LEFT."""
         self.mpi_status = ranks.MPI.Status()
         self.positions: dict[int, SolvePosition] = {}
         """Latest reported progress within a long point, by rank."""

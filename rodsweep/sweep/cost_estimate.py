@@ -67,7 +67,7 @@ UNCOUNTED_SHARE = 0.05
 """Additional time of soft or pulled rods by Krylov-Schur on two meshes, which finds only the requested modes,
 divided by the additional time by roots of D; three rods."""
 FINER_MESH_RATIO = 4 / 3
-"""Number of unknowns of the second mesh divided by that of the first, in a spectrum by Krylov-Schur."""
+"""Ratio of the numbers of unknowns of the second and the first mesh, in a spectrum by Krylov-Schur."""
 MODES_MS = 0.4
 """Time of the eigenvectors at one point divided by the square of the number of modes, in ms: mean over 24
 rods with 4, 8 and 12 modes each. The time is quadratic because the mesh grows with the number of modes."""
@@ -107,7 +107,7 @@ class CostEstimate:
     """Smallest and largest number of unknowns of the sampled points' meshes; None if not estimated."""
     too_large_mesh_count: int = 0
     """Number of sampled points whose mesh would need more than RESOLUTION_SETTINGS.max_unknowns unknowns."""
-    doubt: str = ""
+    underestimated_rods: str = ""
     """Kind of rods whose time and memory may be many times as large as estimated; empty if the estimate is
     expected to hold within a factor of about two."""
 
@@ -117,40 +117,45 @@ def with_loading_time(cost: CostEstimate) -> CostEstimate:
     return replace(cost, seconds=cost.seconds + ARM_LOADING_SECONDS)
 
 
-def modes_cost(spectra: CostEstimate, count: int, mode_count: int, growth: bool) -> CostEstimate:
-    """Cost of `mode_count` eigenvectors at each of `count` points, from the cost `spectra` of the
-    eigenvalues. growth: whether the transient growth is computed too."""
-    extra_seconds = count * 1e-3 * (MODES_MS * mode_count**2 + (GROWTH_MS if growth else 0))
-    return replace(spectra, seconds=spectra.seconds + extra_seconds, unknowns=None)
+def modes_cost(
+    spectra_estimate: CostEstimate, point_count: int, mode_count: int, includes_growth: bool
+) -> CostEstimate:
+    """Cost of `mode_count` eigenvectors at each of `point_count` points, from the cost `spectra_estimate` of
+    the eigenvalues. includes_growth: whether the transient growth is computed too."""
+    extra_seconds = point_count * 1e-3 * (MODES_MS * mode_count**2 + (GROWTH_MS if includes_growth else 0))
+    return replace(spectra_estimate, seconds=spectra_estimate.seconds + extra_seconds, unknowns=None)
 
 
 def followed_spectra_cost(
-    separate: CostEstimate, groups: PointGroups, points: Points, mode_count: int
+    alone: CostEstimate, groups: PointGroups, points: Points, mode_count: int
 ) -> CostEstimate:
-    """Estimated cost of the spectra of `points` followed along groups. separate: cost of solving every
+    """Estimated cost of the spectra of `points` followed along groups. alone: cost of solving every
     point alone. mode_count: number of eigenvalues."""
-    firsts = FIRST_POINT_COST * groups.count / points.count
+    ratio = FIRST_POINT_COST * groups.count / points.count
     rods = [points.rod(int(index)) for index in sampled_points(points)]
     point_ms = (
         FOLLOWED_ARM_POINT_MS if any(not rod.is_uniform_and_linear for rod in rods) else FOLLOWED_POINT_MS
     )
-    growing = np.array([0.0 if rod.is_uniform_and_linear else expected_unstable_count(rod) for rod in rods])
+    unstable = np.array([0.0 if rod.is_uniform_and_linear else expected_unstable_count(rod) for rod in rods])
     extra_ms = np.where(
-        growing > mode_count + MAX_EXTRA_UNSTABLE_MODES, MS_PER_SQUARED_UNSTABLE_MODE * growing**2, 0.0
+        unstable > mode_count + MAX_EXTRA_UNSTABLE_MODES, MS_PER_SQUARED_UNSTABLE_MODE * unstable**2, 0.0
     )
     point_ms += float(extra_ms.mean()) if rods else 0.0
-    return replace(separate, seconds=separate.seconds * min(1.0, firsts) + points.count * 1e-3 * point_ms)
+    return replace(alone, seconds=alone.seconds * min(1.0, ratio) + points.count * 1e-3 * point_ms)
 
 
 def two_meshes_cost(points: Points, mode_count: int, accuracy: float) -> CostEstimate:
     """Estimated cost of the spectra of `points` by Krylov-Schur on two meshes. mode_count: number of
     eigenvalues. accuracy: relative accuracy."""
-    single = spectra_cost(points, mode_count, accuracy, certify=False)
+    one_mesh = spectra_cost(points, mode_count, accuracy, certify=False)
     rods = [points.rod(int(index)) for index in sampled_points(points)]
-    hard = points.count * 1e-3 * float(np.mean([_soft_or_pulled_rod_ms(rod) for rod in rods] or [0.0]))
-    seconds = COST_OF_TWO_MESHES * (single.seconds - hard) + UNCOUNTED_SHARE * hard
-    unknowns = single.unknowns and (single.unknowns[0], math.ceil(FINER_MESH_RATIO * single.unknowns[1]))
-    return replace(single, seconds=seconds, unknowns=unknowns)
+    extra = points.count * 1e-3 * float(np.mean([_soft_or_pulled_rod_ms(rod) for rod in rods] or [0.0]))
+    seconds = COST_OF_TWO_MESHES * (one_mesh.seconds - extra) + UNCOUNTED_SHARE * extra
+    unknowns = one_mesh.unknowns and (
+        one_mesh.unknowns[0],
+        math.ceil(FINER_MESH_RATIO * one_mesh.unknowns[1]),
+    )
+    return replace(one_mesh, seconds=seconds, unknowns=unknowns)
 
 
 def spectra_cost(points: Points, mode_count: int, accuracy: float, certify: bool) -> CostEstimate:
@@ -158,22 +163,22 @@ def spectra_cost(points: Points, mode_count: int, accuracy: float, certify: bool
     none of these points has a rod. mode_count: number of eigenvalues. accuracy: relative accuracy. certify:
     whether spectra are certified."""
     rods = [points.rod(int(index)) for index in sampled_points(points)]
-    sizes = [_unknowns(rod, mode_count, accuracy) for rod in rods]
-    if not sizes:  # no rod covers any point of the sample
+    counts = [_unknown_count(rod, mode_count, accuracy) for rod in rods]
+    if not counts:  # no rod covers any point of the sample
         return CostEstimate(0.0)
-    fraction = sum(not rod.is_uniform_and_linear for rod in rods) / len(rods)
-    n = np.minimum(np.array(sizes, dtype=float), RESOLUTION_SETTINGS.max_unknowns)
+    arm_fraction = sum(not rod.is_uniform_and_linear for rod in rods) / len(rods)
+    n = np.minimum(np.array(counts, dtype=float), RESOLUTION_SETTINGS.max_unknowns)
     dense_ms = SPECTRUM_FIXED_MS + SPECTRUM_MS_PER_UNKNOWN * n + SPECTRUM_MS_PER_CUBED_UNKNOWN * n**3
     point_ms = np.where(n <= MIN_SPARSE_UNKNOWNS, dense_ms, SPARSE_MS_PER_UNKNOWN * n) + (
         CERTIFICATE_MS if certify else 0
     )
-    growing = np.array([0.0 if rod.is_uniform_and_linear else expected_unstable_count(rod) for rod in rods])
-    point_ms += fraction * ARM_SPECTRUM_MS + MS_PER_SQUARED_UNSTABLE_MODE * growing**2
+    unstable = np.array([0.0 if rod.is_uniform_and_linear else expected_unstable_count(rod) for rod in rods])
+    point_ms += arm_fraction * ARM_SPECTRUM_MS + MS_PER_SQUARED_UNSTABLE_MODE * unstable**2
     point_ms += np.array([_soft_or_pulled_rod_ms(rod) for rod in rods])
     memory = BASE_MEMORY + int(n.max()) * MEMORY_PER_UNKNOWN
-    too_large = int((np.array(sizes) > RESOLUTION_SETTINGS.max_unknowns).sum())
+    too_large = int((np.array(counts) > RESOLUTION_SETTINGS.max_unknowns).sum())
     return CostEstimate(
-        float(point_ms.mean()) * 1e-3 * points.count, memory, (min(sizes), max(sizes)), too_large
+        float(point_ms.mean()) * 1e-3 * points.count, memory, (min(counts), max(counts)), too_large
     )
 
 
@@ -187,12 +192,12 @@ def _soft_or_pulled_rod_ms(rod: Rod) -> float:
         squared_wave_number = min(rod.F, 0.0) * float(np.max(local.c3 * np.maximum(local.g, 0.0)))
     wave_number = math.sqrt(min(abs(squared_wave_number), MAX_SQUARED_WAVE_NUMBER))
     if squared_wave_number > 0:
-        modes = wave_number / math.pi
-        return MS_PER_SQUARED_UNSTABLE_MODE_OF_ROD * modes**2 * (1 + (modes / MODES_OF_SLOW_SPECTRUM) ** 2)
+        count = wave_number / math.pi
+        return MS_PER_SQUARED_UNSTABLE_MODE_OF_ROD * count**2 * (1 + (count / MODES_OF_SLOW_SPECTRUM) ** 2)
     return PULLED_MS_PER_WAVE_NUMBER * wave_number * (wave_number > MIN_WAVE_NUMBER_OF_LAYERS)
 
 
-def _unknowns(rod: Rod, mode_count: int, accuracy: float) -> int:
+def _unknown_count(rod: Rod, mode_count: int, accuracy: float) -> int:
     """Number of unknowns of the first mesh on which `rod` is solved for `mode_count` modes to the relative
     accuracy `accuracy`."""
     if not rod.is_uniform_and_linear:
@@ -209,8 +214,8 @@ def sampled_points(points: Points, max_count: int = MAX_SAMPLED_POINTS) -> NDArr
 
 
 def cycles_cost(points: Points, first_count: int) -> CostEstimate:
-    """Estimated cost of the limit cycles of `points`, of which `first_count` are computed from the leading
-    mode and the others from a neighbour's cycle."""
+    """Estimated cost of the limit cycles of `points`. first_count: number of cycles computed from the leading
+    mode; all other cycles are computed from a neighbour's cycle."""
     indices = sampled_points(points)
     F = np.asarray(points.values_of(indices)["F"]) if indices.size else np.zeros(1)
     pulled_count = points.count * float(np.mean(-MIN_PULL_OF_SLOW_MOTION >= F))
@@ -218,7 +223,7 @@ def cycles_cost(points: Points, first_count: int) -> CostEstimate:
     return CostEstimate(seconds + pulled_count * PULLED_MOTION_SECONDS)
 
 
-def marched_cycles_cost(count: int, accuracy: float) -> CostEstimate:
-    """Estimated cost of `count` limit cycles by time integration to a relative accuracy."""
+def marched_cycles_cost(cycle_count: int, accuracy: float) -> CostEstimate:
+    """Estimated cost of `cycle_count` limit cycles by time integration to a relative accuracy."""
     accuracy_factor = max(1.0, MARCHED_ACCURACY / accuracy) ** MARCHED_ACCURACY_EXPONENT
-    return CostEstimate(count * MARCHED_CYCLE_SECONDS * accuracy_factor)
+    return CostEstimate(cycle_count * MARCHED_CYCLE_SECONDS * accuracy_factor)

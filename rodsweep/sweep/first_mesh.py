@@ -22,8 +22,8 @@ def spectrum_mesh(rod: Rod, mode_count: int, accuracy: float) -> Elements:
     mesh."""
     if not rod.is_uniform:
         return arm_mesh(rod, mode_count, accuracy)
-    _, wave = most_amplified_wave(rod.equivalent_linear_rod[0])
-    resolution = resolution_for(expected_wave_number(mode_count, wave), accuracy)
+    _, wave_number = most_amplified_wave(rod.equivalent_linear_rod[0])
+    resolution = resolution_for(expected_wave_number(mode_count, wave_number), accuracy)
     return Elements(equal_edges(resolution.element_count), resolution.order)
 
 

@@ -31,12 +31,12 @@ class ItemSolver(Protocol):
 class ProgressSink(Protocol):
     """Interface of a display, on the first rank, for the progress of all ranks."""
 
-    def __call__(self, finished: int) -> None:
-        """Shows `finished`, the number of points that all ranks have finished."""
+    def __call__(self, finished_count: int) -> None:
+        """Shows `finished_count`, the number of points that all ranks have finished."""
 
-    def show_position(self, text: str, partial: float) -> None:
-        """Shows the text `text` on the progress of a long point. partial: sum of the fractions done of all
-        unfinished points."""
+    def show_position(self, text: str, fraction_sum: float) -> None:
+        """Shows the text `text` on the progress of a long point. fraction_sum: sum of the fractions done of
+        all unfinished points."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +69,7 @@ class SweepCallbacks:
 
 
 def sweep(
-    ranks: Ranks, queue: ChunkQueue, loop: SweepCallbacks, progress: ProgressSink, stop: StopRequest
+    ranks: Ranks, queue: ChunkQueue, callbacks: SweepCallbacks, progress: ProgressSink, stop: StopRequest
 ) -> RankStatistics:
     """Solves every item in `queue`, which is used on the first rank only; returns when all ranks have
     finished. An exception on any rank ends all ranks. After a stop request to any rank, each rank ends after
@@ -80,9 +80,9 @@ def sweep(
         else ChunkClient(ranks, stop)
     )
     with suppress(SolveStopped), reporting_to(RankListener(requests, stop)):
-        loop.prepare()
+        callbacks.prepare()
     progress(0)
-    return _RankLoop(ranks, requests, loop, progress, stop).solve_chunks()
+    return _RankLoop(ranks, requests, callbacks, progress, stop).solve_chunks()
 
 
 class _RankLoop:
@@ -92,16 +92,16 @@ class _RankLoop:
         self,
         ranks: Ranks,
         requests: ChunkServer | ChunkClient,
-        loop: SweepCallbacks,
+        callbacks: SweepCallbacks,
         progress: ProgressSink,
         stop: StopRequest,
     ):
         self.ranks = ranks
         self.requests = requests
-        self.callbacks = loop
+        self.callbacks = callbacks
         self.progress = progress
         self.stop = stop
-        self.points = 0
+        self.solved_points = 0
         self.was_interrupted = False
 
     def solve_chunks(self) -> RankStatistics:
@@ -111,7 +111,7 @@ class _RankLoop:
         chunk = self.requests.next_chunk(RankReport())
         while chunk != NO_WORK_LEFT:
             chunk_start = time.monotonic()
-            points_before = self.points
+            points_before = self.solved_points
             next_item = self._solve_chunk(chunk)
             chunk_seconds = time.monotonic() - chunk_start
             busy_seconds += chunk_seconds
@@ -119,7 +119,7 @@ class _RankLoop:
                 finished_items=next_item - chunk[0],
                 seconds=chunk_seconds,
                 returned_items=(next_item, chunk[1]),
-                stored_points=self.points - points_before,
+                stored_points=self.solved_points - points_before,
                 stop_signal=self.stop.name,
                 results=self.callbacks.new_results(),
             )
@@ -128,15 +128,15 @@ class _RankLoop:
             self.requests.close()
         self.ranks.wait_for_all()
         return RankStatistics(
-            self.points, busy_seconds, time.monotonic() - start - busy_seconds, self.was_interrupted
+            self.solved_points, busy_seconds, time.monotonic() - start - busy_seconds, self.was_interrupted
         )
 
     def _solve_chunk(self, chunk: IndexRange) -> int:
         """Solves the items of a chunk in order; returns the number of the first unsolved item. Later items
         stay unsolved after a stop request, or if the chunk takes too long."""
-        patience = time.monotonic() + MAX_CHUNK_TIME_RATIO * chunk_seconds(self.ranks.size)
+        deadline = time.monotonic() + MAX_CHUNK_TIME_RATIO * chunk_seconds(self.ranks.size)
         item = chunk[0]
-        points_before = self.points
+        points_before = self.solved_points
         while item < chunk[1] and not self.stop:
             try:
                 with reporting_to(
@@ -148,7 +148,7 @@ class _RankLoop:
             if self.stop:  # the item may be unfinished, so it does not count as solved
                 break
             item += 1
-            if time.monotonic() > patience:
+            if time.monotonic() > deadline:
                 break
         return item
 
@@ -156,7 +156,7 @@ class _RankLoop:
         """Solves an item and stores its points. points_before: number of points stored before the chunk."""
         for index, result in self.callbacks.solve(item):
             self.callbacks.store(index, result)
-            self.points += 1 if isinstance(index, int) else len(index)
+            self.solved_points += 1 if isinstance(index, int) else len(index)
             self.requests.poll_messages()
             if isinstance(self.requests, ChunkServer):
-                self.progress(self.requests.queue.stored_points + self.points - points_before)
+                self.progress(self.requests.queue.stored_points + self.solved_points - points_before)

@@ -21,7 +21,8 @@ BAR_SECONDS = 0.1
 
 
 def on_terminal() -> bool:
-    """Whether standard error is a terminal; under an MPI launcher, that of the launcher is tested as well."""
+    """Whether standard error is a terminal; under an MPI launcher, the launcher's standard error counts
+    too."""
     if sys.stderr.isatty():
         return True
     launcher = f"/proc/{os.getppid()}/fd/2"
@@ -42,9 +43,9 @@ def in_notebook() -> bool:
 class SilentProgress:
     """Progress display that shows nothing."""
 
-    def __call__(self, finished: int) -> None: ...
+    def __call__(self, finished_count: int) -> None: ...
 
-    def show_position(self, text: str, partial: float = 0.0) -> None: ...
+    def show_position(self, text: str, fraction_sum: float = 0.0) -> None: ...
 
     def close(self) -> None: ...
 
@@ -60,54 +61,60 @@ class ProgressReporter:
         self.total = total
         self.noun = noun
         self.remaining_time = None if total is None else RemainingTimeEstimator(total)
-        self.began = self.next_display = 0.0
+        self.start_time = self.next_display = 0.0
         """Start of the sweep and time of the next display, on the monotonic clock, in s; 0 before."""
-        self.done = 0
-        self.begun = 0.0
-        self.where = ""
+        self.finished_count = 0
+        self.fraction_sum = 0.0
+        self.position_text = ""
         self.bar = _bar(title) if (on_terminal() if is_bar is None else is_bar) else None
         if self.bar is not None:
             self.task = self.bar.add_task(title, total=total, count="", rate="", left="", where="")
 
-    def __call__(self, finished: int) -> None:
-        """Records the number `finished` of finished points, and displays it if due; 0 starts the clock."""
-        if not finished:
-            self.began = time.monotonic()
-            self.next_display = self.began + QUIET_SECONDS
-        self.done = finished
-        self.begun = 0.0
-        self.where = ""
+    def __call__(self, finished_count: int) -> None:
+        """Records the number `finished_count` of finished points, and displays it if due; 0 starts the
+        clock."""
+        if not finished_count:
+            self.start_time = time.monotonic()
+            self.next_display = self.start_time + QUIET_SECONDS
+        self.finished_count = finished_count
+        self.fraction_sum = 0.0
+        self.position_text = ""
         self._show()
 
-    def show_position(self, text: str, partial: float = 0.0) -> None:
-        """Shows the text `text` on the progress of a long point, if an update is due. partial: sum of the
-        fractions done of all unfinished points."""
-        self.begun = partial
-        self.where = text
+    def show_position(self, text: str, fraction_sum: float = 0.0) -> None:
+        """Shows the text `text` on the progress of a long point, if an update is due. fraction_sum: sum of
+        the fractions done of all unfinished points."""
+        self.fraction_sum = fraction_sum
+        self.position_text = text
         self._show()
 
     def _show(self) -> None:
         """Draws the bar or prints a line, if an update is due."""
         now = time.monotonic()
-        if not self.began or now < self.next_display:
+        if not self.start_time or now < self.next_display:
             return
-        elapsed = now - self.began
-        rate = rate_in_words(self.done, elapsed) if self.total else ""
+        elapsed = now - self.start_time
+        rate = rate_in_words(self.finished_count, elapsed) if self.total else ""
         seconds = None
         if self.remaining_time:
-            seconds = self.remaining_time.remaining_seconds(self.done, elapsed, self.begun)
+            seconds = self.remaining_time.remaining_seconds(self.finished_count, elapsed, self.fraction_sum)
         time_left = "" if seconds is None else f"about {duration_text(seconds)} left"
-        count = f"{self.done} of {self.total}" if self.total else f"{self.done or ''}"
+        count = f"{self.finished_count} of {self.total}" if self.total else f"{self.finished_count or ''}"
         if self.bar is not None:
             self.bar.start()
             self.next_display = now + BAR_SECONDS
-            fields: dict[str, Any] = {"count": count, "rate": rate, "left": time_left, "where": self.where}
-            self.bar.update(self.task, completed=self.done + self.begun, **fields)
+            fields: dict[str, Any] = {
+                "count": count,
+                "rate": rate,
+                "left": time_left,
+                "where": self.position_text,
+            }
+            self.bar.update(self.task, completed=self.finished_count + self.fraction_sum, **fields)
             self.bar.refresh()
             return
         self.next_display = now + LINE_SECONDS
         summary = ", ".join(filter(None, (f"{count} {self.noun}" if count else "", rate, time_left)))
-        print("; ".join(filter(None, (summary, self.where))), file=sys.stderr, flush=True)
+        print("; ".join(filter(None, (summary, self.position_text))), file=sys.stderr, flush=True)
 
     def close(self) -> None:
         if self.bar is not None:

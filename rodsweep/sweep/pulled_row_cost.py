@@ -26,24 +26,24 @@ DOUBTFUL_PULLS = "rows that begin at a pull beyond the shear stiffness"
 times as long as a rod under half or twice the pull."""
 
 
-def pulled_rows_seconds(rods: Sequence[Rod], values: Array, count: int) -> tuple[float, str]:
-    """Returns (time in s to search all rows below F = 0, doubt). doubt: kind of rows whose time may be many
-    times as long; empty if there are none. rods: rods of evenly spaced rows, with any F. values: increasing
-    forces along a row, (n,). count: number of rows."""
-    pulls = values[values < 0]
+def pulled_rows_seconds(rods: Sequence[Rod], F_values: Array, row_count: int) -> tuple[float, str]:
+    """Returns (time in s to search all rows below F = 0, underestimated rows). underestimated rows: kind of
+    rows whose time may be many times as long; empty if there are none. rods: rods of evenly spaced rows, with
+    any F. F_values: increasing forces along a row, (n,). row_count: number of rows."""
+    pulls = F_values[F_values < 0]
     if not pulls.size or not rods:
         return 0.0, ""
     starts = [_first_searchable_pull(rod, pulls) for rod in rods]
-    each = [_row_seconds(rod, start) for rod, start in zip(rods, starts, strict=True)]
+    seconds_of_rows = [_row_seconds(rod, start) for rod, start in zip(rods, starts, strict=True)]
     # Beyond the shear stiffness g = nu + F c2 is negative somewhere along the arm.
     arms = (sampled_arm(rod.with_values(F=start)) for rod, start in zip(rods, starts, strict=True))
-    is_beyond_pulls = any(float(np.min(arm.local.g)) < 0 for arm in arms)
-    return count * float(np.mean(each)), DOUBTFUL_PULLS if is_beyond_pulls else ""
+    is_beyond_shear_stiffness = any(float(np.min(arm.local.g)) < 0 for arm in arms)
+    return row_count * float(np.mean(seconds_of_rows)), DOUBTFUL_PULLS if is_beyond_shear_stiffness else ""
 
 
 def _first_searchable_pull(rod: Rod, pulls: Array) -> float:
-    """First of the increasing `pulls` from which a row of uniform rods can be searched; 0 if there is none,
-    and the first pull for arms that are not uniform, whose searchable pulls are not known in advance."""
+    """First of the increasing `pulls` from which a row can be searched; 0 if there is none. For arms that are
+    not uniform, whose searchable pulls are not known in advance, the first pull."""
     if not rod.is_uniform_and_linear:
         return float(pulls[0])
     low = 0
@@ -57,15 +57,15 @@ def _first_searchable_pull(rod: Rod, pulls: Array) -> float:
     return float(pulls[low]) if low < len(pulls) else 0.0
 
 
-def _row_seconds(rod: Rod, start: float) -> float:
-    """Time to search one row from the pull `start` to F = 0, in s."""
+def _row_seconds(rod: Rod, start_pull: float) -> float:
+    """Time to search one row from the pull `start_pull` to F = 0, in s."""
     if not rod.is_uniform_and_linear:
-        return min(1e-3 * ARM_MS_PER_PULL * -start, MAX_ATTEMPT_SECONDS)
-    boxes = _boxes(rod, start)
-    covering = COVERING_MS_PER_BOX * (0 if boxes is None else len(boxes))
-    drive = start * rod.with_values(F=start).g
-    exchanges = BEYOND_SHEAR_MS + SOFT_SEARCH_MS * drive if drive > 0 else 0.0
-    return 1e-3 * covering + min(1e-3 * exchanges, MAX_ATTEMPT_SECONDS)
+        return min(1e-3 * ARM_MS_PER_PULL * -start_pull, MAX_ATTEMPT_SECONDS)
+    boxes = _boxes(rod, start_pull)
+    covering_ms = COVERING_MS_PER_BOX * (0 if boxes is None else len(boxes))
+    drive = start_pull * rod.with_values(F=start_pull).g
+    exchanges_ms = BEYOND_SHEAR_MS + SOFT_SEARCH_MS * drive if drive > 0 else 0.0
+    return 1e-3 * covering_ms + min(1e-3 * exchanges_ms, MAX_ATTEMPT_SECONDS)
 
 
 def _boxes(rod: Rod, pull: float) -> Array | None:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from typing import Any, TypeVar
 
-from ..errors import BUG_STATUS, EnvironmentIncomplete, UserError, import_refusal
+from ..errors import BUG_STATUS, EnvironmentIncomplete, UserError, import_failure_error
 
 T = TypeVar("T")
 S = TypeVar("S")
@@ -24,7 +24,7 @@ class Ranks:
         try:
             from mpi4py import MPI
         except ImportError as error:
-            raise import_refusal("mpi4py", error) from error
+            raise import_failure_error("mpi4py", error) from error
         self.MPI = MPI
         self.comm = MPI.COMM_WORLD.Dup()
         self.rank: int = self.comm.Get_rank()

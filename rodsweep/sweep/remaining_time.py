@@ -25,25 +25,25 @@ RECORD_RATIO = 1.02
 class RemainingTimeEstimator:
     """Estimator of the remaining time of a sweep of `total` points; all times are in s since the start."""
 
-    def __init__(self, total: int):
-        self.total = total
+    def __init__(self, point_count: int):
+        self.total = point_count
         self.records: list[tuple[int, float]] = []
         """(number of finished points, time), both increasing; the first and the latest report are stored."""
         self.reported: tuple[float, float] | None = None
         """(time of the last report, remaining time reported then)."""
 
-    def remaining_seconds(self, finished: int, now: float, partial: float = 0.0) -> float | None:
-        """Remaining time, in s, when `finished` points are finished at the time `now`, smoothed over the
-        calls; None if too little work is done for an estimate. now: in s since the start of the sweep.
-        partial: sum of the fractions done of unfinished points."""
-        if finished == self.total:
+    def remaining_seconds(self, finished_count: int, now: float, fraction_sum: float = 0.0) -> float | None:
+        """Remaining time, in s, when `finished_count` points are finished at the time `now`, smoothed over
+        the calls; None if too little work is done for an estimate. now: in s since the start of the sweep.
+        fraction_sum: sum of the fractions done of unfinished points."""
+        if finished_count == self.total:
             return 0.0
-        if finished and (not self.records or finished > self.records[-1][0]):
-            self._record(finished, now)
-        seconds_per_point = self._seconds_per_point(finished, now, partial)
+        if finished_count and (not self.records or finished_count > self.records[-1][0]):
+            self._record(finished_count, now)
+        seconds_per_point = self._seconds_per_point(finished_count, now, fraction_sum)
         if seconds_per_point is None:
             return None
-        remaining = max(self.total - finished - partial, 0.0) * seconds_per_point
+        remaining = max(self.total - finished_count - fraction_sum, 0.0) * seconds_per_point
         if self.reported is None:
             self.reported = now, remaining
             return remaining
@@ -55,27 +55,32 @@ class RemainingTimeEstimator:
         self.reported = now, expected + weight * (remaining - expected)
         return self.reported[1]
 
-    def _record(self, finished: int, now: float) -> None:
-        """Stores the record (done, now); thins earlier records to about 35 per doubling of the points."""
+    def _record(self, finished_count: int, now: float) -> None:
+        """Stores the record (finished, now); thins earlier records to about 35 per doubling of the points."""
         if len(self.records) > 2 and self.records[-1][0] < RECORD_RATIO * self.records[-2][0]:
             self.records.pop()
-        self.records.append((finished, now))
+        self.records.append((finished_count, now))
 
-    def _seconds_per_point(self, finished: int, now: float, partial: float) -> float | None:
+    def _seconds_per_point(self, finished_count: int, now: float, fraction_sum: float) -> float | None:
         """Time per point in s: the larger of the time over the latest finished points and the time that
-        includes the wait since the latest record. finished: number of finished points. now: in s since the
-        start of the sweep. partial: sum of the fractions done of unfinished points.
+        includes the wait since the latest record. finished_count: number of finished points. now: in s since
+        the start of the sweep. fraction_sum: sum of the fractions done of unfinished points.
 
         Before MIN_POINTS points are finished, the time follows from the fractions done of unfinished points;
         None if their sum is below MIN_FRACTION_DONE.
         """
-        if not self.records or finished < self.records[0][0] + MIN_POINTS:
-            return now / (finished + partial) if partial >= MIN_FRACTION_DONE else None
-        past = (record for record in reversed(self.records) if record[0] <= PACE_WINDOW_START * finished)
-        points, start = next(past, self.records[0])
+        if not self.records or finished_count < self.records[0][0] + MIN_POINTS:
+            return now / (finished_count + fraction_sum) if fraction_sum >= MIN_FRACTION_DONE else None
+        earlier_records = (
+            record for record in reversed(self.records) if record[0] <= PACE_WINDOW_START * finished_count
+        )
+        earlier_points, earlier_time = next(earlier_records, self.records[0])
         latest_time = self.records[-1][1]
-        new_points = finished - points
-        return max((latest_time - start) / new_points, (now - start) / (new_points + (partial or 1.0)))
+        new_points = finished_count - earlier_points
+        return max(
+            (latest_time - earlier_time) / new_points,
+            (now - earlier_time) / (new_points + (fraction_sum or 1.0)),
+        )
 
 
 def duration_text(seconds: float) -> str:
@@ -86,10 +91,10 @@ def duration_text(seconds: float) -> str:
     return f"{float(f'{seconds:.2g}'):.0f} s"
 
 
-def rate_in_words(finished: int, seconds: float) -> str:
-    """Text of the rate of `finished` points in `seconds`: points per second, or the time per point if this
-    time exceeds one second. Empty before the first point."""
-    if not finished or not seconds:
+def rate_in_words(finished_count: int, seconds: float) -> str:
+    """Text of the rate of `finished_count` points in `seconds`: points per second, or the time per point if
+    this time exceeds one second. Empty before the first point."""
+    if not finished_count or not seconds:
         return ""
-    rate = finished / seconds
+    rate = finished_count / seconds
     return f"{rate:.3g}/s" if rate >= 1 else f"{duration_text(1 / rate)} per point"

@@ -38,11 +38,11 @@ HOPF_POINTS_MS = 18.0
 """Time of the normal forms of the two or three Hopf points of a rod, in ms: mean over the 90 rods."""
 
 
-def searches_cost(lines: int, certify: bool, is_varying: bool) -> CostEstimate:
-    """Estimated cost of `lines` searches for crossings, each of one rod along one parameter. certify: whether
-    each search is certified. is_varying: whether any arm is not uniform."""
-    uniform = THRESHOLD_SEARCH_MS + (SEARCH_CERTIFICATE_MS if certify else 0)
-    return CostEstimate(lines * 1e-3 * (ARM_SEARCH_MS if is_varying else uniform))
+def searches_cost(search_count: int, certify: bool, is_varying: bool) -> CostEstimate:
+    """Estimated cost of `search_count` searches for crossings, each of one rod along one parameter. certify:
+    whether each search is certified. is_varying: whether any arm is not uniform."""
+    uniform_rod_ms = THRESHOLD_SEARCH_MS + (SEARCH_CERTIFICATE_MS if certify else 0)
+    return CostEstimate(search_count * 1e-3 * (ARM_SEARCH_MS if is_varying else uniform_rod_ms))
 
 
 def soft_searches_seconds(points: Points, F_max: float, is_varying: bool) -> float:
@@ -63,24 +63,24 @@ def soft_searches_seconds(points: Points, F_max: float, is_varying: bool) -> flo
 def thresholds_cost(points: Points, F_max: float, certify: bool, is_varying: bool) -> CostEstimate:
     """Estimated cost of the lists of thresholds of all rods in `points` for forces up to `F_max`. certify:
     whether each list is certified. is_varying: whether any arm is not uniform."""
-    lines = searches_cost(points.count, certify, is_varying)
-    return replace(lines, seconds=lines.seconds + soft_searches_seconds(points, F_max, is_varying))
+    searches = searches_cost(points.count, certify, is_varying)
+    return replace(searches, seconds=searches.seconds + soft_searches_seconds(points, F_max, is_varying))
 
 
 def diagram_cost(
-    row_count: int, certify: bool, is_varying: bool, curves: bool, criticality: bool
+    row_count: int, certify: bool, is_varying: bool, has_curves: bool, has_criticality: bool
 ) -> CostEstimate:
     """Estimated cost of a phase diagram of `row_count` rows, without limit cycles. certify: whether each row
-    is certified. is_varying: whether any arm is not uniform. curves, criticality: whether boundary curves and
-    their criticality are computed; the cost for uniform rods is neglected."""
-    lines = searches_cost(row_count, certify, is_varying)
-    arm_seconds = CURVES_OF_ARMS_SECONDS * curves + CRITICALITY_OF_ARMS_SECONDS * criticality
-    return replace(lines, seconds=lines.seconds + arm_seconds * is_varying)
+    is certified. is_varying: whether any arm is not uniform. has_curves, has_criticality: whether boundary
+    curves and their criticality are computed; the cost for uniform rods is neglected."""
+    searches = searches_cost(row_count, certify, is_varying)
+    arm_seconds = CURVES_OF_ARMS_SECONDS * has_curves + CRITICALITY_OF_ARMS_SECONDS * has_criticality
+    return replace(searches, seconds=searches.seconds + arm_seconds * is_varying)
 
 
-def criticality_cost(rods: int, certify: bool, is_varying: bool) -> CostEstimate:
-    """Estimated cost of the Hopf points and normal forms of `rods` rods. certify: whether each search is
+def criticality_cost(rod_count: int, certify: bool, is_varying: bool) -> CostEstimate:
+    """Estimated cost of the Hopf points and normal forms of `rod_count` rods. certify: whether each search is
     certified. is_varying: whether any rod is not uniform."""
-    search = HOPF_SEARCH_MS + (HOPF_CERTIFICATE_MS if certify else 0)
-    rod_ms = HOPF_POINTS_MS + (ARM_SEARCH_MS if is_varying else search)
-    return CostEstimate(rods * 1e-3 * rod_ms)
+    search_ms = HOPF_SEARCH_MS + (HOPF_CERTIFICATE_MS if certify else 0)
+    rod_ms = HOPF_POINTS_MS + (ARM_SEARCH_MS if is_varying else search_ms)
+    return CostEstimate(rod_count * 1e-3 * rod_ms)

@@ -51,24 +51,24 @@ class StopRequest:
 
     def listen(self) -> None:
         """Installs handlers, so that stop signals set this request, not end the process; main thread only."""
-        for number in STOP_SIGNALS:
-            signal.signal(number, self._record_signal)
+        for signal_number in STOP_SIGNALS:
+            signal.signal(signal_number, self._record_signal)
 
     @staticmethod
     def ignore() -> None:
         """Makes the process ignore stop signals, even while Python and MPI shut down; main thread only."""
-        for number in STOP_SIGNALS:
-            signal.signal(number, signal.SIG_IGN)
+        for signal_number in STOP_SIGNALS:
+            signal.signal(signal_number, signal.SIG_IGN)
 
     def adopt(self, name: str) -> None:
         """Adopts the stop request of another rank; name: name of the signal."""
         self.name = name
 
-    def _record_signal(self, number: int, _: FrameType | None) -> None:
-        if number == signal.SIGINT and self.acknowledges and not self.name:
+    def _record_signal(self, signal_number: int, _: FrameType | None) -> None:
+        if signal_number == signal.SIGINT and self.acknowledges and not self.name:
             with suppress(OSError):
                 os.write(2, STOPPING_MESSAGE)  # print is not safe in a signal handler
-        self.name = signal.Signals(number).name
+        self.name = signal.Signals(signal_number).name
 
 
 class RankCommunication(Protocol):

@@ -50,7 +50,7 @@ class CertifiedTask(Task):
         By default the mesh of a search, along the parameter in `searched_ranges`, for eigenvalues on the
         imaginary axis.
         """
-        accuracy = mesh_accuracy(SPECTRUM_SAMPLE_SETTINGS.arm_accuracy, vectors=False)
+        accuracy = mesh_accuracy(SPECTRUM_SAMPLE_SETTINGS.arm_accuracy, needs_vectors=False)
 
         def mesh_of(rod: Rod) -> Elements:
             return spectrum_mesh(rod, SPECTRUM_SAMPLE_SETTINGS.min_computed_modes, accuracy)

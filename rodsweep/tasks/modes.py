@@ -57,13 +57,13 @@ class ModesTask(CertifiedTask):
         ]
 
     def first_mesh(self) -> Elements | None:
-        accuracy = mesh_accuracy(self.config.accuracy, vectors=False)
+        accuracy = mesh_accuracy(self.config.accuracy, needs_vectors=False)
         modes = self.config.modes.modes
         return largest_first_mesh(self.points, lambda rod: spectrum_mesh(rod, modes, accuracy))
 
     def cost(self) -> CostEstimate:
         options = self.config.modes
-        accuracy = mesh_accuracy(self.config.accuracy, vectors=False)
+        accuracy = mesh_accuracy(self.config.accuracy, needs_vectors=False)
         spectra = spectra_cost(self.points, options.modes, accuracy, options.certify)
         return modes_cost(spectra, self.points.count, options.modes, options.growth)
 

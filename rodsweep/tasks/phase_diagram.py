@@ -108,7 +108,9 @@ class PhaseDiagramTask(CertifiedTask):
             self.points, self.config.plane_parameters[0], line_range, options.cycle_accuracy
         )
         return replace(
-            branches, seconds=lines.seconds + branches.seconds, doubt=branches.doubt or lines.doubt
+            branches,
+            seconds=lines.seconds + branches.seconds,
+            underestimated_rods=branches.underestimated_rods or lines.underestimated_rods,
         )
 
     def _with_soft_and_pulled_rows(self, lines: CostEstimate, is_varying: bool) -> CostEstimate:
@@ -117,7 +119,7 @@ class PhaseDiagramTask(CertifiedTask):
         rows = sampled_points(self.points, MAX_SAMPLED_ROWS)
         rods = [rod for row in rows if (rod := self.rod_of_row(int(row)))]
         pulled, doubt = pulled_rows_seconds(rods, self.line_values, self.points.count)
-        return replace(lines, seconds=lines.seconds + soft + pulled, doubt=doubt)
+        return replace(lines, seconds=lines.seconds + soft + pulled, underestimated_rods=doubt)
 
     def solver(self) -> Solver:
         from ..solve.changes.status import ThresholdStatus

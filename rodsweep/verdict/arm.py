@@ -96,5 +96,6 @@ def arm_report(arm: SlenderArm) -> ArmReport:
 
 
 def _wrapped(text: str, first_indent: str = "", other_indent: str = "  ") -> str:
-    """`text` wrapped to LINE_WIDTH. first_indent, other_indent: indents of first and following lines."""
+    """`text` wrapped to LINE_WIDTH. first_indent, other_indent: indents of the first and of all other
+    lines."""
     return textwrap.fill(text, LINE_WIDTH, initial_indent=first_indent, subsequent_indent=other_indent)

@@ -59,8 +59,8 @@ class Assessment:
     def force_at_flutter(self) -> float | None:
         """Smallest flutter force, in k3/L^2, for the most likely drag for which the arm flutters; None if the
         arm flutters for no drag."""
-        change = first_hopf_point(self.thresholds)
-        return None if change is None else change.value
+        threshold = first_hopf_point(self.thresholds)
+        return None if threshold is None else threshold.value
 
     @property
     def effects(self) -> tuple[Effect, ...]:
@@ -87,7 +87,12 @@ class Assessment:
 def first_hopf_point(thresholds: ThresholdsOverDrags) -> Threshold | None:
     """First Hopf point for the most likely drag for which the arm flutters; None if it does not flutter."""
     return next(
-        (change for c in thresholds.by_drag if (change := c.first_threshold(ThresholdKind.hopf))), None
+        (
+            threshold
+            for search in thresholds.by_drag
+            if (threshold := search.first_threshold(ThresholdKind.hopf))
+        ),
+        None,
     )
 
 
@@ -95,13 +100,13 @@ def effects_at_flutter(arm: SlenderArm, thresholds: ThresholdsOverDrags) -> tupl
     """Neglected effects at the first flutter in `thresholds`, for the most likely drag for which the arm
     flutters; the rate of motion is the largest over all drags. Inertia, compression and Reynolds number are
     NaN if the arm does not flutter."""
-    change = first_hopf_point(thresholds)
-    if change is None:
+    threshold = first_hopf_point(thresholds)
+    if threshold is None:
         return neglected_effects(arm, nan, nan)
     return neglected_effects(
         arm,
-        angular_frequency_at_smallest_drag(arm, abs(change.frequency)),
-        equivalent_base_force(arm, change.value),
+        angular_frequency_at_smallest_drag(arm, abs(threshold.frequency)),
+        equivalent_base_force(arm, threshold.value),
     )
 
 
@@ -127,22 +132,25 @@ def thickness_factor(arm: SlenderArm) -> float:
         scaled_arm = _with_scaled_section(arm, factor)
         thresholds = ThresholdsOverDrags((thresholds_with_drag(scaled_arm, scaled_arm.drags[0]),))
         effects = effects_at_flutter(scaled_arm, thresholds)
-        factor_ = viscosity_factor(effects)
-        if MIN_VISCOSITY_RATIO < factor_ <= 1.0:
+        required_viscosity_factor = viscosity_factor(effects)
+        if MIN_VISCOSITY_RATIO < required_viscosity_factor <= 1.0:
             is_valid = worst_validity(effects, of_cycles=False) < Validity.does_not_apply
             return factor if is_valid else nan
         # Mass times rate over drag scales as thickness^6/viscosity^2, hence thickness as viscosity^(1/3).
-        factor *= (factor_ / VISCOSITY_TARGET) ** (-1 / 3)
+        factor *= (required_viscosity_factor / VISCOSITY_TARGET) ** (-1 / 3)
     return nan
 
 
-def _with_scaled_section(arm: SlenderArm, factor: float) -> SlenderArm:
-    """The uniform arm `arm` without its load, with all sides of the section multiplied by `factor`."""
-    omitted = {*LOADS, *chain(*SECTION_SIZE_NAMES)}
-    others = {name: value for name, value in vars(arm.si).items() if not isnan(value) and name not in omitted}
+def _with_scaled_section(arm: SlenderArm, thickness_ratio: float) -> SlenderArm:
+    """The uniform arm `arm` without its load, with all sides of the section multiplied by
+    `thickness_ratio`."""
+    omitted_names = {*LOADS, *chain(*SECTION_SIZE_NAMES)}
+    other_quantities = {
+        name: value for name, value in vars(arm.si).items() if not isnan(value) and name not in omitted_names
+    }
     # The sides are those of the section, which a uniform arm of segments has without naming a radius.
-    sides = {name: factor * side for name, side in asdict(arm.cross_section).items()}
-    return SlenderArm(**(others | sides), poisson=arm.poisson, law=arm.law, section=arm.section)
+    sides = {name: thickness_ratio * side for name, side in asdict(arm.cross_section).items()}
+    return SlenderArm(**(other_quantities | sides), poisson=arm.poisson, law=arm.law, section=arm.section)
 
 
 def rounded_down(value: float) -> float:

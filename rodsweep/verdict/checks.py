@@ -23,6 +23,9 @@ MAX_STATED_SAG = 0.25
 USUAL_POISSON = (0.3, 0.5)
 """Range of Poisson's ratio of rubbers and gels; a check warns of a Poisson's ratio outside this range."""
 
+NO_COMPRESSION_CHECKED = "no load is given and no flutter was found, so compression is not checked"
+"""Result of the check of compression for an arm without load and without flutter."""
+
 
 @dataclass(frozen=True, slots=True)
 class Check:
@@ -73,7 +76,7 @@ def slenderness_check(arm: SlenderArm) -> Check:
 
 def compression_check(assessment: "Assessment", at_flutter: Effect) -> Check:
     """Check of F/k1, the compressive strain of the straight arm's weakest section, at flutter and loaded."""
-    if assessment.arm.law != LINEAR.law:
+    if assessment.arm.law != LINEAR.law_name:
         return _rubber_compression_check(assessment)
     texts = []
     effects = [at_flutter, *assessment.compression_under_load]
@@ -81,18 +84,20 @@ def compression_check(assessment: "Assessment", at_flutter: Effect) -> Check:
         verb = "shortens" if assessment.arm.F >= 0 else "lengthens"
         texts.append(f"the load {verb} the arm by {_percent_text(assessment.compression_under_load[0])}")
     if not isnan(at_flutter.value):
-        start = "the flutter load shortens"
-        texts.append(f"{start} {'it' if texts else 'the arm'} by {_percent_text(at_flutter)}")
+        beginning = "the flutter load shortens"
+        texts.append(f"{beginning} {'it' if texts else 'the arm'} by {_percent_text(at_flutter)}")
     validity = max(map(_validity_of_effect, effects))
-    largest = max(float(effect.value) for effect in effects if not isnan(effect.value)) if texts else 0.0
+    strain = max(float(effect.value) for effect in effects if not isnan(effect.value)) if texts else 0.0
     remark = (
         "a linear law of the material is accurate",
-        f"rubber is some {_one_digit_text(100 * rubber_stiffening(largest))} % stiffer at this compression",
+        f"rubber is some {_one_digit_text(100 * rubber_stiffening(strain))} % stiffer at this compression",
         "real materials are no longer linear at this compression",
     )[validity]
-    shortening = " and ".join(texts) or "no load is given and no flutter was found, so none is checked"
-    place = " at the weakest section" if assessment.arm.shape.varies else ""
-    return Check(validity, f"Compression: {shortening} (F/k1){place}; {remark}.", can_change_verdict=True)
+    shortening = " and ".join(texts) or NO_COMPRESSION_CHECKED
+    place_clause = " at the weakest section" if assessment.arm.shape.varies else ""
+    return Check(
+        validity, f"Compression: {shortening} (F/k1){place_clause}; {remark}.", can_change_verdict=True
+    )
 
 
 def _rubber_compression_check(assessment: "Assessment") -> Check:
@@ -104,20 +109,21 @@ def _rubber_compression_check(assessment: "Assessment") -> Check:
     if arm.load is not None:
         texts.append(f"the load shortens the arm by {100 * _weakest_section_shortening(arm, arm.F):.2g} %")
     if flutter is not None:
-        shortens = "the flutter load shortens it" if texts else "the flutter load shortens the arm"
-        texts.append(f"{shortens} by {100 * _weakest_section_shortening(arm, flutter):.2g} %")
-    shortening = " and ".join(texts) or "no load is given and no flutter was found, so none is checked"
-    place = " at the weakest section" if arm.shape.varies else ""
+        beginning = "the flutter load shortens it" if texts else "the flutter load shortens the arm"
+        texts.append(f"{beginning} by {100 * _weakest_section_shortening(arm, flutter):.2g} %")
+    shortening = " and ".join(texts) or NO_COMPRESSION_CHECKED
+    place_clause = " at the weakest section" if arm.shape.varies else ""
     return Check(
-        Validity.applies, f"Compression: {shortening}{place}; the law of rubber includes large compression."
+        Validity.applies,
+        f"Compression: {shortening}{place_clause}; the law of rubber includes large compression.",
     )
 
 
 def _weakest_section_shortening(arm: SlenderArm, F: float) -> float:
     """Compressive strain of the arm's weakest section under the force F. F: in k3/L^2."""
-    smallest = min(station.young * station.section.area for station in arm.shape.stations)
-    largest = arm.shape.base.young * arm.cross_section.area
-    return float(arm.material.constitutive_law.shortening(F / (arm.k1 * smallest / largest)))
+    smallest_stiffness = min(station.young * station.section.area for station in arm.shape.stations)
+    base_stiffness = arm.shape.base.young * arm.cross_section.area
+    return float(arm.material.constitutive_law.shortening(F / (arm.k1 * smallest_stiffness / base_stiffness)))
 
 
 def rubber_stiffening(strain: float) -> float:
@@ -131,36 +137,37 @@ def _one_digit_text(value: float) -> str:
     return f"{float(f'{value:.1g}'):g}"
 
 
-def inertia_checks(of_arm: Effect, of_fluid: Effect) -> list[Check]:
-    """Check of the inertia of the arm and of the fluid at the flutter threshold; empty without flutter."""
-    if isnan(of_arm.value):
+def inertia_checks(arm_inertia: Effect, fluid_inertia: Effect) -> list[Check]:
+    """Check of the inertia of the arm and of the fluid at the flutter threshold; an empty list without
+    flutter."""
+    if isnan(arm_inertia.value):
         return []
-    validity = max(map(_validity_of_effect, (of_arm, of_fluid)))
-    percent = 100 * THRESHOLD_DECREASE_BY_INERTIA * float(of_arm.value + of_fluid.value)
+    validity = max(map(_validity_of_effect, (arm_inertia, fluid_inertia)))
+    percent = 100 * THRESHOLD_DECREASE_BY_INERTIA * float(arm_inertia.value + fluid_inertia.value)
     remark = (
         "neither matters",
         f"they lower the threshold of flutter by some {_one_digit_text(percent)} %",
-        f"the model neglects both and applies only up to {of_arm.limit:g}",
+        f"the model neglects both and applies only up to {arm_inertia.limit:g}",
     )[validity]
     sentence = (
-        f"Inertia: at flutter mass times rate over drag is {float(of_arm.value):.2g} for the arm and "
-        f"{float(of_fluid.value):.2g} for the fluid beside it; {remark}."
+        f"Inertia: at flutter mass times rate over drag is {float(arm_inertia.value):.2g} for the arm and "
+        f"{float(fluid_inertia.value):.2g} for the fluid beside it; {remark}."
     )
     return [Check(validity, sentence, can_change_verdict=True)]
 
 
-def reynolds_checks(number: Effect) -> list[Check]:
+def reynolds_checks(reynolds_number: Effect) -> list[Check]:
     """Check of the Reynolds number of beating with amplitude L/2 at the frequency of flutter; an empty list
-    if the arm does not flutter. number: the effect "Reynolds number"."""
-    if isnan(number.value):
+    if the arm does not flutter. reynolds_number: the effect "Reynolds number"."""
+    if isnan(reynolds_number.value):
         return []
-    validity = _validity_of_effect(number)
+    validity = _validity_of_effect(reynolds_number)
     remark = (
         "the drag law of slow flow applies",
         "at large amplitude the drag is somewhat larger than in the model",
         "at large amplitude the drag is larger than in the model, and the motion slower",
     )[validity]
-    value = f"{float(number.value):.2g}"
+    value = f"{float(reynolds_number.value):.2g}"
     return [Check(validity, f"Reynolds number: {value} if the tip moves by half the length; {remark}.")]
 
 
@@ -193,17 +200,23 @@ def weight_check(effect: Effect | None, arm: SlenderArm) -> Check:
     ratio = float(effect.value)
     validity = _validity_of_effect(effect)
     sag = SAG_AT_SELF_BUCKLING * ratio
-    level = (
-        f"a level arm sags by {sag:.2g} of its length" if sag < MAX_STATED_SAG else "a level arm hangs down"
+    sag_clause = (
+        f"a horizontal arm sags by {sag:.2g} of its length"
+        if sag < MAX_STATED_SAG
+        else "a horizontal arm hangs down"
     )
     remark = (
         "negligible",
         "weight bends the arm a little, which the model neglects",
         "weight bends the arm, which the model neglects",
     )[validity]
-    upright = f"weight less buoyancy is {ratio:.2g} of the weight that buckles an upright arm"
-    clause = "" if arm.shape.varies else f"; {level}"  # the formula of the sag is valid for uniform arms
-    return Check(validity, f"Weight: {upright}{clause}; {remark}.", can_change_verdict=True)
+    ratio_clause = f"weight less buoyancy is {ratio:.2g} of the weight that buckles an upright arm"
+    clause_of_uniform_arm = (
+        "" if arm.shape.varies else f"; {sag_clause}"
+    )  # the formula of the sag is valid for uniform arms
+    return Check(
+        validity, f"Weight: {ratio_clause}{clause_of_uniform_arm}; {remark}.", can_change_verdict=True
+    )
 
 
 def poisson_check(arm: SlenderArm) -> Check:

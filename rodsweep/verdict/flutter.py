@@ -14,7 +14,7 @@ from .relative_load import SEARCH_END, SEARCH_ENDS_OF_VARYING_ARM, rod_with_drag
 SEARCH_REQUEST = ThresholdsRequest(F_max=SEARCH_END, accuracy=1e-6, certify=True, max_thresholds=1000)
 """Request for all thresholds of an arm, with relative accuracy 1e-6 and a proof that none is missing."""
 MIN_SEARCH_RATIO = 2.0
-"""For an arm that is not uniform or not of linear material, the search is extended until its largest force is
+"""The search for an arm that is not uniform or not of linear material is extended until its largest force is
 at least this number times the first flutter force and this number times the load."""
 KINDS_USED_BY_VERDICT = (
     ThresholdKind.onset,
@@ -37,7 +37,7 @@ class ThresholdsWithDrag:
     @property
     def is_usable(self) -> bool:
         """Whether the search gave thresholds. The search may have ended early, the list may be incomplete,
-        and the thresholds may miss the accuracy; see `doubt`."""
+        and the thresholds may miss the accuracy; see `uncertainty`."""
         return self.thresholds.status in (
             ThresholdStatus.ok,
             ThresholdStatus.ended_early,
@@ -46,7 +46,7 @@ class ThresholdsWithDrag:
         )
 
     @property
-    def doubt(self) -> str:
+    def uncertainty(self) -> str:
         """Why usable thresholds are uncertain: a threshold of a kind in KINDS_USED_BY_VERDICT misses the
         accuracy, or the list is not proved complete; empty if the thresholds are certain."""
         search = self.thresholds
@@ -65,13 +65,13 @@ class ThresholdsWithDrag:
 
     def first_frequency(self, kind: ThresholdKind) -> float | None:
         """Frequency, in Hz, at the first threshold of the given kind; None if no threshold has this kind."""
-        change = self.first_threshold(kind)
-        return None if change is None else abs(change.frequency) / (2 * pi * self.tau2)
+        threshold = self.first_threshold(kind)
+        return None if threshold is None else abs(threshold.frequency) / (2 * pi * self.tau2)
 
     def first_force(self, kind: ThresholdKind) -> float | None:
         """Force, in k3/L^2, at the first threshold of the given kind; None if no threshold has this kind."""
-        change = self.first_threshold(kind)
-        return None if change is None else change.value
+        threshold = self.first_threshold(kind)
+        return None if threshold is None else threshold.value
 
     @property
     def second_flutter_force(self) -> float | None:
@@ -84,15 +84,15 @@ class ThresholdsWithDrag:
     def is_unstable_at(self, F: float) -> bool:
         """Whether the straight arm is unstable at the force F. For an F beyond the end of the search, the
         stability at this end is returned."""
-        counts = [c.unstable_after for c in self.thresholds.thresholds if c.value <= F]
-        return bool(counts) and counts[-1] != 0
+        unstable_counts = [c.unstable_after for c in self.thresholds.thresholds if c.value <= F]
+        return bool(unstable_counts) and unstable_counts[-1] != 0
 
-    def up_to(self, end: float) -> "ThresholdsWithDrag":
-        """A copy without the thresholds at forces larger than `end`."""
+    def up_to(self, end_force: float) -> "ThresholdsWithDrag":
+        """A copy without the thresholds at forces larger than `end_force`."""
         result = self.thresholds
-        crossings = tuple(c for c in result.thresholds if c.value <= end)
+        kept_thresholds = tuple(c for c in result.thresholds if c.value <= end_force)
         shortened = replace(
-            result, search_result=replace(result.search_result, thresholds=crossings), end=end
+            result, search_result=replace(result.search_result, thresholds=kept_thresholds), end=end_force
         )
         return replace(self, thresholds=shortened)
 
@@ -117,13 +117,13 @@ class ThresholdsOverDrags:
     @property
     def failures(self) -> list[str]:
         """Distinct error messages of failed searches; to stop before the requested force is no failure."""
-        failed = [f.thresholds for f in self.by_drag if not f.is_usable]
-        return sorted({thresholds.message or thresholds.status.sentence for thresholds in failed})
+        failed_searches = [f.thresholds for f in self.by_drag if not f.is_usable]
+        return sorted({thresholds.message or thresholds.status.sentence for thresholds in failed_searches})
 
     @property
-    def doubts(self) -> list[str]:
+    def uncertainties(self) -> list[str]:
         """Distinct reasons for which thresholds, for some drags, are uncertain."""
-        return sorted({f.doubt for f in self.by_drag if f.is_usable} - {""})
+        return sorted({f.uncertainty for f in self.by_drag if f.is_usable} - {""})
 
     @property
     def end(self) -> float:
@@ -148,40 +148,41 @@ class ThresholdsOverDrags:
 
 
 def range_over_drags(values: list[float | None]) -> RangeOverDrags | None:
-    """Smallest and largest number in `values`, which may contain None; None if there is no number."""
+    """Range of the numbers in `values`, which may contain None; None if `values` contains no number."""
     known_values = [value for value in values if value is not None]
     if known_values:
         return RangeOverDrags(min(known_values), max(known_values), len(known_values) == len(values))
     return None
 
 
-def thresholds_with_drag(arm: SlenderArm, drag: Drag, end: float = SEARCH_END) -> ThresholdsWithDrag:
-    """All thresholds of the straight arm with the given drag, at forces from 0 to `end`."""
-    thresholds = solve_thresholds(rod_with_drag(arm, drag), replace(SEARCH_REQUEST, F_max=end))
+def thresholds_with_drag(arm: SlenderArm, drag: Drag, end_force: float = SEARCH_END) -> ThresholdsWithDrag:
+    """All thresholds of the straight arm with the given drag, at forces from 0 to `end_force`."""
+    thresholds = solve_thresholds(rod_with_drag(arm, drag), replace(SEARCH_REQUEST, F_max=end_force))
     return ThresholdsWithDrag(tau2=arm.tau2_with(drag), thresholds=thresholds)
 
 
 @exclusive_solve
 def thresholds_over_drags(arm: SlenderArm) -> ThresholdsOverDrags:
     """All thresholds of the straight arm for each drag, up to a force common to all drags. The search with
-    the most likely drag sets this force. If a search stops at a smaller force, this is used for all drags."""
+    the most likely drag sets this force. If a search stops at a smaller force, the smallest such force is the
+    end for all drags."""
     likeliest_drag, *others = arm.drags
     end, first_result = _first_search(arm, likeliest_drag)
     results = (first_result, *(thresholds_with_drag(arm, drag, end) for drag in others))
-    common_end = min(forces.thresholds.end for forces in results)
-    return ThresholdsOverDrags(tuple(forces.up_to(common_end) for forces in results))
+    common_end = min(thresholds.thresholds.end for thresholds in results)
+    return ThresholdsOverDrags(tuple(thresholds.up_to(common_end) for thresholds in results))
 
 
 def _first_search(arm: SlenderArm, drag: Drag) -> tuple[float, ThresholdsWithDrag]:
-    """Returns (end, found): the largest force requested, and the thresholds up to this force. `end` is
-    SEARCH_END; for an arm that is not uniform or not of linear material, the first of
+    """Returns (end, thresholds): the largest force requested, and the thresholds up to this force. `end` is
+    SEARCH_END for an arm that does not vary. For other arms, `end` is the first number of
     SEARCH_ENDS_OF_VARYING_ARM that exceeds the first flutter force and a known load by at least the factor
-    MIN_SEARCH_RATIO, or before which the search ended, else the last."""
-    known_load = arm.load is not None and arm.share_of_flutter is None
+    MIN_SEARCH_RATIO, or before which the search ended; without such a number, the last number."""
+    has_known_load = arm.load is not None and arm.share_of_flutter is None
     for end in SEARCH_ENDS_OF_VARYING_ARM if arm.shape.varies else (SEARCH_END,):
         thresholds = thresholds_with_drag(arm, drag, end)
         flutter = thresholds.first_force(ThresholdKind.hopf)
-        min_end = max(inf if flutter is None else flutter, arm.F if known_load else 0.0)
+        min_end = max(inf if flutter is None else flutter, arm.F if has_known_load else 0.0)
         if MIN_SEARCH_RATIO * min_end <= end or thresholds.thresholds.end < end:
             break
     return end, thresholds

@@ -18,19 +18,21 @@ class LoadFormatter:
     def __init__(self, arm: SlenderArm):
         self.name = arm.load or "pressure"
         """Key of the load, "pressure" or "force"; "pressure" if the user gave no load."""
-        typed = getattr(arm, self.name)
-        si = UNITS[self.name][0]
+        typed_load = getattr(arm, self.name)
+        si_unit = UNITS[self.name][0]
         self.unit = (
-            unit_of(typed, si)
-            if typed is not None
-            else with_si_prefix(TYPICAL_FLUTTER_FORCE * arm.load_scale, si)[1]
+            unit_of(typed_load, si_unit)
+            if typed_load is not None
+            else with_si_prefix(TYPICAL_FLUTTER_FORCE * arm.load_scale, si_unit)[1]
         )
         """Unit in which loads are printed: the user's unit, or a prefixed SI unit without a load."""
         self.typed_text = (
-            "" if typed is None else _shortened_load(typed, float(getattr(arm.si, self.name)), si)
+            ""
+            if typed_load is None
+            else _shortened_load(typed_load, float(getattr(arm.si, self.name)), si_unit)
         )
         """The load as the user typed it, rounded by `_shortened_load` if long; empty without a load."""
-        self.load_at_unit_force = value_in_unit(arm.load_scale, self.unit, si)
+        self.load_at_unit_force = value_in_unit(arm.load_scale, self.unit, si_unit)
         """The load that corresponds to F = 1, in `unit`."""
 
     def range_of_forces_text(self, forces: RangeOverDrags) -> str:
@@ -43,12 +45,12 @@ class LoadFormatter:
         return f"{three_digits_rounded_down(F * self.load_at_unit_force)} {self.unit}"
 
 
-def _shortened_load(load: object, value: float, si: str) -> str:
+def _shortened_load(load: object, value: float, si_unit: str) -> str:
     """The load `load` as text: as the user typed it, or rounded to four digits if its number is long. A load
-    given as a number is written in the SI unit `si`, in which it is `value`."""
+    given as a number is written in the SI unit `si_unit`, in which it is `value`."""
     if not isinstance(load, str):
-        return f"{value:.4g} {si}"
-    number = load.split()[0]
-    if len(number) <= MAX_TYPED_LENGTH:
+        return f"{value:.4g} {si_unit}"
+    number_text = load.split()[0]
+    if len(number_text) <= MAX_TYPED_LENGTH:
         return load.strip()
     return f"{split_quantity(load)[0]:.4g} {split_quantity(load)[1]}"

@@ -25,7 +25,7 @@ class NumberRow(NamedTuple):
 
 
 def number_rows(plane: PlaneOfMotion) -> list[NumberRow]:
-    """Rows with all numbers of an arm, dimensional numbers first. plane: where the arm flutters first."""
+    """Rows with all numbers of an arm, dimensional numbers first. plane: plane of the first flutter."""
     arm = plane.arm
     return [
         *plane_row(plane),
@@ -56,11 +56,11 @@ def shape_rows(arm: SlenderArm) -> list[NumberRow]:
     elif arm.shape.varies:
         start = 0.0
         for number, station in enumerate(arm.shape.stations, 1):
-            interval = f"u = {start:.4g} to {station.end:.4g}"
+            interval_text = f"u = {start:.4g} to {station.end:.4g}"
             source = "all other rows are for segment 1" if number == 1 else "drag by its own radius"
-            rows.append(NumberRow(f"segment {number}", interval, station_phrase(station), source))
+            rows.append(NumberRow(f"segment {number}", interval_text, station_phrase(station), source))
             start = station.end
-    if arm.law != LINEAR.law:
+    if arm.law != LINEAR.law_name:
         rows.append(
             NumberRow(
                 "law", f"neo-Hookean, {arm.section} section", LAW_FORMULA, "E is the modulus at small strain"
@@ -177,7 +177,7 @@ def station_phrase(station: Station) -> str:
     return ", ".join([*texts, _with_si_prefix(station.young, "Pa")])
 
 
-def _with_si_prefix(value: float, si: str) -> str:
-    """A value in the SI unit `si` as text with four digits and a prefix: "6 mm"."""
-    factor, unit = with_si_prefix(value, si)
+def _with_si_prefix(value: float, si_unit: str) -> str:
+    """A value in the SI unit `si_unit` as text with four digits and a prefix: "6 mm"."""
+    factor, unit = with_si_prefix(value, si_unit)
     return f"{value * factor:.4g} {unit}"

@@ -65,9 +65,9 @@ def planes_of(arm: SlenderArm) -> PlanesOfMotion:
 
 
 def with_absolute_load(planes: PlanesOfMotion) -> PlanesOfMotion:
-    """The planes with a load relative to the flutter load replaced by the load in a physical unit. The
-    flutter load is the smallest over all planes, for the most likely drag. Raises InputError if the arm does
-    not flutter."""
+    """The planes, with the arm's load in a physical unit if it was relative to the flutter load. The flutter
+    load is the smallest over all planes, for the most likely drag. Raises InputError if the arm does not
+    flutter."""
     first = planes.first
     ratio = first.arm.share_of_flutter
     load = first.arm.load
@@ -76,15 +76,15 @@ def with_absolute_load(planes: PlanesOfMotion) -> PlanesOfMotion:
     force = first.thresholds.by_drag[0].first_force(ThresholdKind.hopf)
     scale = first.arm.load_scale
     if force is None:
-        end = f"{float(f'{first.thresholds.end * scale:.3g}'):g} {UNITS[load][0]}"
+        end_text = f"{float(f'{first.thresholds.end * scale:.3g}'):g} {UNITS[load][0]}"
         raise InputError(
             f"{load} = '{getattr(first.arm, load)}' cannot be computed: with the likeliest drag the arm does "
-            f"not flutter up to {end}; give an absolute load"
+            f"not flutter up to {end_text}; give an absolute load"
         )
     factor, unit = with_si_prefix(ratio * force * scale, UNITS[load][0])
-    keywords: dict[str, Any] = {load: f"{ratio * force * scale * factor:.15g} {unit}"}
-    second = planes.second and replace(planes.second, arm=replace(planes.second.arm, **keywords))
-    return PlanesOfMotion(replace(first, arm=replace(first.arm, **keywords)), second)
+    absolute_load: dict[str, Any] = {load: f"{ratio * force * scale * factor:.15g} {unit}"}
+    second = planes.second and replace(planes.second, arm=replace(planes.second.arm, **absolute_load))
+    return PlanesOfMotion(replace(first, arm=replace(first.arm, **absolute_load)), second)
 
 
 def arm_with_absolute_load(arm: A) -> A:

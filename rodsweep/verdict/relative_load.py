@@ -1,5 +1,5 @@
-"""Flutter load to which a relative load refers: the smallest over all planes of motion, for the most likely
-drag.
+"""Search for the flutter load to which a relative load refers: the smallest flutter load of all planes of
+motion, for the most likely drag.
 
 The search for a uniform arm of linear material must run without PETSc. The search for any other arm starts
 PETSc; all MPI ranks must have started PETSc before such searches are divided among the ranks.
@@ -100,10 +100,10 @@ def first_hopf_force(rod: Rod) -> float:
     return inf
 
 
-def _first_hopf_force_by_boxes(path: ParameterPath, end: float) -> float:
-    """Smallest F up to `end` at which a pair of modes becomes unstable; inf if no pair does. Covers the zeros
-    of the determinant with boxes. Raises FlutterSearchFailed if a smaller F is not excluded."""
-    boxes = first_boxes(path, 0.0, end)
+def _first_hopf_force_by_boxes(path: ParameterPath, end_force: float) -> float:
+    """Smallest F up to `end_force` at which a pair of modes becomes unstable; inf if no pair does. Covers the
+    zeros of the determinant with boxes. Raises FlutterSearchFailed if a smaller F is not excluded."""
+    boxes = first_boxes(path, 0.0, end_force)
     if boxes is None:
         raise FlutterSearchFailed(
             "the flutter threshold to which a relative load refers is not found, because no bound on the "
@@ -119,15 +119,15 @@ def _first_hopf_force_by_boxes(path: ParameterPath, end: float) -> float:
     return force
 
 
-def _first_hopf_force_of_varying_arm(path: ParameterPath, end: float) -> float:
-    """For arms that are not uniform or not of linear material (others: `_first_hopf_force_by_boxes`):
-    smallest F up to `end` at which a pair of modes becomes unstable; inf if no pair does. Raises
-    FlutterSearchFailed if the search along F fails or a smaller F is not excluded."""
+def _first_hopf_force_of_varying_arm(path: ParameterPath, end_force: float) -> float:
+    """Smallest F up to `end_force` at which a pair of modes of an arm that is not uniform or not of linear
+    material becomes unstable; inf if no pair does. Raises FlutterSearchFailed if the search along F fails or
+    a smaller F is not excluded."""
     from ..solve.changes.thresholds_along_path import find_axis_crossings
     from ..solve.point_outcome import FAILURES, cause_of
 
     try:
-        located = find_axis_crossings(path, 0.0, end)
+        located = find_axis_crossings(path, 0.0, end_force)
     except FAILURES as error:
         raise FlutterSearchFailed(
             "the search for the flutter threshold to which a relative load refers fails: "

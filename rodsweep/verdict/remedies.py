@@ -20,9 +20,9 @@ def not_applicable_sentences(arm: SlenderArm, assessment: Assessment) -> list[st
     *others, first = {effect_kind(effect): effect for effect in reversed(effects)}.values()
     remedy = _remedy(first, arm, assessment)
     is_valid = assessment.validity_at_flutter != Validity.does_not_apply
-    load = f" at {LoadFormatter(arm).typed_text}" if is_valid else ""
+    load_clause = f" at {LoadFormatter(arm).typed_text}" if is_valid else ""
     excess = f"{first.name} is {excess_text(first)} what the model allows"
-    sentences = [f"The model does not apply{load}: {excess}; {remedy}."]
+    sentences = [f"The model does not apply{load_clause}: {excess}; {remedy}."]
     for effect in reversed(others):
         name = effect.name.capitalize()
         sentences.append(
@@ -49,9 +49,9 @@ def _remedy(effect: Effect, arm: SlenderArm, assessment: Assessment) -> str:
     if effect_kind(effect) == "inertia":
         return _thicker_fluid_or_thinner_arm(arm, assessment)
     if effect_kind(effect) == "weight":
-        si = UNITS["density_difference"][0]
-        unit = unit_of(arm.density_difference, si)  # type: ignore[arg-type]
-        limit = rounded_down(value_in_unit(abs(arm.si.density_difference) * ratio, unit, si))
+        si_unit = UNITS["density_difference"][0]
+        unit = unit_of(arm.density_difference, si_unit)  # type: ignore[arg-type]
+        limit = rounded_down(value_in_unit(abs(arm.si.density_difference) * ratio, unit, si_unit))
         return f"the model needs an arm whose density is within {limit:g} {unit} of the fluid's"
     if any(effect is weakest for weakest in assessment.compression_under_load):
         noun = "a pull" if arm.F < 0 else "a load"
@@ -62,12 +62,14 @@ def _remedy(effect: Effect, arm: SlenderArm, assessment: Assessment) -> str:
 def _thicker_fluid_or_thinner_arm(arm: SlenderArm, assessment: Assessment) -> str:
     """Clause with the smallest viscosity of the fluid, and the largest thickness of the arm if known, for
     which inertia is within its limit."""
-    si = UNITS["viscosity"][0]
-    unit = unit_of(arm.viscosity, si)
+    si_unit = UNITS["viscosity"][0]
+    unit = unit_of(arm.viscosity, si_unit)
     factor = viscosity_factor(assessment.at_flutter)
-    viscosity = f"{rounded_up(value_in_unit(arm.si.viscosity * factor, unit, si)):g} {unit.replace('*', ' ')}"
-    sentence = f"the model needs a fluid at least {rounded_up(factor):g} times as viscous ({viscosity})"
+    viscosity = (
+        f"{rounded_up(value_in_unit(arm.si.viscosity * factor, unit, si_unit)):g} {unit.replace('*', ' ')}"
+    )
+    clause = f"the model needs a fluid at least {rounded_up(factor):g} times as viscous ({viscosity})"
     thickness = thickness_factor(arm)
     if isnan(thickness):
-        return sentence
-    return f"{sentence}, or an arm at most {rounded_down(thickness):g} times as thick"
+        return clause
+    return f"{clause}, or an arm at most {rounded_down(thickness):g} times as thick"

@@ -13,6 +13,9 @@ from .planes import PlaneOfMotion, PlanesOfMotion
 from .remedies import effect_kind, not_applicable_sentences
 from .rounded_numbers import percent_range_text, range_text
 
+CRUSHED_END_RATIO = 0.999
+"""A search ended at crushing if its end, in units of the crushing force, is above this fraction."""
+
 
 def verdict_sentences(planes: PlanesOfMotion, assessment: Assessment) -> list[str]:
     """Sentences of the verdict on an arm, over the range of drag: whether the model applies, why thresholds
@@ -31,8 +34,8 @@ def verdict_sentences(planes: PlanesOfMotion, assessment: Assessment) -> list[st
 def _doubt_sentences(planes: PlanesOfMotion) -> list[str]:
     """List of one sentence on why the thresholds of some plane are uncertain; empty if they are certain."""
     thresholds_of_planes = [plane.thresholds for plane in (planes.first, planes.second) if plane is not None]
-    doubts = sorted({doubt for thresholds in thresholds_of_planes for doubt in thresholds.doubts})
-    return [f"For some drags this is not certain: {'; '.join(doubts)}."] if doubts else []
+    reasons = sorted({reason for thresholds in thresholds_of_planes for reason in thresholds.uncertainties})
+    return [f"For some drags this is not certain: {'; '.join(reasons)}."] if reasons else []
 
 
 def _sentences_on_flutter(planes: PlanesOfMotion, assessment: Assessment) -> list[str]:
@@ -62,28 +65,28 @@ def _valid_arm_sentences(plane: PlaneOfMotion) -> list[str]:
     thresholds = plane.thresholds
     load = LoadFormatter(plane.arm)
     flutter = thresholds.first_forces(ThresholdKind.hopf)
-    returns = thresholds.first_forces(ThresholdKind.restabilization)
+    restabilization = thresholds.first_forces(ThresholdKind.restabilization)
     if flutter is None:
-        stay = f": it stays straight at {load.typed_text}" if load.typed_text else ""
+        consequence = f": it stays straight at {load.typed_text}" if load.typed_text else ""
         if thresholds.end < arm.F:
-            stay = f": whether the arm beats at {load.typed_text} is not known"
-        return [f"The arm does not flutter {_search_end_clause(plane, load)}{stay}."]
-    rate = thresholds.first_frequencies(ThresholdKind.hopf)
-    beats = "" if rate is None else f" begins to beat at {range_text(rate.low, rate.high)} Hz"
+            consequence = f": whether the arm beats at {load.typed_text} is not known"
+        return [f"The arm does not flutter {_search_end_clause(plane, load)}{consequence}."]
+    frequency = thresholds.first_frequencies(ThresholdKind.hopf)
+    clause = "" if frequency is None else f" begins to beat at {range_text(frequency.low, frequency.high)} Hz"
     if arm.load is None:
         sentences = [
-            f"The arm flutters at {_flutter_load_text(plane, flutter)}: above, it gives way and{beats}."
+            f"The arm flutters at {_flutter_load_text(plane, flutter)}: above, it gives way and{clause}."
         ]
     else:
         sentences = [
             _load_comparison_sentence(plane, flutter, load),
-            f"Above, the straight arm gives way and{beats}.",
+            f"Above, the straight arm gives way and{clause}.",
         ]
     if not flutter.for_every_drag:
         sentences.append("For part of the range of drag the arm does not flutter at all.")
-    if returns is not None:
-        drag_note = "" if returns.for_every_drag else ", for part of the range of drag"
-        loads = f"{load.range_of_forces_text(returns)}{drag_note}"
+    if restabilization is not None:
+        drag_note = "" if restabilization.for_every_drag else ", for part of the range of drag"
+        loads = f"{load.range_of_forces_text(restabilization)}{drag_note}"
         sentences.append(
             f"The straight arm is stable again above {loads}{_second_flutter_clause(thresholds, load)}."
         )
@@ -122,12 +125,12 @@ def _load_comparison_sentence(plane: PlaneOfMotion, flutter: RangeOverDrags, loa
         return f"{load.typed_text} is {percent} % below flutter, at {load_text}: the arm stays straight."
     if thresholds.end < F:
         end = load.range_of_forces_text(RangeOverDrags(thresholds.end, thresholds.end))
-        unknown = f"whether the arm beats at {load.typed_text} is not known"
-        return f"Flutter is at {load_text}; {unknown}: thresholds were searched only up to {end}."
-    unstable = [drag.is_unstable_at(F) for drag in thresholds.by_drag]
-    if flutter.high < F and not any(unstable):
+        unknown_clause = f"whether the arm beats at {load.typed_text} is not known"
+        return f"Flutter is at {load_text}; {unknown_clause}: thresholds were searched only up to {end}."
+    is_unstable_by_drag = [drag.is_unstable_at(F) for drag in thresholds.by_drag]
+    if flutter.high < F and not any(is_unstable_by_drag):
         return f"{load.typed_text} is beyond flutter, at {load_text}: the straight arm is stable again."
-    if not all(unstable):
+    if not all(is_unstable_by_drag):
         typed = load.typed_text
         return f"{typed} lies in the range of flutter, {load_text}: drag decides whether the arm beats."
     return f"{load.typed_text} is {_excess_text(F, flutter)} flutter, at {load_text}: the arm beats."
@@ -140,18 +143,21 @@ def _excess_text(F: float, flutter: RangeOverDrags) -> str:
     return f"{range_text(low, high)} times" if low > 2 else f"{percent_range_text(low - 1, high - 1)} % above"
 
 
-def _flutter_without_effects(plane: PlaneOfMotion, neglected: str) -> list[str]:
-    """Sentences on the flutter that an arm outside the model would have without the effects `neglected`."""
+def _flutter_without_effects(plane: PlaneOfMotion, effect_names: str) -> list[str]:
+    """Sentences on the flutter that an arm outside the model would have without the effects
+    `effect_names`."""
     arm = plane.arm
     thresholds = plane.thresholds
     load = LoadFormatter(plane.arm)
     flutter = thresholds.first_forces(ThresholdKind.hopf)
-    rate = thresholds.first_frequencies(ThresholdKind.hopf)
+    frequency = thresholds.first_frequencies(ThresholdKind.hopf)
     if flutter is None:
-        return [f"Without {neglected} the arm would not flutter {_search_end_clause(plane, load)}."]
-    frequency = "" if rate is None else f" and begin to beat at {range_text(rate.low, rate.high)} Hz"
+        return [f"Without {effect_names} the arm would not flutter {_search_end_clause(plane, load)}."]
+    clause = (
+        "" if frequency is None else f" and begin to beat at {range_text(frequency.low, frequency.high)} Hz"
+    )
     sentences = [
-        f"Without {neglected} the arm would flutter at {_flutter_load_text(plane, flutter)}{frequency}."
+        f"Without {effect_names} the arm would flutter at {_flutter_load_text(plane, flutter)}{clause}."
     ]
     if arm.load is None or arm.F <= 0:
         return sentences
@@ -185,7 +191,7 @@ def _second_plane_sentences(planes: PlanesOfMotion, verb: str) -> list[str]:
 def _search_end_clause(plane: PlaneOfMotion, load: LoadFormatter) -> str:
     """Clause that states the load at which the search ends, and whether this load crushes the arm."""
     end = load.range_of_forces_text(RangeOverDrags(plane.thresholds.end, plane.thresholds.end))
-    if plane.thresholds.end > 0.999 * plane.arm.crushing_force:
+    if plane.thresholds.end > CRUSHED_END_RATIO * plane.arm.crushing_force:
         return f"before it is crushed at {end}"
     return f"up to {end}, where the search ends"
 

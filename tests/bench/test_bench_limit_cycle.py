@@ -94,7 +94,9 @@ def test_table_at_equal_error_states_the_ratios():
 def test_tables_show_what_failed():
     failed = Measurement("", "a", "1e-05", 1.0, np.inf, failure="failed (ArithmeticError)")
     assert "| a | 1e-05 | failed (ArithmeticError) |" in work_table([failed])
-    never = SettlingMethod(50.0, "waiting, a", "", np.nan, np.inf, print, failed=("1e-06", "1e-07"))
+    never = SettlingMethod(
+        50.0, "waiting, a", "", np.nan, np.inf, print, failed_tolerances=("1e-06", "1e-07")
+    )
     text = settling_table([never], [TimedRuns(None, (1.0,))])
     assert "waiting, a (fails at 1e-06, 1e-07) |  | not reached" in text
 

@@ -57,7 +57,7 @@ def test_costs_of_soft_and_pulled_rods_have_the_size_of_the_measured_times(task,
 @pytest.mark.parametrize(("k2", "doubtful"), [(1e4, True), (1e6, False)])
 def test_the_cost_of_rows_pulled_beyond_the_shear_stiffness_is_said_to_be_uncertain(k2, doubtful):
     keywords = {"F": [-2e4, 0.0, 100.0], "k1": [3e5, 1e6], "k2": k2, "gamma3": 1e-4}
-    doubt = job_of_tree(config_tree("phase_diagram", keywords)).task.cost().doubt
+    doubt = job_of_tree(config_tree("phase_diagram", keywords)).task.cost().underestimated_rods
     assert doubt == ("rows that begin at a pull beyond the shear stiffness" if doubtful else "")
 
 

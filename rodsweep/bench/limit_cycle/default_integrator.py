@@ -17,7 +17,7 @@ from ...solve.motion.time_scheme import TimeScheme
 from ..study import TimedMethod
 
 TIGHT_TOLERANCE = 3e-7
-"""At integrator tolerances up to this number, Newton's method has the tolerance TIGHT_NEWTON_TOLERANCE,
+"""Newton's method has the tolerance TIGHT_NEWTON_TOLERANCE at integrator tolerances up to this number,
 because the default tolerance would limit the accuracy of ARKIMEX 5."""
 TIGHT_NEWTON_TOLERANCE = 0.03
 """Convergence tolerance of Newton's method divided by the tolerance of the integrator, at integrator
@@ -25,7 +25,8 @@ tolerances up to TIGHT_TOLERANCE."""
 
 
 class IntegrationTask(NamedTuple):
-    """Task of an integrator. system: rod on its mesh. z: initial state, (unknowns,). duration: in tau2."""
+    """Task of an integrator. system: rod on its mesh. z: initial state, (unknowns,). duration: time in
+    tau2."""
 
     system: ExplicitSystem
     z: Array
@@ -69,12 +70,14 @@ def petsc_trajectory(family: str, variant: str, tolerance: float, task: Integrat
     """Trajectory of `task`, integrated by a scheme of PETSc TS as in the task `limit_cycle`; raises
     ArithmeticError if the integration fails. family, variant: type of TS and name of the scheme, such as
     "arkimex" and "5". tolerance: see the module."""
-    newton = TimeScheme().newton_tolerance_ratio if tolerance > TIGHT_TOLERANCE else TIGHT_NEWTON_TOLERANCE
-    scheme = TimeScheme(family, variant, tolerance, newton, prefix="bench_")
-    run = integrator(task.system.mesh, scheme).run(task.system, task.z, task.duration)
-    if run.ending != EndReason.reached:
-        raise ArithmeticError(f"{family} {variant} at {tolerance:g}: {run.ending.name} {run.message}")
-    return run
+    newton_ratio = (
+        TimeScheme().newton_tolerance_ratio if tolerance > TIGHT_TOLERANCE else TIGHT_NEWTON_TOLERANCE
+    )
+    scheme = TimeScheme(family, variant, tolerance, newton_ratio, prefix="bench_")
+    result = integrator(task.system.mesh, scheme).run(task.system, task.z, task.duration)
+    if result.ending != EndReason.reached:
+        raise ArithmeticError(f"{family} {variant} at {tolerance:g}: {result.ending.name} {result.message}")
+    return result
 
 
 WAITING_TOLERANCES = (1e-6, 3e-7, 1e-7, 3e-8, 1e-8, 3e-9, 1e-9)

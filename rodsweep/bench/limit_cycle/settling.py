@@ -40,7 +40,7 @@ class SettlingMethod:
     force: F. name: name of the method. setting: tolerance. return_count: number of returns of the tip until
     the motion is periodic; nan if the motion does not become periodic. error: relative error of period and
     largest tip y. run: the timed function. time_factor: duration of the complete method divided by the
-    duration of `run`. failed: looser tolerances at which the integration failed.
+    duration of `run`. failed_tolerances: looser tolerances at which the integration failed.
     """
 
     force: float
@@ -50,7 +50,7 @@ class SettlingMethod:
     error: float
     run: Callable[[], object]
     time_factor: float = 1.0
-    failed: tuple[str, ...] = ()
+    failed_tolerances: tuple[str, ...] = ()
 
     @property
     def reaches_cycle(self) -> bool:
@@ -59,8 +59,10 @@ class SettlingMethod:
 
     def row(self, timed: TimedRuns) -> dict[str, str | float]:
         """Values of a row of `settling_table`, by name."""
-        way = self.name + (f" (fails at {', '.join(self.failed)})" if self.failed else "")
-        row: dict[str, str | float] = {"force": self.force, "way": way, "tolerance": self.setting}
+        method_text = self.name + (
+            f" (fails at {', '.join(self.failed_tolerances)})" if self.failed_tolerances else ""
+        )
+        row: dict[str, str | float] = {"force": self.force, "way": method_text, "tolerance": self.setting}
         if not self.reaches_cycle:
             not_reached = f"not reached in {WAITING_PERIODS} periods"
             return row | {"returns": not_reached, "milliseconds": "", "error": nan}
@@ -70,17 +72,17 @@ class SettlingMethod:
         return row | {"returns": returns, "milliseconds": milliseconds, "error": self.error}
 
 
-def compare_settling(reference: ReferenceCycle, contenders: Sequence[TimedMethod], rounds: int) -> str:
+def compare_settling(reference: ReferenceCycle, contenders: Sequence[TimedMethod], round_count: int) -> str:
     """Runs all methods that reach the cycle, at F = 50 and near the Hopf point, and returns the table of the
     methods with its explanation. reference: reference cycle at F = 50. contenders: contenders of the race
     WAITING_RACE."""
     settings = by_method(contenders)
-    waiting = {method: _integrate_until_periodic(reference, own) for method, own in settings.items()}
+    waiting = {method: _integrate_until_periodic(reference, runs) for method, runs in settings.items()}
     cycle = solve_cycle_at_force(CYCLE_FORCE)
     error = _cycle_error(reference, cycle.measures.period, cycle.measures.tip_y_max)
     methods = [_solve_method(CYCLE_FORCE, cycle.periods, error), *waiting.values()]
     methods += _methods_near_hopf([c for c in contenders if waiting[c.method].setting == c.setting])
-    return settling_table(methods, time_runs([wait.run for wait in methods], [rounds] * len(methods)))
+    return settling_table(methods, time_runs([wait.run for wait in methods], [round_count] * len(methods)))
 
 
 def _solve_method(force: float, periods: float, error: float) -> SettlingMethod:
@@ -111,15 +113,15 @@ def _cycle_error(reference: ReferenceCycle, period: float, height: float) -> flo
     return max(abs(period / reference.period - 1), abs(height / reference.tip_y_max - 1))
 
 
-def _integrate_until_periodic(reference: ReferenceCycle, settings: Sequence[TimedMethod]) -> SettlingMethod:
+def _integrate_until_periodic(reference: ReferenceCycle, contenders: Sequence[TimedMethod]) -> SettlingMethod:
     """Integration at the loosest tolerance at which two successive returns agree, and period and largest tip
     y are accurate, within SETTLING_TOLERANCE; without such a tolerance, a method whose `reaches_cycle` is
-    False. settings: contenders of one integrator, from the loosest tolerance."""
+    False. contenders: contenders of one integrator, from the loosest tolerance."""
     start = START_DEFLECTION * leading_mode(reference.system).z.real
     task = IntegrationTask(reference.system, start, WAITING_PERIODS * reference.period)
-    name = WAITING_PREFIX + settings[0].method
+    name = WAITING_PREFIX + contenders[0].method
     failed: tuple[str, ...] = ()
-    for contender in settings:
+    for contender in contenders:
         try:
             returns = tip_returns(reference.system, contender.run(task))
         except ArithmeticError:
@@ -127,15 +129,15 @@ def _integrate_until_periodic(reference: ReferenceCycle, settings: Sequence[Time
             continue
         sizes = np.linalg.norm(returns.states[1:], axis=1)
         distances = np.linalg.norm(np.diff(returns.states, axis=0), axis=1) / sizes
-        steady = list(map(int, np.flatnonzero(distances <= SETTLING_TOLERANCE)))
-        for k in steady[:1]:
+        periodic_indices = list(map(int, np.flatnonzero(distances <= SETTLING_TOLERANCE)))
+        for k in periodic_indices[:1]:
             period = float(returns.times[k + 1] - returns.times[k])
             error = _cycle_error(reference, period, float(returns.heights[k]))
             if error <= SETTLING_TOLERANCE:
                 run = partial(contender.run, task._replace(duration=float(returns.times[k + 1])))
                 setting = contender.setting
-                return SettlingMethod(CYCLE_FORCE, name, setting, k + 2, error, run, failed=failed)
-    return SettlingMethod(CYCLE_FORCE, name, "", nan, inf, lambda: None, failed=failed)
+                return SettlingMethod(CYCLE_FORCE, name, setting, k + 2, error, run, failed_tolerances=failed)
+    return SettlingMethod(CYCLE_FORCE, name, "", nan, inf, lambda: None, failed_tolerances=failed)
 
 
 def _methods_near_hopf(settled_contenders: Sequence[TimedMethod]) -> list[SettlingMethod]:
@@ -143,11 +145,11 @@ def _methods_near_hopf(settled_contenders: Sequence[TimedMethod]) -> list[Settli
     periodic is estimated from the largest Floquet multiplier."""
     cycle = solve_cycle_at_force(NEAR_HOPF_F)
     task = IntegrationTask(*state_on_cycle(orbit_of(cycle)), FOLLOWED_PERIODS * cycle.measures.period)
-    count = log(SETTLING_TOLERANCE) / log(cycle.multiplier)
+    return_count = log(SETTLING_TOLERANCE) / log(cycle.multiplier)
     error = max(cycle.errors.period_error, cycle.errors.amplitude_error)
     methods = [_solve_method(NEAR_HOPF_F, cycle.periods, error)]
     for c in settled_contenders:
-        cost = partial(c.run, task), count / FOLLOWED_PERIODS
+        cost = partial(c.run, task), return_count / FOLLOWED_PERIODS
         name = WAITING_PREFIX + c.method
-        methods.append(SettlingMethod(NEAR_HOPF_F, name, c.setting, count, SETTLING_TOLERANCE, *cost))
+        methods.append(SettlingMethod(NEAR_HOPF_F, name, c.setting, return_count, SETTLING_TOLERANCE, *cost))
     return methods

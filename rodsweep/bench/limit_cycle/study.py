@@ -45,29 +45,34 @@ def limit_cycle_study(quick: bool, peers: PeerContribution) -> BenchmarkReport:
     cycle, cost of a point of a sweep, and sections of the peers. quick: whether to use fewer rounds,
     tolerances and rods."""
     warm_up()
-    rounds, stride = (QUICK_ROUND_COUNT, 2) if quick else (ROUND_COUNT, 1)
+    round_count, stride = (QUICK_ROUND_COUNT, 2) if quick else (ROUND_COUNT, 1)
     reference = solve_reference()
     following = [*DEFAULT_INTEGRATOR.following_contenders(), *peers.of(FOLLOWING_RACE)]
-    measurements = measure_following(reference, every_nth_setting(following, stride), rounds)
-    blocks = [introduction(rounds), *peers.notes, work_table(measurements), time_at_error_table(measurements)]
+    measurements = measure_following(reference, every_nth_setting(following, stride), round_count)
+    blocks = [
+        introduction(round_count),
+        *peers.notes,
+        work_table(measurements),
+        time_at_error_table(measurements),
+    ]
     settling = [*DEFAULT_INTEGRATOR.settling_contenders(), *peers.of(WAITING_RACE)]
-    blocks.append(compare_settling(reference, settling, rounds))
-    sweep_measurements = measure_sweep_points(QUICK_RODS if quick else RODS, rounds)
+    blocks.append(compare_settling(reference, settling, round_count))
+    sweep_measurements = measure_sweep_points(QUICK_RODS if quick else RODS, round_count)
     blocks += [sweep_introduction(), sweep_table(sweep_measurements)]
     for section in peers.sections:
-        text, more_text = section(rounds)
+        text, more_text = section(round_count)
         blocks += text
         sweep_measurements += more_text
-    of_panels = [
+    panels = [
         replace(m, case=case, error=m.extra.get(error, m.error))
         for case, error in ERROR_NAMES_BY_PANEL.items()
         for m in measurements
     ]
     report = "\n\n".join([*blocks, *peers.skipped])
-    return BenchmarkReport("limit_cycle", report, of_panels, "period", TARGET_ERROR, sweep_measurements)
+    return BenchmarkReport("limit_cycle", report, panels, "period", TARGET_ERROR, sweep_measurements)
 
 
-def introduction(rounds: int) -> str:
+def introduction(round_count: int) -> str:
     """Description of the race FOLLOWING_RACE for the report."""
     k1, k2, gamma3, gamma1 = (FIG5_ROD.values[name] for name in NONLINEAR_PARAMETERS[1:])
     return (
@@ -76,7 +81,7 @@ def introduction(rounds: int) -> str:
         f"{3 * CYCLE_ORDER} unknowns. All integrators call the same compiled functions for the rate and its "
         "Jacobian; the tolerance is the allowed error of each component of the state, divided by the largest "
         "value of this component. Errors of the period and of the largest tip y are relative and rms over 5 "
-        f"returns. Times are medians of {counted(rounds, 'interleaved round')}."
+        f"returns. Times are medians of {counted(round_count, 'interleaved round')}."
     )
 
 

@@ -39,7 +39,7 @@ STEP_RATIO = 1.01
 WARM_UP_POINT_COUNT = 6
 """Number of untimed points before the timed points; the mesh is chosen during these points."""
 TIMED_POINT_COUNT = 22
-"""Number of timed points: the number of points from one calibration of the mesh errors to the next."""
+"""Number of timed points: the number of points from one measurement of the mesh errors to the next."""
 ACCURACY, REFERENCE_ACCURACY = 1e-7, 1e-11
 """Relative accuracies of the cycles requested from rodsweep and of the reference cycles."""
 SWEEP_PREFIX, COLD_PREFIX = "sweep over ", "cold, "
@@ -96,41 +96,44 @@ class SweptRod:
     workspace: NewtonWorkspace
 
 
-def swept_rod(point: Rod, accuracy: float) -> SweptRod:
-    """The rod `point` with its reference cycle, and with the solved untimed points of the sweeps. accuracy:
+def swept_rod(rod: Rod, accuracy: float) -> SweptRod:
+    """The rod `rod` with its reference cycle, and with the solved untimed points of the sweeps. accuracy:
     relative accuracy of the cycles."""
     neighbours: dict[str, CycleStart | None] = {}
     workspace = NewtonWorkspace()
-    for axis in SWEPT_PARAMETERS:
+    for parameter_name in SWEPT_PARAMETERS:
         neighbour: CycleStart | None = None
         for k in range(WARM_UP_POINT_COUNT, 0, -1):
-            earlier = earlier_rod(point, axis, k + TIMED_POINT_COUNT - 1)
-            cycle = solve_cycle(earlier, cycle_request(accuracy), neighbour, axis, workspace)
+            earlier = earlier_rod(rod, parameter_name, k + TIMED_POINT_COUNT - 1)
+            cycle = solve_cycle(earlier, cycle_request(accuracy), neighbour, parameter_name, workspace)
             neighbour = require_cycle(cycle).neighbour
-        neighbours[axis] = neighbour
-    solved = solve_cycle(point, cycle_request(accuracy), parameter_name=SWEPT_PARAMETERS[0])
-    return SweptRod(point, AccurateCycle.converged_from_orbit(orbit_of(solved)), neighbours, workspace)
+        neighbours[parameter_name] = neighbour
+    solved = solve_cycle(rod, cycle_request(accuracy), parameter_name=SWEPT_PARAMETERS[0])
+    return SweptRod(rod, AccurateCycle.converged_from_orbit(orbit_of(solved)), neighbours, workspace)
 
 
-def earlier_rod(point: Rod, axis: str, steps: int) -> Rod:
-    """Rod of the sweep along `axis` that is `steps` points before the rod `point`, at a larger value."""
-    return replace(point, **{axis: getattr(point, axis) * STEP_RATIO**steps})
+def earlier_rod(rod: Rod, parameter_name: str, step_count: int) -> Rod:
+    """Rod of the sweep along `parameter_name` that is `step_count` points before the rod `rod`, at a larger
+    value."""
+    return replace(rod, **{parameter_name: getattr(rod, parameter_name) * STEP_RATIO**step_count})
 
 
-def solve_from_neighbour(axis: str, accuracy: float, rod: SweptRod) -> CycleOutcome:
-    """The last cycle of the timed points of a sweep along `axis`, each solved from its neighbour; raises
-    ArithmeticError if a point has no stable cycle. accuracy: relative."""
-    start = rod.neighbours[axis]
+def solve_from_neighbour(parameter_name: str, accuracy: float, rod: SweptRod) -> CycleOutcome:
+    """The last cycle of the timed points of a sweep along `parameter_name`, each solved from its neighbour;
+    raises ArithmeticError if a point has no stable cycle. accuracy: relative."""
+    start = rod.neighbours[parameter_name]
     for k in range(TIMED_POINT_COUNT - 1, -1, -1):
-        neighbour_rod = earlier_rod(rod.rod, axis, k)
-        cycle = require_cycle(solve_cycle(neighbour_rod, cycle_request(accuracy), start, axis, rod.workspace))
+        point = earlier_rod(rod.rod, parameter_name, k)
+        cycle = require_cycle(
+            solve_cycle(point, cycle_request(accuracy), start, parameter_name, rod.workspace)
+        )
         start = cycle.neighbour
     return cycle
 
 
 def solve_without_neighbour(start_kind: str, accuracy: float, rod: SweptRod) -> CycleOutcome:
     """The cycle of a rod to a relative accuracy, without a neighbour; raises ArithmeticError if no stable
-    cycle is found. start_kind: option `start_kind`."""
+    cycle is found. start_kind: value of the option `start`."""
     request = replace(cycle_request(accuracy), start=start_kind)
     return require_cycle(solve_cycle(rod.rod, request, workspace=rod.workspace))
 
@@ -147,22 +150,27 @@ def cycle_contenders(accuracy: float) -> list[TimedMethod]:
     starts from a neighbour's cycle, and one for each of COLD_STARTS."""
     setting = f"{accuracy:.0e}"
     with_neighbour = [
-        TimedMethod(SWEEP_PREFIX + axis, setting, SWEEP_PREFIX, partial(solve_from_neighbour, axis, accuracy))
-        for axis in SWEPT_PARAMETERS
+        TimedMethod(
+            SWEEP_PREFIX + parameter_name,
+            setting,
+            SWEEP_PREFIX,
+            partial(solve_from_neighbour, parameter_name, accuracy),
+        )
+        for parameter_name in SWEPT_PARAMETERS
     ]
     cold = {name: partial(solve_without_neighbour, start, accuracy) for name, start in COLD_STARTS.items()}
     return with_neighbour + [
-        TimedMethod(COLD_PREFIX + n, setting, COLD_PREFIX, run) for n, run in cold.items()
+        TimedMethod(COLD_PREFIX + name, setting, COLD_PREFIX, run) for name, run in cold.items()
     ]
 
 
-def measure_sweep_points(points: Sequence[Rod], rounds: int) -> list[Measurement]:
-    """Measurements of all `cycle_contenders` on all rods `points`, in `rounds` timed rounds."""
+def measure_sweep_points(points: Sequence[Rod], round_count: int) -> list[Measurement]:
+    """Measurements of all `cycle_contenders` on all rods `points`, in `round_count` timed rounds."""
     rods = [swept_rod(point, ACCURACY) for point in points]
-    entries = [
+    cases = [
         CaseWithErrorMeasure(rod_label(rod.rod), rod, partial(cycle_errors, rod.exact_cycle)) for rod in rods
     ]
-    return measure_cases(entries, cycle_contenders(ACCURACY), rounds)
+    return measure_cases(cases, cycle_contenders(ACCURACY), round_count)
 
 
 def cycle_errors(exact: AccurateCycle, cycle: CycleOutcome) -> dict[str, Any]:
@@ -184,7 +192,7 @@ def sweep_introduction() -> str:
     return (
         f"Cycles solved as points of a sweep: all multipliers included, accuracy {ACCURACY:.0e}, steps of "
         f"{STEP_RATIO - 1:.0%} between neighbours. The time is the mean of {TIMED_POINT_COUNT} points up to "
-        "the rod, with the finer meshes that calibrate errors. It includes the straight rod's spectrum, the "
+        "the rod, with the finer meshes that give the errors. It includes the straight rod's spectrum, the "
         "choice of the mesh, the verdict, and the error estimate, which is the larger of the estimates for "
         "the period and for the extrema. Errors of the period and of the largest tip y are relative to a "
         f"solution on meshes with errors of {REFERENCE_ACCURACY:.0e}. Multipliers above rounding error are "

@@ -28,13 +28,13 @@ segments."""
 QUICK_RODS = (RODS[2],)  # for a quick run
 
 
-def rod_label(point: Rod) -> str:
+def rod_label(rod: Rod) -> str:
     """Label of a rod in the tables: F, k1, k2, gamma3, gamma1; taper, number of segments, law and section if
     not the default."""
-    taper_texts = [] if point.taper == 1 else [f"taper {point.taper:g}"]
-    segments = len(point.material.breaks) - 1
-    taper_texts += [] if segments == 1 else [f"{segments} segments"]
-    linear = (point.material.law, point.material.section) == (DEFAULT_MATERIAL.law, DEFAULT_MATERIAL.section)
-    taper_texts += [] if linear else [point.material.law, point.material.section]
-    values = (point.F, point.k1, point.k2, point.gamma3, point.gamma1)
-    return ", ".join([*(f"{value:g}" for value in values), *taper_texts])
+    texts = [] if rod.taper == 1 else [f"taper {rod.taper:g}"]
+    segment_count = len(rod.material.breaks) - 1
+    texts += [] if segment_count == 1 else [f"{segment_count} segments"]
+    is_linear = (rod.material.law, rod.material.section) == (DEFAULT_MATERIAL.law, DEFAULT_MATERIAL.section)
+    texts += [] if is_linear else [rod.material.law, rod.material.section]
+    values = (rod.F, rod.k1, rod.k2, rod.gamma3, rod.gamma1)
+    return ", ".join([*(f"{value:g}" for value in values), *texts])

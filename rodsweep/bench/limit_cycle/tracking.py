@@ -116,26 +116,26 @@ def solve_reference() -> ReferenceCycle:
 
 
 def measure_following(
-    reference: ReferenceCycle, contenders: Iterable[TimedMethod], rounds: int
+    reference: ReferenceCycle, contenders: Iterable[TimedMethod], round_count: int
 ) -> list[Measurement]:
     """Measurements of the `contenders`, which follow the reference cycle `reference` in time; times are
     divided by the number of periods."""
     task = IntegrationTask(reference.system, reference.state, FOLLOWED_PERIODS * reference.period)
-    judge = partial(run_errors, reference)
+    measure_error = partial(run_errors, reference)
     return [
         replace(m, seconds=m.seconds / FOLLOWED_PERIODS, least_seconds=m.least_seconds / FOLLOWED_PERIODS)
-        for m in measure_case(f"F = {CYCLE_FORCE:g}", task, list(contenders), rounds, judge)
+        for m in measure_case(f"F = {CYCLE_FORCE:g}", task, list(contenders), round_count, measure_error)
     ]
 
 
-def run_errors(reference: ReferenceCycle, run: Trajectory) -> dict[str, Any]:
-    """Fields of `Measurement` for a run: relative rms errors of the period and of the largest tip y, without
-    the first return, and steps per period."""
-    returns = tip_returns(reference.system, run)
+def run_errors(reference: ReferenceCycle, trajectory: Trajectory) -> dict[str, Any]:
+    """Fields of `Measurement` for a trajectory: relative rms errors of the period and of the largest tip y,
+    without the first return, and steps per period."""
+    returns = tip_returns(reference.system, trajectory)
     period = _rms(np.diff(returns.times)[1:] / reference.period - 1)
     amplitude = _rms(returns.heights[1:] / reference.tip_y_max - 1)
-    steps = (len(run.times) - 1) / FOLLOWED_PERIODS
-    values = {"steps": steps, "period_error": period, "amplitude_error": amplitude}
+    steps_per_period = (len(trajectory.times) - 1) / FOLLOWED_PERIODS
+    values = {"steps": steps_per_period, "period_error": period, "amplitude_error": amplitude}
     return {"error": max(period, amplitude), "extra": values}
 
 

@@ -86,24 +86,27 @@ def exact_arm_spectrum(rod: Rod) -> list[complex]:
     return roots
 
 
-def measure_arm_spectra(peers: Sequence[TimedMethod], rounds: int) -> list[Measurement]:
+def measure_arm_spectra(peers: Sequence[TimedMethod], round_count: int) -> list[Measurement]:
     """Measurements of rodsweep, Krylov-Schur and the peers on all ARM_RODS, at all sizes of the
     eigenproblem."""
     measurements = []
     for name, rod in ARM_RODS.items():
-        judge = partial(relative_error_by_name, exact_arm_spectrum(rod))
-        measurements += measure_case(name, UncachedArms(rod), [*contenders(), *peers], rounds, judge)
+        measure_error = partial(relative_error_by_name, exact_arm_spectrum(rod))
+        measurements += measure_case(
+            name, UncachedArms(rod), [*contenders(), *peers], round_count, measure_error
+        )
     return measurements
 
 
-def arm_table(measurements: Sequence[Measurement], rounds: int) -> str:
+def arm_table(measurements: Sequence[Measurement], round_count: int) -> str:
     """Table of the time and error of every method on every arm, at the fastest size with an error of at most
     TARGET_ERROR, after a paragraph that explains the table."""
     return (
         f"Leading {MODE_COUNT} eigenvalues of arms to {TARGET_ERROR:.0e}: ms and error of the cheapest size "
-        f"that reaches this error, {counted(rounds, 'round')}. Cones have half the radius at their tips, the "
-        "segments have radii of 1, 0.6, 1.2, 0.5 and 0.8, and rubber is neo-Hookean with a swelling section. "
-        "Errors are relative distances from the roots of D, with elements that resolve 16 times the |w|:\n\n"
+        f"that reaches this error, {counted(round_count, 'round')}. Cones have half the radius at their "
+        "tips, the segments have radii of 1, 0.6, 1.2, 0.5 and 0.8, and rubber is neo-Hookean with a "
+        "swelling section. Errors are relative distances from the roots of D, with elements that resolve 16 "
+        "times the |w|:\n\n"
     ) + table_by_case(ARM_RODS, measurements, _cheapest_time_cell)
 
 
@@ -117,15 +120,14 @@ def _cheapest_time_cell(measurements: Sequence[Measurement]) -> str:
 
 
 def mesh_of_arm(rod: Rod, order: int) -> ArmMesh:
-    """Mesh of an arm with elements of the order `order`, and with the smallest number of elements that
-    resolves the variation of the arm."""
+    """Mesh of an arm with as few elements of the order `order` as resolve the variation of the arm."""
     return ArmMesh(arm_mesh(rod, MODE_COUNT, EDGE_ACCURACY).edges, order)
 
 
-def solve_next_arm(solve: Callable[[Rod, Any], Complex], size: int, arms: UncachedArms) -> Complex:
-    """Eigenvalues, (modes,), of the next arm of `arms` by the eigensolver `solve`. size: second argument of
+def solve_next_arm(solve: Callable[[Rod, Any], Complex], option: int, arms: UncachedArms) -> Complex:
+    """Eigenvalues, (modes,), of the next arm of `arms` by the eigensolver `solve`. option: second argument of
     `solve`: an order, a number of intervals, or whether rodsweep certifies the eigenvalues."""
-    return solve(arms.next_arm(), size)
+    return solve(arms.next_arm(), option)
 
 
 def _krylov_schur(rod: Rod, order: int) -> Complex:
@@ -138,10 +140,12 @@ def _krylov_schur(rod: Rod, order: int) -> Complex:
 
 def contenders() -> list[TimedMethod]:
     """Contenders of ARM_RACE: rodsweep without and with certificate, and Krylov-Schur at all orders."""
-    names = {UNCERTIFIED_NAME: False, CERTIFIED_NAME: True}
-    own = {name: partial(solve_next_arm, rodsweep_spectrum, certify) for name, certify in names.items()}
+    certify_options = {UNCERTIFIED_NAME: False, CERTIFIED_NAME: True}
+    runs = {
+        name: partial(solve_next_arm, rodsweep_spectrum, certify) for name, certify in certify_options.items()
+    }
     krylov = [
         TimedMethod(KRYLOV_SCHUR, str(order), PENCIL_GROUP, partial(solve_next_arm, _krylov_schur, order))
         for order in ELEMENT_ORDERS
     ]
-    return [TimedMethod(name, "", RODSWEEP_GROUP, run) for name, run in own.items()] + krylov
+    return [TimedMethod(name, "", RODSWEEP_GROUP, run) for name, run in runs.items()] + krylov

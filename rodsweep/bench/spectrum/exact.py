@@ -59,8 +59,8 @@ def exact_spectrum(rod: Rod, mode_count: int) -> list[Any]:
         for w, error in zip(spectrum.eigenvalues, spectrum.error_estimate, strict=True):
             start = mp.mpc(complex(w))
             root = mp.findroot(D, (start, start * (1 + SECANT_STEP)), tol=SECANT_STEP**5, verify=False)
-            # Near a simple root |D| is proportional to the distance: `small` is |D| at the relative distance
-            # 10^-DIGIT_COUNT.
+            # Near a simple root |D| is proportional to the distance: the limit is |D| at the relative
+            # distance 10^-DIGIT_COUNT.
             rounding_limit = abs(D(root * (1 + SECANT_STEP))) * mp.mpf(10) ** -DIGIT_COUNT / SECANT_STEP
             if abs(root - start) > MAX_ROOT_DISTANCE * error or abs(D(root)) > rounding_limit:
                 raise ArithmeticError(f"{rod}: {complex(w)} does not lead to a root of D")

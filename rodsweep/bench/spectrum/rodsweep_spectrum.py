@@ -1,4 +1,4 @@
-"""Spectra by rodsweep in the benchmark of spectra, and what all methods share: names, numbers and a table."""
+"""Spectra by rodsweep in the benchmark of spectra; names, numbers and a table for all methods."""
 
 from collections.abc import Callable, Iterable
 

@@ -71,34 +71,34 @@ ROUND_COUNT = 25
 QUICK_ROUND_COUNT = 2
 """Number of timed rounds of a quick run."""
 QUICK_STRIDE = 3
-"""On hard rods and arms a quick run uses every n-th size; this number is n."""
+"""n: a quick run uses every n-th size on hard rods and arms."""
 
 
 def spectrum_study(quick: bool, peers: PeerContribution) -> BenchmarkReport:
     """Runs the benchmark and returns the results: the paper's rods at equal errors, hard rods at all sizes,
     and arms. quick: whether to use fewer rounds, target errors and sizes."""
     warm_up()
-    rounds, stride = (QUICK_ROUND_COUNT, QUICK_STRIDE) if quick else (ROUND_COUNT, 1)
+    round_count, stride = (QUICK_ROUND_COUNT, QUICK_STRIDE) if quick else (ROUND_COUNT, 1)
     rods = [
         Rod(F=float(F), k1=k1, k2=k2, gamma3=gamma3)
-        for k1, k2, gamma3, exact_growth in PAPER_RODS.values()
-        for F in np.linspace(0.1 * exact_growth, exact_growth, FORCE_COUNT)
+        for k1, k2, gamma3, max_F in PAPER_RODS.values()
+        for F in np.linspace(0.1 * max_F, max_F, FORCE_COUNT)
     ]
     exact = [exact_spectrum(rod, MODE_COUNT) for rod in rods]
     methods = contenders() + peers.of(SPECTRUM_RACE)
     targets = TARGET_ERRORS[: 1 if quick else None]
-    blocks = [equal_error_table(methods, rods, exact, target, rounds) for target in targets]
-    measurements = measure_hard_rods(every_nth_setting(methods, stride), rounds)
-    arms = measure_arm_spectra(every_nth_setting(peers.of(ARM_RACE), stride), rounds)
-    blocks += [*peers.notes, hard_rod_table(measurements), arm_table(arms, rounds), *peers.skipped]
+    blocks = [equal_error_table(methods, rods, exact, target, round_count) for target in targets]
+    measurements = measure_hard_rods(every_nth_setting(methods, stride), round_count)
+    arms = measure_arm_spectra(every_nth_setting(peers.of(ARM_RACE), stride), round_count)
+    blocks += [*peers.notes, hard_rod_table(measurements), arm_table(arms, round_count), *peers.skipped]
     return BenchmarkReport("spectrum", "\n\n".join(blocks), measurements, "point", TARGET_ERRORS[0], arms)
 
 
 def cheapest_contenders(
     methods: Sequence[TimedMethod], rod: Rod, exact: list[Any], target: float
 ) -> dict[str, TimedMethod]:
-    """For every method that reaches the error `target` on a rod: the contender with the smallest size that
-    reaches this error, by name of the method.
+    """Contender with the smallest size that reaches the error `target` on a rod, by name of the method;
+    methods that do not reach this error are left out.
 
     methods: contenders of all methods, by ascending size.
     """
@@ -115,22 +115,24 @@ def equal_error_table(
     rods: Sequence[Rod],
     exact: Sequence[list[Any]],
     target: float,
-    rounds: int,
+    round_count: int,
 ) -> str:
-    """Times all methods on all rods, in `rounds` rounds, each at the smallest size that reaches the error
-    `target`, and returns the table of the methods."""
-    fit = [cheapest_contenders(methods, rod, roots, target) for rod, roots in zip(rods, exact, strict=True)]
+    """Times all methods on all rods, in `round_count` rounds, each at the smallest size that reaches the
+    error `target`, and returns the table of the methods."""
+    cheapest = [
+        cheapest_contenders(methods, rod, roots, target) for rod, roots in zip(rods, exact, strict=True)
+    ]
     names = list(dict.fromkeys(contender.method for contender in methods))
     runs = {
-        (name, i): partial(result_or_error, fit[i][name].run, rod)
+        (name, i): partial(result_or_error, cheapest[i][name].run, rod)
         for name in names
         for i, rod in enumerate(rods)
-        if name in fit[i]
+        if name in cheapest[i]
     }
-    timed = dict(zip(runs, time_runs(list(runs.values()), [rounds] * len(runs)), strict=True))
+    timed = dict(zip(runs, time_runs(list(runs.values()), [round_count] * len(runs)), strict=True))
     rows = []
     for name in names:
-        indices = [i for i in range(len(rods)) if name in fit[i]]
+        indices = [i for i in range(len(rods)) if name in cheapest[i]]
         row = {
             "method": name,
             "points": len(indices),
@@ -142,7 +144,7 @@ def equal_error_table(
     return (
         f"Leading {MODE_COUNT} eigenvalues to {target:.0e}: each method at the cheapest size that reaches "
         f"this error; median over {len(rods)} points of the paper's four rods, "
-        f"{counted(rounds, 'round')}:\n\n"
+        f"{counted(round_count, 'round')}:\n\n"
     ) + markdown_table(
         "method | points reached | ms a point | worst error | times this tool's time",
         "{method} | {points:.0f} | {ms:.3f} | {worst:.0e} | {ratio:.1f}",
@@ -150,12 +152,12 @@ def equal_error_table(
     )
 
 
-def measure_hard_rods(methods: Sequence[TimedMethod], rounds: int) -> list[Measurement]:
+def measure_hard_rods(methods: Sequence[TimedMethod], round_count: int) -> list[Measurement]:
     """Measurements of the contenders `methods` on all HARD_RODS."""
     measurements = []
     for case, rod in HARD_RODS.items():
-        judge = partial(relative_error_by_name, exact_spectrum(rod, MODE_COUNT))
-        measurements += measure_case(case, rod, methods, rounds, judge)
+        measure_error = partial(relative_error_by_name, exact_spectrum(rod, MODE_COUNT))
+        measurements += measure_case(case, rod, methods, round_count, measure_error)
     return measurements
 
 
@@ -184,17 +186,17 @@ def pencil_mesh(order: int) -> Resolution:
     return Resolution(elements, ceil(order / elements))
 
 
-def krylov_schur(rod: Rod, size: int) -> Complex:
-    """Leading eigenvalues, (modes,), of a rod by SLEPc's Krylov-Schur, without Newton's method for D. size:
+def krylov_schur(rod: Rod, order: int) -> Complex:
+    """Leading eigenvalues, (modes,), of a rod by SLEPc's Krylov-Schur, without Newton's method for D. order:
     order of the pencil."""
-    solver = uniform_solver(pencil_mesh(size))
+    solver = uniform_solver(pencil_mesh(order))
     eigenvalues = solver.solve(rod, transverse_problem(rod).shift, MODE_COUNT, to_rounding=True)
     return leading_eigenvalues(eigenvalues, MODE_COUNT + 1)
 
 
 def contenders() -> list[TimedMethod]:
     """Contenders of SPECTRUM_RACE: rodsweep without and with certificate, and Krylov-Schur at all orders."""
-    krylov = {str(size): partial(krylov_schur, size=size) for size in ELEMENT_ORDERS}
+    krylov = {str(size): partial(krylov_schur, order=size) for size in ELEMENT_ORDERS}
     return [
         TimedMethod(UNCERTIFIED_NAME, "", RODSWEEP_GROUP, partial(rodsweep_spectrum, certify=False)),
         TimedMethod(CERTIFIED_NAME, "", RODSWEEP_GROUP, partial(rodsweep_spectrum, certify=True)),

@@ -25,7 +25,7 @@ of `follow`; F_max; taper."""
 FOLLOWED_METHOD = "followed"
 """Name of the method for sweeps whose eigenvalues are followed."""
 ALONE_METHOD = "alone"
-"""Name of the method for sweeps whose points are solved one by one."""
+"""Name of the method for sweeps in which each point is solved alone."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,15 +69,15 @@ def measure_followed_sweeps(
     run: see `RunCase` of `rodsweep.bench.sweep.study`.
     """
     measurements = []
-    for axis in QUICK_GRID_PAIRS if quick else GRID_PAIRS:
-        for method, shape in ((FOLLOWED_METHOD, axis.shape), (ALONE_METHOD, axis.smaller)):
-            directory = folder / f"{method} {axis.name}".replace(" ", "_")
+    for grids in QUICK_GRID_PAIRS if quick else GRID_PAIRS:
+        for method, shape in ((FOLLOWED_METHOD, grids.shape), (ALONE_METHOD, grids.smaller)):
+            directory = folder / f"{method} {grids.name}".replace(" ", "_")
             directory.mkdir()
             text = FOLLOWING_SWEEP_CONFIG.format(
-                *shape, str(method == FOLLOWED_METHOD).lower(), F_max=axis.F_max, taper=axis.taper
+                *shape, str(method == FOLLOWED_METHOD).lower(), F_max=grids.F_max, taper=grids.taper
             )
             (directory / CONFIG_NAME).write_text(text)
-            case = SweepCase(axis.name, prod(shape), (directory,), SOLVED)
+            case = SweepCase(grids.name, prod(shape), (directory,), SOLVED)
             measurements.append(followed_measurement(case, method, run(case, 1)))
     return measurements
 
@@ -104,8 +104,8 @@ def followed_table(measurements: Sequence[Measurement]) -> str:
     for followed, unfollowed in zip(measurements[::2], measurements[1::2], strict=True):
         speedup = unfollowed.extra["microseconds_solving"] / followed.extra["microseconds_solving"]
         row = {"axis": followed.case.removeprefix("axis, "), "seconds": followed.seconds, "gain": speedup}
-        alone = {f"{name}_alone": value for name, value in unfollowed.extra.items()}
-        rows.append(row | followed.extra | alone)
+        unfollowed_values = {f"{name}_alone": value for name, value in unfollowed.extra.items()}
+        rows.append(row | followed.extra | unfollowed_values)
     return (
         "Certified spectra, `modes: 4`, along the longest axis of grids of F, k1, k2, gamma3, on one rank; "
         '"alone" is `follow: false` on a part of the same grid. Seconds are printed by the run and include '

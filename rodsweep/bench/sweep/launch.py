@@ -23,8 +23,7 @@ from ...results.file.view import read_view
 from ...results.run.journal import journal_directory
 
 RESULT, NOTES = "c.h5", "notes"
-"""Names, in the directory of a sweep, of the result file and of the folder with the peak memory of the
-ranks."""
+"""Names of the result file and of the folder with the ranks' peak memory, in the directory of a sweep."""
 FIRST_RANK_PREFIX = "first"
 """Prefix of the name of the file with the peak memory of the first rank."""
 OTHER_RANKS_PREFIX = "other"
@@ -37,13 +36,13 @@ CONFIG_NAME = "c.yaml"
 SPECTRUM_CONFIG = """
 task: spectrum
 parameters:
-  F: {{start: 0, stop: 90, num: {forces}}}
+  F: {{start: 0, stop: 90, num: {F_count}}}
   k1: [200, .inf]
-  k2: {{start: 100, stop: 1.0e4, num: {softnesses}, spacing: log}}
+  k2: {{start: 100, stop: 1.0e4, num: {k2_count}, spacing: log}}
   gamma3: 1.0e-4
 spectrum: {{modes: 2}}
 """
-"""Config of a sweep of spectra, as a format string. forces, softnesses: numbers of values of F and of k2."""
+"""Config of a sweep of spectra, as a format string. F_count, k2_count: numbers of values of F and of k2."""
 CYCLE_CONFIG = "task: limit_cycle\nparameters: {points: points.csv}\n"
 """Config of a sweep of limit cycles over a list of points."""
 HOPF_FORCE = 27.4271941267592812
@@ -65,27 +64,27 @@ class SweepCase:
     solver_kind: str
 
 
-def spectrum_case(directory: Path, name: str, point_count: int, kind: str) -> SweepCase:
+def spectrum_case(directory: Path, name: str, point_count: int, solver_kind: str) -> SweepCase:
     """A sweep of spectra, named `name`, over F, two values of k1, and k2, whose config is written into the
     new directory `directory`.
 
     point_count: number of points, which is rounded down to a multiple of 100, below 200 to a multiple of 4.
     """
-    forces = 50 if point_count >= 200 else 2
-    softnesses = point_count // (2 * forces)
+    force_count = 50 if point_count >= 200 else 2
+    k2_count = point_count // (2 * force_count)
     directory.mkdir()
-    (directory / CONFIG_NAME).write_text(SPECTRUM_CONFIG.format(forces=forces, softnesses=softnesses))
-    return SweepCase(name, 2 * forces * softnesses, (directory,), kind)
+    (directory / CONFIG_NAME).write_text(SPECTRUM_CONFIG.format(F_count=force_count, k2_count=k2_count))
+    return SweepCase(name, 2 * force_count * k2_count, (directory,), solver_kind)
 
 
-def cycle_case(directory: Path, point_count: int, kind: str) -> SweepCase:
+def cycle_case(directory: Path, point_count: int, solver_kind: str) -> SweepCase:
     """A sweep of limit cycles whose costs differ much, in random order; its config is written into the new
     directory `directory`."""
     directory.mkdir()
     rows = [f"{F!r},1e4,1e2,1e-2,1" for F in shuffled_forces(point_count).tolist()]
     (directory / "points.csv").write_text("\n".join(["F,k1,k2,gamma3,gamma1", *rows]) + "\n")
     (directory / CONFIG_NAME).write_text(CYCLE_CONFIG)
-    return SweepCase("limit cycles", point_count, (directory,), kind)
+    return SweepCase("limit cycles", point_count, (directory,), solver_kind)
 
 
 def shuffled_forces(count: int) -> np.ndarray:
@@ -144,14 +143,18 @@ def run_case(command: Sequence[str], case: SweepCase, rank_count: int, fresh: bo
     seconds_of_others = _other_process_seconds()
     start = time.monotonic()
     full_command = [*launcher_words(rank_count), *command]
-    kind = case.solver_kind
-    processes = [_start_command(full_command, kind, directory, fresh) for directory in case.directories]
-    stated_seconds = [_printed_seconds(process, kind) for process in processes]
+    solver_kind = case.solver_kind
+    processes = [
+        _start_command(full_command, solver_kind, directory, fresh) for directory in case.directories
+    ]
+    stated_seconds = [_printed_seconds(process, solver_kind) for process in processes]
     seconds = time.monotonic() - start
     other_load = np.maximum(0.0, (_other_process_seconds() - seconds_of_others) / seconds)
     files = [directory / RESULT for directory in case.directories]
-    solve_times = [_solver_time_and_share(file) if kind == SOLVED else (0.0, nan) for file in files]
-    journals = [page for file in files for page in journal_directory(file).glob("rank-*")]
+    solve_times = [
+        _solver_time_and_busy_fraction(file) if solver_kind == SOLVED else (0.0, nan) for file in files
+    ]
+    journals = [journal for file in files for journal in journal_directory(file).glob("rank-*")]
     prefixes = (FIRST_RANK_PREFIX, OTHER_RANKS_PREFIX)[:rank_count]
     return CommandRunCost(
         seconds=seconds,
@@ -159,19 +162,21 @@ def run_case(command: Sequence[str], case: SweepCase, rank_count: int, fresh: bo
         solver_seconds=sum(solve_seconds for solve_seconds, _ in solve_times),
         peak_memory=tuple(_peak_memory(case, prefix) for prefix in prefixes),
         file_bytes=sum(file.stat().st_size for file in files),
-        journal_bytes=sum(page.stat().st_size for page in journals),
+        journal_bytes=sum(journal.stat().st_size for journal in journals),
         processors_busy_elsewhere=float(other_load),
-        busy_fraction=min(busy_fractions for _, busy_fractions in solve_times),
+        busy_fraction=min(busy_fraction for _, busy_fraction in solve_times),
     )
 
 
-def _start_command(command: Sequence[str], kind: str, directory: Path, fresh: bool) -> subprocess.Popen[str]:
+def _start_command(
+    command: Sequence[str], solver_kind: str, directory: Path, fresh: bool
+) -> subprocess.Popen[str]:
     notes = directory / NOTES
     shutil.rmtree(notes, ignore_errors=True)
     notes.mkdir()
     run = ["run", CONFIG_NAME, "-o", RESULT, *(["--fresh"] if fresh else [])]
     return subprocess.Popen(
-        [*command, str(notes), kind, *run],
+        [*command, str(notes), solver_kind, *run],
         cwd=directory,
         env=dict(os.environ),  # as at the start of this process: MPI adds variables only to the C environment
         stdout=subprocess.PIPE,
@@ -180,13 +185,13 @@ def _start_command(command: Sequence[str], kind: str, directory: Path, fresh: bo
     )
 
 
-def _printed_seconds(process: subprocess.Popen[str], kind: str) -> float:
+def _printed_seconds(process: subprocess.Popen[str], solver_kind: str) -> float:
     """Waits for the command to finish, and returns the time in s that the command printed; nan if the command
     was killed on purpose. Raises EnvironmentIncomplete if the command failed."""
     output, errors = process.communicate()
     match = re.search(r"points? in ([\d.]+) s on", output)
     stopped = match is None or "stopped by" in output
-    if kind != KILLED and (stopped or process.returncode not in (0, 1)):
+    if solver_kind != KILLED and (stopped or process.returncode not in (0, 1)):
         raise EnvironmentIncomplete(f"a run of the benchmark failed: {' '.join(errors.split())[-500:]}")
     return float(match[1]) if match else nan
 
@@ -198,7 +203,7 @@ def _peak_memory(case: SweepCase, rank: str) -> int:
     return max((int(file.read_text()) for file in notes), default=0)
 
 
-def _solver_time_and_share(file: Path) -> tuple[float, float]:
+def _solver_time_and_busy_fraction(file: Path) -> tuple[float, float]:
     """(time in the solver in s, fraction of the time of all ranks that was spent on points), from a result
     file."""
     view = read_view(file)

@@ -85,12 +85,12 @@ def measure_solved_sweeps(folder: Path, run: RunCase, quick: bool, ranks: Sequen
     # Not timed: the first runs may compile the formulas.
     run(spectrum_case(folder / "first", "first", 8, SOLVED), 1)
     run(cycle_case(folder / "first_cycle", 1, SOLVED), 1)
-    entries = [(spectra, n, rounds) for n in ranks]
+    entries = [(spectra, rank_count, rounds) for rank_count in ranks]
     if len(ranks) > 1:
         halves = [spectrum_case(folder / f"half{i}", TWO_COMMAND_CASE, count // 2, SOLVED) for i in (0, 1)]
-        separate = replace(halves[0], points=count, directories=halves[0].directories + halves[1].directories)
-        entries.append((separate, 1, rounds))
-    return measure_in_turn(run, entries + [(cycles, n, cycle_rounds) for n in ranks])
+        both = replace(halves[0], points=count, directories=halves[0].directories + halves[1].directories)
+        entries.append((both, 1, rounds))
+    return measure_in_turn(run, entries + [(cycles, rank_count, cycle_rounds) for rank_count in ranks])
 
 
 def measure_instant_sweeps(
@@ -102,7 +102,7 @@ def measure_instant_sweeps(
     entries = []
     for size in sizes:
         case = spectrum_case(folder / f"instant{size}", "no solver", size, INSTANT)
-        entries += [(case, n, 1 if size >= SINGLE_RUN_POINTS else rounds) for n in ranks]
+        entries += [(case, rank_count, 1 if size >= SINGLE_RUN_POINTS else rounds) for rank_count in ranks]
     measurements = measure_in_turn(run, entries)
     for size in sizes:
         killed = spectrum_case(folder / f"killed{size}", KILLED, size, KILLED)
@@ -112,13 +112,13 @@ def measure_instant_sweeps(
     return measurements
 
 
-def measure_in_turn(run: RunCase, entries: Sequence[tuple[SweepCase, int, int]]) -> list[Measurement]:
-    """Measurements of sweeps, run in turn; entries: (case, number of ranks, number of rounds)."""
-    runs: list[list[CommandRunCost]] = [[] for _ in entries]
-    for i in timing_order([rounds for _, _, rounds in entries]):
-        case, ranks, _ = entries[i]
+def measure_in_turn(run: RunCase, planned_runs: Sequence[tuple[SweepCase, int, int]]) -> list[Measurement]:
+    """Measurements of sweeps, run in turn; planned_runs: (case, number of ranks, number of rounds)."""
+    runs: list[list[CommandRunCost]] = [[] for _ in planned_runs]
+    for i in timing_order([rounds for _, _, rounds in planned_runs]):
+        case, ranks, _ = planned_runs[i]
         runs[i].append(run(case, ranks))
-    measured = zip(entries, runs, strict=True)
+    measured = zip(planned_runs, runs, strict=True)
     return [sweep_measurement(case, ranks, own_runs) for (case, ranks, _), own_runs in measured]
 
 
@@ -237,6 +237,6 @@ def growth_power(start: Measurement, small: Measurement, large: Measurement) -> 
     """
     if small is start or min(small.seconds, large.seconds) <= start.seconds:
         return nan
-    times = (large.seconds - start.seconds) / (small.seconds - start.seconds)
+    time_ratio = (large.seconds - start.seconds) / (small.seconds - start.seconds)
     points = [m.extra["points"] - start.extra["points"] for m in (large, small)]
-    return log(times) / log(points[0] / points[1])
+    return log(time_ratio) / log(points[0] / points[1])

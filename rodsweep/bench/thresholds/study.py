@@ -30,8 +30,8 @@ from ..study import (
 ONSET, HOPF = "onset", "hopf"
 """Kinds of thresholds, which are also names of the races, of fields of `ThresholdCase`, and of kinds in
 rodsweep's results."""
-WRONG_THRESHOLD = 0.3
-"""With at least this relative error, a computed threshold is a different threshold of the rod, and the exact
+MIN_WRONG_ERROR = 0.3
+"""A computed threshold with at least this relative error is a different threshold of the rod, and the exact
 threshold was missed."""
 
 
@@ -57,17 +57,17 @@ class ThresholdCase:
     def rod(self, F: float) -> Rod:
         return Rod(F=F, k1=self.k1, k2=self.k2, gamma3=self.gamma3, taper=self.taper, material=self.material)
 
-    def error_of(self, kind: str, computed: float) -> float:
-        """Relative error of the computed threshold `computed` of the kind `kind`, ONSET or HOPF.
+    def error_of(self, threshold_kind: str, computed: float) -> float:
+        """Relative error of the computed threshold `computed` of the kind `threshold_kind`, ONSET or HOPF.
 
         nan if the rod has no threshold and no threshold was found; inf if the threshold was missed, or if a
         threshold was found that the rod does not have.
         """
-        exact = getattr(self, kind)
+        exact = getattr(self, threshold_kind)
         if isnan(exact):
             return nan if isnan(computed) else inf
         error = abs(computed - exact) / exact
-        return error if error < WRONG_THRESHOLD else inf
+        return error if error < MIN_WRONG_ERROR else inf
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,32 +135,37 @@ def thresholds_study(quick: bool, peers: PeerContribution) -> BenchmarkReport:
     """Runs the benchmark and returns the results: tables of the onset and of the Hopf point, for uniform rods
     and for arms. quick: whether to use fewer rods and rounds."""
     warm_up()
-    cases, rounds = (QUICK_CASES, QUICK_ROUND_COUNT) if quick else (UNIFORM_CASES, ROUND_COUNT)
-    blocks = [" ".join([introduction(rounds), *peers.notes])]
+    cases, round_count = (QUICK_CASES, QUICK_ROUND_COUNT) if quick else (UNIFORM_CASES, ROUND_COUNT)
+    blocks = [" ".join([introduction(round_count), *peers.notes])]
     measurements = []
     for group in (cases, ARM_CASES):
         blocks += [ARM_INTRODUCTION] if group is ARM_CASES else []
         for kind in KIND_TITLES:
-            rod_measurements = measure_rods(kind, group, contenders(kind) + peers.of(kind), rounds)
+            rod_measurements = measure_rods(kind, group, contenders(kind) + peers.of(kind), round_count)
             blocks.append(threshold_table(kind, rod_measurements))
             measurements += rod_measurements
     return BenchmarkReport("thresholds", "\n\n".join([*blocks, *peers.skipped]), measurements, "rod")
 
 
-def contenders(kind: str) -> list[TimedMethod]:
-    """Contenders of the race for the threshold `kind`: rodsweep with and without its proof of
+def contenders(threshold_kind: str) -> list[TimedMethod]:
+    """Contenders of the race for the threshold `threshold_kind`: rodsweep with and without its proof of
     completeness."""
-    runs = {setting: partial(rodsweep_threshold, kind, proves) for setting, proves in PROOF_SETTINGS.items()}
+    runs = {
+        setting: partial(rodsweep_threshold, threshold_kind, proves)
+        for setting, proves in PROOF_SETTINGS.items()
+    }
     return [TimedMethod("rodsweep, all changes", name, RODSWEEP_GROUP, run) for name, run in runs.items()]
 
 
-def rodsweep_threshold(kind: str, certify: bool, case: ThresholdCase) -> FirstThreshold:
-    """The first threshold of the kind `kind` by rodsweep, from the list of all thresholds of the rod.
-    certify: whether rodsweep proves this list complete."""
+def rodsweep_threshold(threshold_kind: str, certify: bool, case: ThresholdCase) -> FirstThreshold:
+    """The first threshold of the kind `threshold_kind` by rodsweep, from the list of all thresholds of the
+    rod. certify: whether rodsweep proves this list complete."""
     rod = case.rod(0.0)
     F_max = F_MAX if rod.is_uniform_and_linear else ARM_F_MAX
     result = solve_thresholds(rod, ThresholdsRequest(F_max, 1e-10, certify, 64))
-    threshold = next((change.value for change in result.thresholds if change.kind.name == kind), nan)
+    threshold = next(
+        (change.value for change in result.thresholds if change.kind.name == threshold_kind), nan
+    )
     if not rod.is_uniform_and_linear:
         return FirstThreshold(threshold)
     search = result.search_result
@@ -168,25 +173,29 @@ def rodsweep_threshold(kind: str, certify: bool, case: ThresholdCase) -> FirstTh
 
 
 def measure_rods(
-    kind: str, cases: Iterable[ThresholdCase], contenders: Sequence[TimedMethod], rounds: int
+    threshold_kind: str, cases: Iterable[ThresholdCase], contenders: Sequence[TimedMethod], round_count: int
 ) -> list[Measurement]:
-    """Measurements of the contenders `contenders`, which find the threshold `kind`, on each rod. kind: ONSET
-    or HOPF."""
+    """Measurements of the contenders `contenders`, which find the threshold `threshold_kind`, on each rod.
+    threshold_kind: ONSET or HOPF."""
     measurements = []
     for case in cases:
-        name = f"{case.name}, {KIND_TITLES[kind]}"
-        measurements += measure_case(name, case, contenders, rounds, partial(threshold_error, case, kind))
+        name = f"{case.name}, {KIND_TITLES[threshold_kind]}"
+        measurements += measure_case(
+            name, case, contenders, round_count, partial(threshold_error, case, threshold_kind)
+        )
     return measurements
 
 
-def threshold_error(case: ThresholdCase, kind: str, computed_threshold: FirstThreshold) -> dict[str, Any]:
-    """Fields of `Measurement` for the computed threshold `computed_threshold` of the kind `kind`: error,
-    failure, cost, and correct decimal digits per eigenproblem (0 if the threshold was missed)."""
-    error = case.error_of(kind, computed_threshold.force)
+def threshold_error(
+    case: ThresholdCase, threshold_kind: str, computed_threshold: FirstThreshold
+) -> dict[str, Any]:
+    """Fields of `Measurement` for the computed threshold `computed_threshold` of the kind `threshold_kind`:
+    error, failure, cost, and correct decimal digits per eigenproblem (0 if the threshold was missed)."""
+    error = case.error_of(threshold_kind, computed_threshold.force)
     outcome = "missed" if isnan(computed_threshold.force) else f"wrong ({computed_threshold.force:.2f})"
     digits = -log10(min(max(error, 10**-MAX_DIGITS), 1.0))
     values = {name: getattr(computed_threshold, field) for name, field in WORK_FIELDS.items()}
-    values["digits"] = nan if isnan(getattr(case, kind)) else digits / computed_threshold.solves
+    values["digits"] = nan if isnan(getattr(case, threshold_kind)) else digits / computed_threshold.solves
     return {"error": error, "failure": outcome if isinf(error) else "", "extra": values}
 
 
@@ -212,12 +221,12 @@ def threshold_table(kind: str, measurements: Sequence[Measurement]) -> str:
     )
 
 
-def introduction(rounds: int) -> str:
+def introduction(round_count: int) -> str:
     """Description of the tables of uniform rods for the report."""
     return (
         f"Relative error of the first onset and of the first Hopf point; medians over the rods and "
-        f"{counted(rounds, 'round')}. rodsweep finds all thresholds in 0 < F < {F_MAX:g} (or below k1) in "
-        "one search. In addition to eigenproblems it evaluates the determinant D; each change is located to "
-        "rounding error, whatever accuracy is requested. Digits = -log10(error), 0 where the threshold was "
-        "missed."
+        f"{counted(round_count, 'round')}. rodsweep finds all thresholds in 0 < F < {F_MAX:g} (or below k1) "
+        "in one search. In addition to eigenproblems it evaluates the determinant D; each change is located "
+        "to rounding error, whatever accuracy is requested. Digits = -log10(error), 0 where the threshold "
+        "was missed."
     )

@@ -1,1 +1,2 @@
-"""D of arms that vary along their length, from propagators of elements, and all computations with this D."""
+"""D of arms, which vary along their length or are not of linear material, from propagators of elements, and
+all computations with this D."""

@@ -74,32 +74,34 @@ def interpolated_family(path: ParameterPath, low: float, high: float, W: float) 
     """The family of the arms of `path` with p from `low` to `high`, for |w| <= W; None if the arms are
     not smooth in p, or the propagators have too many entries. Raises ValueError at a p without a valid arm,
     and FloatingPointError if no elements resolve an arm."""
-    for node_count, tail_fraction in ARM_FAMILY_SETTINGS.trials():
-        scale = tail_fraction * (high - low)
+    for node_count, spacing in ARM_FAMILY_SETTINGS.trials():
+        scale = spacing * (high - low)
         arms = [path.rod_at(value) for value in _interpolation_points(low, high, scale, node_count).tolist()]
         samples = coefficient_samples(arms)
-        # What the coefficients along the arm do not resolve, the propagators made of them cannot.
+        # If the series of the coefficients does not converge, the series of the propagators cannot converge.
         if not _series_converges(samples):
             continue
         elements = elements_for(arms, samples, W)
-        entries = len(elements.lengths) * ARM_ELEMENT_SETTINGS.max_terms * PADDED
-        if entries > ARM_FAMILY_SETTINGS.max_propagator_entries:
+        entry_count = len(elements.lengths) * ARM_ELEMENT_SETTINGS.max_terms * PADDED
+        if entry_count > ARM_FAMILY_SETTINGS.max_propagator_entries:
             return None
-        values = element_propagators([rod.F for rod in arms], elements.local, elements.lengths, W)
-        if _has_small_coefficient_tail(values, ARM_FAMILY_SETTINGS.converged_tail_ratio):
-            coefficients = np.tensordot(_chebyshev_coefficient_matrix(node_count), values, 1)
+        propagators = element_propagators([rod.F for rod in arms], elements.local, elements.lengths, W)
+        if _has_small_coefficient_tail(propagators, ARM_FAMILY_SETTINGS.converged_tail_ratio):
+            coefficients = np.tensordot(_chebyshev_coefficient_matrix(node_count), propagators, 1)
             # The last coefficients show truncation errors, which may exceed rounding errors of small entries.
-            largest_entry = np.abs(values).max(axis=0) + np.abs(coefficients[-2:]).sum(axis=0) / ROUND_OFF
-            sizes = np.stack([largest_entry[:, 0], largest_entry[:, 1:].sum(axis=1)], axis=1)
-            return ArmFamily(low, high, scale, W, np.ascontiguousarray(coefficients), sizes)
+            largest_entry = (
+                np.abs(propagators).max(axis=0) + np.abs(coefficients[-2:]).sum(axis=0) / ROUND_OFF
+            )
+            entry_sizes = np.stack([largest_entry[:, 0], largest_entry[:, 1:].sum(axis=1)], axis=1)
+            return ArmFamily(low, high, scale, W, np.ascontiguousarray(coefficients), entry_sizes)
     return None
 
 
 def has_smooth_coefficients(path: ParameterPath, low: float, high: float) -> bool:
     """Whether the arms' coefficients are smooth in p from `low` to `high`, as a family needs: a cheap test.
     Raises ValueError at a p without a valid arm."""
-    for node_count, tail_fraction in reversed(ARM_FAMILY_SETTINGS.trials()):
-        p = _interpolation_points(low, high, tail_fraction * (high - low), node_count)
+    for node_count, spacing in reversed(ARM_FAMILY_SETTINGS.trials()):
+        p = _interpolation_points(low, high, spacing * (high - low), node_count)
         if _series_converges(coefficient_samples([path.rod_at(value) for value in p.tolist()])):
             return True
     return False
@@ -111,9 +113,10 @@ def _series_converges(samples: CoefficientSamples) -> bool:
     return _has_small_coefficient_tail(np.moveaxis(np.array(samples.local), 1, 0), tolerance)
 
 
-def _interpolation_points(low: float, high: float, scale: float, count: int) -> Array:
-    """Increasing values of p, low to high, of the interpolated arms, (count,); scale: see `ArmFamily`."""
-    t = (chebyshev_points(count) + 1) / 2
+def _interpolation_points(low: float, high: float, scale: float, point_count: int) -> Array:
+    """Increasing values of p, low to high, of the interpolated arms, (point_count,); scale: see
+    `ArmFamily`."""
+    t = (chebyshev_points(point_count) + 1) / 2
     if scale < LINEAR_SCALE:
         t = np.expm1(t * math.log1p((high - low) / scale)) * scale / (high - low)
     # Beyond the interval, by rounding, the model may have no arm.
@@ -124,17 +127,19 @@ def _has_small_coefficient_tail(values: Array, tolerance: float) -> bool:
     """Whether the last Chebyshev coefficients of each values[:, i] are <= tolerance * max|values[:, i]|."""
     other_dimensions = tuple(range(2, values.ndim))
     last_coefficients = np.tensordot(_chebyshev_coefficient_matrix(len(values))[-2:], values, 1)
-    size = np.abs(values).max(axis=(0, *other_dimensions))
-    return bool((np.abs(last_coefficients).max(axis=(0, *other_dimensions)) <= tolerance * size).all())
+    largest_values = np.abs(values).max(axis=(0, *other_dimensions))
+    return bool(
+        (np.abs(last_coefficients).max(axis=(0, *other_dimensions)) <= tolerance * largest_values).all()
+    )
 
 
 @cache
-def chebyshev_points(number: int) -> Array:
-    """Chebyshev points of [-1, 1] including both ends, (number,), increasing."""
-    return np.asarray(-np.cos(np.pi * np.arange(number) / (number - 1)))
+def chebyshev_points(count: int) -> Array:
+    """Chebyshev points of [-1, 1] including both ends, (count,), increasing."""
+    return np.asarray(-np.cos(np.pi * np.arange(count) / (count - 1)))
 
 
 @cache
-def _chebyshev_coefficient_matrix(number: int) -> Array:
-    """Matrix that maps values at `number` Chebyshev points to Chebyshev coefficients, (number, number)."""
-    return np.asarray(np.linalg.inv(chebyshev.chebvander(chebyshev_points(number), number - 1)))
+def _chebyshev_coefficient_matrix(count: int) -> Array:
+    """Matrix that maps values at `count` Chebyshev points to Chebyshev coefficients, (count, count)."""
+    return np.asarray(np.linalg.inv(chebyshev.chebvander(chebyshev_points(count), count - 1)))

@@ -27,8 +27,9 @@ PropagatorsUpToW = tuple[float, Array]
 
 
 class ArmDeterminant:
-    """Characteristic determinant D(w) of one arm. Propagators for |w| <= W are made once and reused. known:
-    (W, propagators) of this arm made earlier. FloatingPointError if `max_elements` do not resolve the arm."""
+    """Characteristic determinant D(w) of one arm. Propagators for |w| <= W are made once and reused.
+    propagator_set: (W, propagators) of this arm made earlier. Values raise FloatingPointError if
+    `max_elements` elements do not resolve the arm."""
 
     def __init__(self, rod: Rod, propagator_set: PropagatorsUpToW | None = None):
         self.rod = rod
@@ -45,14 +46,16 @@ class ArmDeterminant:
         W, polynomials = self.propagators_for(abs(w))
         return determinant_from_propagators(complex(w), W, polynomials)
 
-    def value_on_finer_elements(self, w: complex, factor: float) -> DeterminantValue:
-        """D and D' at w times exp(-S), from elements made for factor * |w|, factor >= 1. The differences
+    def value_on_finer_elements(self, w: complex, w_factor: float) -> DeterminantValue:
+        """D and D' at w times exp(-S), from elements made for w_factor * |w|, w_factor >= 1. The differences
         between values for several factors show the rounding error of D."""
-        W, polynomials = self.propagators_for(factor * abs(w), ARM_ELEMENT_SETTINGS.max_compared_reuse_ratio)
+        W, polynomials = self.propagators_for(
+            w_factor * abs(w), ARM_ELEMENT_SETTINGS.max_compared_reuse_ratio
+        )
         return determinant_from_propagators(complex(w), W, polynomials)
 
-    def wave_number(self, w: complex) -> float:
-        """Bound of |q| of the exponentials exp(+-q u) at w, averaged along the arm, in 1/L."""
+    def mean_wave_number(self, w: complex) -> float:
+        """Mean along the arm of the local bounds of |q| in the exponentials exp(+-q u) at w, in 1/L."""
         return mean_wave_number_and_w_scale(w, self.samples)[0]
 
     def w_scale(self, w: complex) -> float:
@@ -75,9 +78,9 @@ class ArmDeterminant:
         propagators are made. max_ratio: by default `ARM_ELEMENT_SETTINGS.max_reuse_ratio`."""
         max_ratio = ARM_ELEMENT_SETTINGS.max_reuse_ratio if max_ratio is None else max_ratio
         min_W = max(min_W, ARM_ELEMENT_SETTINGS.min_W)
-        for level in self._known_propagators:
-            if min_W <= level[0] <= max_ratio * min_W:
-                return level
+        for known_set in self._known_propagators:
+            if min_W <= known_set[0] <= max_ratio * min_W:
+                return known_set
         W = ARM_ELEMENT_SETTINGS.w_bound_ratio * min_W
         elements = elements_for([self.rod], self._coefficient_samples, W)
         propagator_set = W, element_propagators([self.rod.F], elements.local, elements.lengths, W)[0]
@@ -87,8 +90,8 @@ class ArmDeterminant:
 
 class CoefficientSamples(NamedTuple):
     """Samples of n arms between the breaks of their profile. points: material coordinates u, (points,).
-    local: `LocalCoefficients` at the points, each (n, points). squares: c2 gamma2 + c3 gamma3, F c3 g, g nu
-    gamma2 c3 and c2 c3 gamma2 gamma3, (4, n, points)."""
+    local: `LocalCoefficients` at the points, each (n, points). squares: coefficients of z+-, as in
+    `ArmSamples`, (4, n, points)."""
 
     points: Array
     local: LocalCoefficients
@@ -130,7 +133,7 @@ def elements_for(rods: list[Rod], samples: CoefficientSamples, W: float) -> Prop
         edges = halved_edges
     max_elements = ARM_ELEMENT_SETTINGS.max_elements
     raise FloatingPointError(
-        f"D of this arm at |w| = {W:g} needs more than the maximum of {max_elements} elements"
+        f"the determinant of this arm at |w| = {W:g} needs more than the maximum of {max_elements} elements"
     )
 
 
@@ -140,12 +143,13 @@ def arm_determinant(rod: Rod) -> ArmDeterminant:
     return ArmDeterminant(rod)
 
 
-def wave_number(rod: Rod, w: complex) -> float:
-    """Bound of |q| in the exponentials exp(+-q u) of the eigenfunction at w, in 1/L; for an arm that is not
-    uniform or not of linear material, the average along the arm."""
+def eigenfunction_wave_number(rod: Rod, w: complex) -> float:
+    """Bound of |q| in the exponentials exp(+-q u) of the eigenfunction at w, in 1/L. For an arm that is not
+    uniform or not of linear material the result is the mean along the arm of the local bounds, which is not a
+    bound."""
     if rod.is_uniform_and_linear:
         return newton_correction_and_scales(w, rod.coefficients)[2]
-    return arm_determinant(rod).wave_number(w)
+    return arm_determinant(rod).mean_wave_number(w)
 
 
 def forget_arm_determinants() -> None:

@@ -64,23 +64,24 @@ class _DoubleEigenvalueStep(NamedTuple):
         """Errors of x and p after the last step."""
         return max(self.rounding_error_of_x, abs(self.in_x)), max(self.rounding_error_of_p, abs(self.in_p))
 
-    def is_converged(self, last: float) -> bool:
+    def is_converged(self, previous_x_step: float) -> bool:
         """Whether Newton's method has converged: the step in p is of the size of rounding errors, and the
-        step in x too, or more than half as long as `last`, the |change of x| in the previous step."""
+        step in x too, or more than half as long as `previous_x_step`, the |change of x| in the previous
+        step."""
         converged = ROOT_NEWTON_SETTINGS.converged_step_in_rounding_errors
         return abs(self.in_p) <= converged * self.rounding_error_of_p and (
             abs(self.in_x) <= converged * self.rounding_error_of_x
-            or abs(self.in_x) > ROOT_NEWTON_SETTINGS.converging_step_ratio * last
+            or abs(self.in_x) > ROOT_NEWTON_SETTINGS.converging_step_ratio * previous_x_step
         )
 
 
 class ArmAlongPath:
-    """D of the arms of one path, as a function of the path variable p. family_at: function that returns the
-    family of arms that contains p, or None to compute D from the arm at p itself."""
+    """D of the arms of one path, as a function of the path variable p. family_at: function from p to the
+    family of arms that contains p, or to None if D is computed from the arm at p itself."""
 
-    def __init__(self, path: ParameterPath, family: Callable[[float], ArmFamily | None] = lambda p: None):
+    def __init__(self, path: ParameterPath, family_at: Callable[[float], ArmFamily | None] = lambda p: None):
         self.path = path
-        self.family_at = family
+        self.family_at = family_at
 
     def determinant(self, p: float) -> ArmDeterminant:
         """The determinant D of the arm at p."""
@@ -101,14 +102,15 @@ class ArmAlongPath:
         value = determinant.value(w)
         return w, -self.derivative_by_p(w, p, value.log_scale) / value.D_w, error
 
-    def derivative_by_p(self, w: complex, p: float, S: float) -> complex:
-        """dD/dp exp(-S) at w and p, by a difference between neighbouring arms. S: logarithm of the scale."""
-        stencil, h = self._difference_stencil(p, math.inf)
+    def derivative_by_p(self, w: complex, p: float, log_scale: float) -> complex:
+        """dD/dp exp(-S) at w and p, by a difference between neighbouring arms. log_scale: logarithm of the
+        scale."""
+        stencil, step = self._difference_stencil(p, math.inf)
         slope = 0j
         for offset, weight in stencil:
-            neighbour = self.determinant(p + offset * h).value(w)
-            slope += weight * neighbour.D * math.exp(neighbour.log_scale - S)
-        return slope / h
+            neighbour = self.determinant(p + offset * step).value(w)
+            slope += weight * neighbour.D * math.exp(neighbour.log_scale - log_scale)
+        return slope / step
 
     def double_eigenvalue(self, x: float, p: float, expected_distance: float) -> LocatedEigenvalue:
         """The double real eigenvalue D = D_w = 0 near the guess (x, p), by Newton's method.
@@ -117,9 +119,9 @@ class ArmAlongPath:
         more than twice `expected_distance` or to no valid arm, if the sign of x changes, if the Jacobian is
         singular, or without convergence.
         """
-        start = x
-        first = p
-        last = math.inf
+        start_x = x
+        start_p = p
+        previous_x_step = math.inf
         jacobian: _DoubleEigenvalueJacobian | None = None
         uses_families = True
         for _ in range(2 * ROOT_NEWTON_SETTINGS.max_steps):
@@ -130,46 +132,54 @@ class ArmAlongPath:
             x += step.in_x
             p += step.in_p
             # Negated comparisons are also true for NaN.
-            if not abs(p - first) <= 2 * expected_distance or not x * start > 0 or not self._is_valid_at(p):
+            if (
+                not abs(p - start_p) <= 2 * expected_distance
+                or not x * start_x > 0
+                or not self._is_valid_at(p)
+            ):
                 return FAILED_EIGENVALUE
-            if step.is_converged(last):
+            if step.is_converged(previous_x_step):
                 if family is None:
                     return LocatedEigenvalue(x, p, *step.errors)
                 # The interpolation error of a family is relative to its largest p. The last steps use D of
                 # the arms themselves.
                 uses_families = False
-            last = abs(step.in_x)
+            previous_x_step = abs(step.in_x)
         return FAILED_EIGENVALUE
 
     def _jacobian(self, x: float, p: float, expected_distance: float) -> _DoubleEigenvalueJacobian:
         """Derivatives of D and D_w at real w = x and p, by differences; expected_distance: see
         `double_eigenvalue`."""
-        S = self._determinant_value(x, p).log_scale
+        log_scale = self._determinant_value(x, p).log_scale
         h = DETERMINANT_SETTINGS.second_difference_step_ratio * abs(x)
-        D_ww = (self._real_determinant(x + h, p, S)[1] - self._real_determinant(x - h, p, S)[1]) / (2 * h)
+        D_ww = (
+            self._real_determinant(x + h, p, log_scale)[1] - self._real_determinant(x - h, p, log_scale)[1]
+        ) / (2 * h)
         stencil, k = self._difference_stencil(p, ROOT_NEWTON_SETTINGS.jacobian_step_ratio * expected_distance)
-        samples = [(weight, self._real_determinant(x, p + offset * k, S)) for offset, weight in stencil]
+        samples = [
+            (weight, self._real_determinant(x, p + offset * k, log_scale)) for offset, weight in stencil
+        ]
         D_p, D_wp = (sum(weight * value[i] for weight, value in samples) / k for i in range(2))
-        return _DoubleEigenvalueJacobian(S, D_p, D_ww, D_wp)
+        return _DoubleEigenvalueJacobian(log_scale, D_p, D_ww, D_wp)
 
     def _newton_step(
         self, x: float, p: float, jacobian: _DoubleEigenvalueJacobian, family: ArmFamily | None
     ) -> _DoubleEigenvalueStep:
-        """One step of Newton's method for D = D_w = 0 from real w = x and p. D is that of the `family`, or of
-        the arm at p itself without a family. The step is nan if the Jacobian is singular."""
+        """One step of Newton's method for D = D_w = 0 from real w = x and p. D is computed from the `family`,
+        or from the arm at p itself without a family. The step is nan if the Jacobian is singular."""
         if family is not None:
             W, polynomials = propagators_at(family, p)
         else:
             W, polynomials = self.determinant(p).propagators_for(abs(x))
         value = determinant_from_propagators(complex(x, 0.0), W, polynomials)
-        S, D_p, D_ww, D_wp = jacobian
-        scale = math.exp(value.log_scale - S)
+        log_scale, D_p, D_ww, D_wp = jacobian
+        scale = math.exp(value.log_scale - log_scale)
         D = value.D.real * scale
         D_w = value.D_w.real * scale
         cross = D_w * D_wp - D_p * D_ww
         if cross == 0 or not math.isfinite(cross):
             return _DoubleEigenvalueStep(math.nan, math.nan, math.nan, math.nan)
-        rounding = rounding_error_from_propagators(complex(x, 0.0), W, polynomials, S)
+        rounding = rounding_error_from_propagators(complex(x, 0.0), W, polynomials, log_scale)
         total_rounding = rounding + ROUND_OFF * abs(p * D_p)
         rounding_of_slope = rounding / max(abs(x), EXPONENT_SETTINGS.min_divisor)
         x_step = (D_p * D_w - D_wp * D) / cross
@@ -189,10 +199,10 @@ class ArmAlongPath:
             return determinant_of_family_arm(family, complex(x, 0.0), p)
         return self.determinant(p).value(complex(x, 0.0))
 
-    def _real_determinant(self, x: float, p: float, S: float) -> tuple[float, float]:
+    def _real_determinant(self, x: float, p: float, log_scale: float) -> tuple[float, float]:
         """D exp(-S) and D_w exp(-S), real, at real w = x, for the arm at p."""
         value = self._determinant_value(x, p)
-        scale = math.exp(value.log_scale - S)
+        scale = math.exp(value.log_scale - log_scale)
         return value.D.real * scale, value.D_w.real * scale
 
     def _difference_stencil(self, p: float, max_step: float) -> tuple[tuple[tuple[int, float], ...], float]:

@@ -20,8 +20,8 @@ from .value import determinant_from_propagators, path_value_from_propagators
 
 @compiled
 def write_propagators(family: ArmFamily, p: float, polynomials: Array, p_derivatives: Array) -> None:
-    """Writes the propagators of the arm at p into polynomials, and their derivatives by p into changes, both
-    (elements, terms, PADDED)."""
+    """Writes the propagators of the arm at p into polynomials, and their derivatives by p into p_derivatives,
+    both (elements, terms, PADDED)."""
     half = (family.p_high - family.p_low) / 2
     t = (p - (family.p_low + family.p_high) / 2) / half
     if family.scale < LINEAR_SCALE:
@@ -77,7 +77,7 @@ def _sum_series(series: Array, T: Array, rates: Array, values: Array, slopes: Ar
 
 @compiled
 def propagators_at(family: ArmFamily, p: float) -> tuple[float, Array]:
-    """(W, propagators for |w| <= W, (elements, terms, PADDED)) of the arm at p of a family."""
+    """Returns (W, propagators for |w| <= W, (elements, terms, PADDED)) of the arm at p of a family."""
     polynomials = np.empty(family.coefficients.shape[1:])
     write_propagators(family, p, polynomials, np.empty_like(polynomials))
     return family.largest_w, polynomials
@@ -96,8 +96,8 @@ def determinant_of_family_arm(family: ArmFamily, w: complex, p: float) -> Determ
 @compiled
 def eigenvalue_of_family_arm(family: ArmFamily, guess: complex, p: float) -> tuple[complex, complex, float]:
     """Returns (w, dw/dp, error of w) of the eigenvalue near `guess`, for the arm at p of a family. Newton's
-    method ends when rounding stops the decrease of the steps. A real guess gives a real w. Not for nearly
-    double eigenvalues."""
+    method ends when rounding stops the decrease of the steps. A real guess gives a real w. The function is
+    not for nearly double eigenvalues."""
     polynomials = np.empty(family.coefficients.shape[1:])
     p_derivatives = np.empty_like(polynomials)
     write_propagators(family, p, polynomials, p_derivatives)

@@ -20,9 +20,9 @@ from ..exponents import EXPONENT_SETTINGS
 class ArmSamples(NamedTuple):
     """Coefficients of z+-(w) at points along an arm, and the weights of a quadrature over these points.
 
-    squares: coefficients of the powers of w in z+-, the squares of the exponents, in the order of the
-    module docstring: c2 gamma2 + c3 gamma3, F c3 g, g nu gamma2 c3, c2 c3 gamma2 gamma3, (4, points).
-    weights: (points,).
+    squares: coefficients of z+-, the squared exponents (see the module docstring), (4, points): c2 gamma2 +
+    c3 gamma3 (of w) and F c3 g (subtracted) in the mean of z+ and z-; g nu gamma2 c3 (of w) and c2 c3 gamma2
+    gamma3 (of w^2) in P^2. weights: quadrature weights, (points,).
     """
 
     squares: Array

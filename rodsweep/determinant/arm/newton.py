@@ -1,7 +1,7 @@
 """Newton's method on D of an arm without a closed form, and the errors of roots of D.
 
-A level is a pair (W, propagators that are valid for |w| <= W). Compiled functions take a level as argument;
-the public functions choose the level by |w|.
+Compiled functions take a propagator set, a pair (W, propagators that are valid for |w| <= W), as the argument
+`level`; the public functions choose the propagator set by |w|.
 """
 
 import math
@@ -74,7 +74,8 @@ def _newton_from_guess(guess: complex, level: PropagatorsUpToW, last: float) -> 
     propagators of `level`.
 
     last: length of the previous step; the iteration ends at a step that hardly decreases
-    (`ROOT_NEWTON_SETTINGS.converging_step_ratio`). The error is -1 if |w| exceeds the bound W of the level.
+    (`ROOT_NEWTON_SETTINGS.converging_step_ratio`). The error is -1 if |w| exceeds W, the bound of the
+    propagators.
     """
     w = guess
     for _ in range(ROOT_NEWTON_SETTINGS.max_refinements):
@@ -128,13 +129,13 @@ def _parabola_roots_by_propagators(middle: complex, level: PropagatorsUpToW) -> 
 
 
 def _propagators_up_to(w: complex, determinant: ArmDeterminant) -> PropagatorsUpToW:
-    """(W, propagators) that are valid for D and D'' at w."""
+    """Returns (W, propagators) that are valid for D and D'' at w."""
     return determinant.propagators_for((1 + DETERMINANT_SETTINGS.second_difference_step_ratio) * abs(w))
 
 
-def second_derivative(w: complex, S: float, determinant: ArmDeterminant) -> complex:
+def second_derivative(w: complex, log_scale: float, determinant: ArmDeterminant) -> complex:
     """D'' exp(-S) of an arm at w, by a central difference of D'; real for real w."""
-    return _second_derivative(complex(w), S, _propagators_up_to(w, determinant))
+    return _second_derivative(complex(w), log_scale, _propagators_up_to(w, determinant))
 
 
 def root_error(w: complex, determinant: ArmDeterminant) -> float:

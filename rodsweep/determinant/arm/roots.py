@@ -28,40 +28,39 @@ from .newton import (
 
 
 def refine_mesh_eigenvalues(
-    raw: Complex, determinant: ArmDeterminant, hull: EigenvalueHull, max_q: float, largest_w: float = 0.0
+    mesh_w: Complex, determinant: ArmDeterminant, hull: EigenvalueHull, max_q: float, largest_w: float = 0.0
 ) -> Roots:
-    """Roots of an arm's D refined from those eigenvalues `raw` of a mesh, (n,), that approximate
-    a root of D.
+    """Roots of an arm's D, refined from the eigenvalues in `mesh_w`, (n,), that approximate a root of D.
 
-    max_q: largest wave number |q| that the mesh resolves. largest_w: |w| at which D will be needed
-    afterwards. Infinite eigenvalues, which rounding makes finite, are dropped: they lie outside the hull,
-    have too large a |q|, or are far from every root.
+    mesh_w: eigenvalues of a mesh. max_q: largest wave number |q| that the mesh resolves. largest_w: |w| at
+    which D will be needed afterwards. Infinite eigenvalues, which rounding makes finite, are dropped: they
+    lie outside the hull, have too large a |q|, or are far from every root.
     """
     settings = ROOT_NEWTON_SETTINGS
-    guesses = [w.real + 0j if abs(w.imag) <= settings.real_tolerance * abs(w) else w for w in raw.tolist()]
+    guesses = [w.real + 0j if abs(w.imag) <= settings.real_tolerance * abs(w) else w for w in mesh_w.tolist()]
     in_box = [i for i, w in enumerate(guesses) if _is_in_eigenvalue_box(w, hull)]
-    waves, w_scales = mean_wave_numbers_and_w_scales(
+    wave_numbers, w_scales = mean_wave_numbers_and_w_scales(
         np.array([guesses[i] for i in in_box], complex), determinant.samples
     )
     scale = dict(zip(in_box, w_scales.tolist(), strict=True))
-    resolved = [i for i, number in zip(in_box, waves.tolist(), strict=True) if number <= max_q]
+    resolved = [i for i, q in zip(in_box, wave_numbers.tolist(), strict=True) if q <= max_q]
     starts = [guesses[i] for i in resolved]
     _prepare_elements(determinant, max(map(abs, starts), default=0.0), largest_w)
     errors = dict(zip(resolved, root_errors(starts, determinant).tolist(), strict=True))
     near = [i for i in resolved if errors[i] <= ROOT_SETTINGS.max_pair_correction_ratio * scale[i]]
     near_errors = [errors[i] for i in near]
     # From two close guesses Newton's method may find one root twice, so these are moved apart first.
-    starts_of_near, gaps = _separate_close_roots([guesses[i] for i in near], near_errors, determinant)
+    near_w, half_distances = _separate_close_roots([guesses[i] for i in near], near_errors, determinant)
     refined = [
         k
         for k, i in enumerate(near)
-        if gaps[k] < math.inf or near_errors[k] <= ROOT_SETTINGS.max_correction_ratio * scale[i]
+        if half_distances[k] < math.inf or near_errors[k] <= ROOT_SETTINGS.max_correction_ratio * scale[i]
     ]
-    located = _refine_guesses([(starts_of_near[k], gaps[k]) for k in refined], determinant)
+    located = _refine_guesses([(near_w[k], half_distances[k]) for k in refined], determinant)
     located.sort(key=lambda root: (-root.w.real, -root.w.imag))
     mesh_indices = np.array([near[refined[root.guess_index]] for root in located], np.int64)
     w: Complex = np.array([root.w for root in located], complex)
-    wave = mean_wave_numbers_and_w_scales(w, determinant.samples)[0]
+    wave_number = mean_wave_numbers_and_w_scales(w, determinant.samples)[0]
     error = _errors_of_located_roots(located, determinant)
     lengths: Array = np.array([scale[i] for i in mesh_indices.tolist()], float)
     displacement = np.abs(w - np.array(guesses, complex)[mesh_indices]) / np.maximum(np.abs(w), lengths)
@@ -70,8 +69,8 @@ def refine_mesh_eigenvalues(
     )
     leading_growth = w[0].real if len(w) else -math.inf
     # An eigenvalue inside the hull that approximates no root is spurious, or hides one that leads.
-    spurious_count = sum(raw[i].real > leading_growth for i in in_box if i not in near)
-    return Roots(mesh_indices, w, error, displacement, wave, is_on_axis, spurious_count)
+    spurious_count = sum(mesh_w[i].real > leading_growth for i in in_box if i not in near)
+    return Roots(mesh_indices, w, error, displacement, wave_number, is_on_axis, spurious_count)
 
 
 def _prepare_elements(determinant: ArmDeterminant, needed_w: float, later_w: float) -> None:
@@ -87,18 +86,19 @@ def _is_in_eigenvalue_box(w: complex, hull: EigenvalueHull) -> bool:
     """Whether w is finite and lies in the box that contains all eigenvalues with real parts >= Re w."""
     if not cmath.isfinite(w):
         return False
-    real, imag = hull.box(max(-w.real, 0.0))
-    return w.real <= real and abs(w.imag) <= imag
+    max_real, max_imag = hull.box(max(-w.real, 0.0))
+    return w.real <= max_real and abs(w.imag) <= max_imag
 
 
 def _separate_close_roots(
-    w: list[complex], error: list[float], determinant: ArmDeterminant
+    w: list[complex], errors: list[float], determinant: ArmDeterminant
 ) -> tuple[list[complex], list[float]]:
-    """Returns (w, half_distance), with every two eigenvalues closer than their errors moved to roots of D.
-    error: errors of w. half_distance: half the distance from the partner; inf if not moved."""
+    """Returns (w, half_distance): w with every two eigenvalues closer than their errors moved to roots of D.
+    errors: errors of w. half_distance: half the distance of each eigenvalue from its partner; inf if it was
+    not moved."""
     w = w.copy()
     half_distance = [math.inf] * len(w)
-    eigenvalues_and_errors = zip(w, error, strict=True)
+    eigenvalues_and_errors = zip(w, errors, strict=True)
     if not any(
         abs(a - b) <= ROOT_SETTINGS.pair_distance * (e + f)
         for (a, e), (b, f) in combinations(eigenvalues_and_errors, 2)
@@ -109,7 +109,7 @@ def _separate_close_roots(
         if half_distance[i] < math.inf or not unpaired:
             continue
         partner = min(unpaired, key=lambda j: abs(w[j] - w[i]))
-        if abs(w[partner] - w[i]) <= ROOT_SETTINGS.pair_distance * (error[i] + error[partner]):
+        if abs(w[partner] - w[i]) <= ROOT_SETTINGS.pair_distance * (errors[i] + errors[partner]):
             for _ in range(ROOT_SETTINGS.parabolas_per_pair):
                 middle = (w[i] + w[partner]) / 2
                 if w[partner] == w[i].conjugate() or (w[i].imag == 0 and w[partner].imag == 0):
@@ -149,15 +149,15 @@ def _refine_guesses(guesses: list[tuple[complex, float]], determinant: ArmDeterm
 def _errors_of_located_roots(roots: list[_LocatedRoot], determinant: ArmDeterminant) -> Array:
     """Errors of the roots `roots`, (n,). For two entries that are the same root of D, the error is at least
     the distance 2 |D'/D''| of the next root."""
-    error = [root.error for root in roots]
+    errors = [root.error for root in roots]
     for i, first_root in enumerate(roots):
         for j in range(i + 1, len(roots)):
             distance = abs(first_root.w - roots[j].w)
-            if distance <= ROOT_SETTINGS.same_root_distance_in_errors * (error[i] + error[j]):
+            if distance <= ROOT_SETTINGS.same_root_distance_in_errors * (errors[i] + errors[j]):
                 value = determinant.value(first_root.w)
                 D_ww = abs(second_derivative(first_root.w, value.log_scale, determinant))
                 next_root = 2 * abs(value.D_w) / max(D_ww, EXPONENT_SETTINGS.min_divisor)
                 if distance < ROOT_SETTINGS.same_root_fraction * next_root:
-                    error[i] = max(error[i], next_root)
-                    error[j] = max(error[j], next_root)
-    return np.array(error, float)
+                    errors[i] = max(errors[i], next_root)
+                    errors[j] = max(errors[j], next_root)
+    return np.array(errors, float)

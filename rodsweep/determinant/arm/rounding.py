@@ -1,15 +1,15 @@
 """Rounding and interpolation errors of an arm's D(w), from the propagators of its elements and the
 sensitivities of D.
 
-D = a_e . C_e x_e for every element e: x_e are the minors at the start of the element, C_e is its
-propagator, and a_e are the derivatives of D by the minors at its end. Rounding changes each product C_ij x_j
-by a relative error of about the spacing of doubles at 1. The rounding error of D is therefore at most this
-spacing times the sum over elements of |a_e| . |C_e| |x_e|. The products at the tip alone are not enough:
-close to crushing, minors are large in the middle of an arm, and their errors exceed those at the tip.
+D = a_e . C_e x_e for every element e: x_e are the minors at the start of the element, C_e is its propagator,
+and a_e are the derivatives of D by the minors at its end. Rounding changes each product C_ij x_j by a
+relative error of about the spacing of doubles at 1. The rounding error of D is therefore at most this spacing
+times the sum over elements of |a_e| . |C_e| |x_e|. The products at the tip alone are not enough: close to
+crushing, minors are large in the middle of an arm, and their errors exceed the errors at the tip.
 
 Propagators that are interpolated in a path variable p have errors relative to their largest entries on the
-interval of p, which |C_e| then contains. At the low end of a long interval of forces these errors are the
-larger ones.
+interval of p, which |C_e| then contains. At the low end of a long interval of forces the interpolation errors
+exceed the rounding errors.
 """
 
 import math

@@ -84,8 +84,9 @@ def divide_by_norm(x: Array) -> float:
 def _multiply_along_chain(
     z: complex, W: float, polynomials: Array, p_derivatives: Array
 ) -> tuple[complex, complex, complex, float]:
-    """(D, dD/dw, dD/dp, S) of `path_value_from_propagators` at w = z W; dD/dp is 0 if `p_derivatives` is
-    empty. polynomials, p_derivatives: propagators and their derivatives by p, (elements, terms, PADDED)."""
+    """Returns (D, dD/dw, dD/dp, S) of `path_value_from_propagators` at w = z W; dD/dp is 0 if `p_derivatives`
+    is empty. polynomials, p_derivatives: propagators and their derivatives by p, (elements, terms,
+    PADDED)."""
     elements, terms, _ = polynomials.shape
     has_p_derivative = len(p_derivatives) > 0
     powers = powers_and_derivatives(z, terms)
@@ -148,7 +149,8 @@ def _multiply_along_real_chain(
 
 @compiled
 def scaled_determinant_from_propagators(w: complex, W: float, polynomials: Array) -> tuple[complex, float]:
-    """(D exp(-S), S) at w, alone. polynomials: propagators for |w| <= W, (elements, terms, PADDED)."""
+    """Returns (D exp(-S), S) at w, without derivatives. polynomials: propagators for |w| <= W, (elements,
+    terms, PADDED)."""
     powers = powers_and_derivatives(w / W, polynomials.shape[1])
     C = np.empty((2, PADDED))
     minors = np.zeros((2, MINORS))
@@ -177,8 +179,8 @@ def path_value_from_propagators(
     """D, dD/dw and dD/dp at w, times exp(-S). At real w every value is real.
 
     polynomials, p_derivatives: propagators valid for |w| <= W and their derivatives by p, (elements, terms,
-    PADDED). dD/dp is 0 if `p_derivatives` is empty. The rounding error is that of the products at the tip;
-    the bound of the whole error is `rodsweep.determinant.arm.rounding.rounding_error_from_propagators`.
+    PADDED). dD/dp is 0 if `p_derivatives` is empty. The rounding error is the error of the products at the
+    tip; the bound of the whole error is `rodsweep.determinant.arm.rounding.rounding_error_from_propagators`.
     """
     if w.imag == 0:
         D, D_w, D_p, S = _multiply_along_real_chain(w.real / W, W, polynomials, p_derivatives)

@@ -12,8 +12,8 @@ max(F^2/rho, (rho g - nu)^2/(c2 rho gamma3)), so that
 
 The weight rho is free; the best rho makes both entries of the maximum equal.
 
-No eigenvalue lies on the imaginary axis close to w = 0: |E(z)| <= exp(Re sqrt z)/2 bounds D - 1 there, with E
-of `rodsweep.determinant.value`.
+No eigenvalue lies on the imaginary axis close to w = 0: |E(z)| <= exp(Re sqrt z)/2 bounds D - 1 for small
+|w|, with E of `rodsweep.determinant.value`.
 """
 
 from dataclasses import dataclass
@@ -79,19 +79,20 @@ def frequency_bound(rod: Rod) -> float:
     bound.
     """
     drag = rod.c2 * rod.rotational_drag
-    level = abs(rod.F) * sqrt(drag)
+    drag_term = abs(rod.F) * sqrt(drag)
     if rod.g >= 0:
-        return rod.F**2 * rod.g / (rod.nu + level)
+        return rod.F**2 * rod.g / (rod.nu + drag_term)
     if drag == 0:
         return inf
-    # For g < 0 two bounds compete: the best rho lies where they are equal or where the second is least.
-    weights = [rod.nu / -rod.g] + ([(level - rod.nu) / -rod.g] if level > rod.nu else [])
+    # For g < 0 the smallest maximum of two bounds lies where both are equal or where the second is smallest.
+    weights = [rod.nu / -rod.g] + ([(drag_term - rod.nu) / -rod.g] if drag_term > rod.nu else [])
     return min(max(rod.F**2 / rho, (rho * rod.g - rod.nu) ** 2 / (drag * rho)) for rho in weights)
 
 
-def frequency_bound_on_path(path: ParameterPath, start: float, stop: float) -> float:
-    """An upper bound of `frequency_bound` over a path with p from start to stop; inf if none is known."""
-    ends = [coefficients_at(p, path.origin, path.direction) for p in (start, stop)]
+def frequency_bound_on_path(path: ParameterPath, p_start: float, p_stop: float) -> float:
+    """An upper bound of `frequency_bound` over a path with p from p_start to p_stop; inf if no bound is
+    known."""
+    ends = [coefficients_at(p, path.origin, path.direction) for p in (p_start, p_stop)]
     return frequency_bound_between_rods(ends[0], ends[1])
 
 
@@ -119,44 +120,50 @@ def frequency_bound_between_rods(first: Coefficients, last: Coefficients) -> flo
     return load**2 * bound if bound < inf else inf
 
 
-def zero_free_radius(path: ParameterPath, start: float, stop: float, max_radius: float) -> float:
-    """A radius r <= max_radius with |D(i eta) - 1| < 1/2 for |eta| <= r and every p of a path from start to
-    stop; 0 if r underflows."""
-    ends = [coefficients_at(p, path.origin, path.direction) for p in (start, stop)]
-    T = max(c2 + gamma3 for *_, c2, gamma3 in ends)
-    X = max(c2 * gamma3 for *_, c2, gamma3 in ends)
+def zero_free_radius(path: ParameterPath, p_start: float, p_stop: float, max_radius: float) -> float:
+    """A radius r <= max_radius with |D(i eta) - 1| < 1/2 for |eta| <= r and every p of a path from p_start to
+    p_stop; 0 if r underflows."""
+    ends = [coefficients_at(p, path.origin, path.direction) for p in (p_start, p_stop)]
+    max_T = max(c2 + gamma3 for *_, c2, gamma3 in ends)
+    max_X = max(c2 * gamma3 for *_, c2, gamma3 in ends)
     derivatives = [dispersion_coefficient_derivatives(c, path.direction) for c in ends]
     # A function lies within (stop - start)^2/8 times its curvature of the chord between its ends.
-    span = (stop - start) ** 2 / 8
-    G = max(abs(nu * (nu + F * c2)) for F, nu, c2, _ in ends) + span * max(abs(b.G_pp) for b in derivatives)
+    curvature_factor = (p_stop - p_start) ** 2 / 8
+    max_G = max(abs(nu * (nu + F * c2)) for F, nu, c2, _ in ends) + curvature_factor * max(
+        abs(b.G_pp) for b in derivatives
+    )
     max_pull = max(
-        max(-F * (nu + F * c2) for F, nu, c2, _ in ends) + span * max(abs(b.N_pp) for b in derivatives), 0.0
+        max(-F * (nu + F * c2) for F, nu, c2, _ in ends)
+        + curvature_factor * max(abs(b.N_pp) for b in derivatives),
+        0.0,
     )
     if all(F >= 0 and nu + F * c2 >= 0 for F, nu, c2, _ in ends):
         max_pull = 0.0  # -F g is negative at the ends, and F and g are linear in p or constant
-    return _zero_free_radius(max_radius, T, X, G, max_pull)
+    return _zero_free_radius(max_radius, max_T, max_X, max_G, max_pull)
 
 
 def zero_free_radius_of_rod(coefficients: Coefficients, max_radius: float) -> float:
-    """A radius r <= max_radius with |D(i eta) - 1| < 1/2 for |eta| <= r, one uniform rod; 0 on underflow."""
+    """A radius r <= max_radius with |D(i eta) - 1| < 1/2 for |eta| <= r and a single rod; 0 on underflow."""
     F, nu, c2, gamma3 = coefficients
     g = nu + F * c2
     return _zero_free_radius(max_radius, c2 + gamma3, c2 * gamma3, abs(g * nu), max(-F * g, 0.0))
 
 
-def _zero_free_radius(r: float, T: float, X: float, G: float, max_pull: float) -> float:
+def _zero_free_radius(radius: float, T: float, X: float, G: float, max_pull: float) -> float:
     """The first of r, r/2, r/4, ... such that |D(i eta) - 1| < 1/2 for |eta| <= r; 0 if r underflows. T, X,
     G: bounds of c2 + gamma3, c2 gamma3 and |g nu|. max_pull: bound of -F g, at least 0."""
-    while _distance_from_one_bound(r, T, X, G, max_pull) >= ZERO_FREE_DISC_SETTINGS.max_deviation_from_one:
-        r /= 2
-    return r
+    while (
+        _distance_from_one_bound(radius, T, X, G, max_pull) >= ZERO_FREE_DISC_SETTINGS.max_deviation_from_one
+    ):
+        radius /= 2
+    return radius
 
 
-def _distance_from_one_bound(r: float, T: float, X: float, G: float, max_pull: float) -> float:
+def _distance_from_one_bound(radius: float, T: float, X: float, G: float, max_pull: float) -> float:
     """An upper bound of |D(i eta) - 1| for |eta| <= r; inf where it would be too large to be useful. T, X, G:
     bounds of c2 + gamma3, c2 gamma3 and |g nu|. max_pull: bound of -F g, at least 0."""
-    exponent = sqrt(max_pull + T * r + 2 * sqrt(r * (G + X * r)))
+    exponent = sqrt(max_pull + T * radius + 2 * sqrt(radius * (G + X * radius)))
     if exponent > 1 + sqrt(max_pull):
         return inf
-    factor = (T * r + sqrt(r * G) + 2 * r * sqrt(X)) / 2
+    factor = (T * radius + sqrt(radius * G) + 2 * radius * sqrt(X)) / 2
     return exp(min(exponent + log(factor), 1.0)) if factor > 0 else 0.0

@@ -50,8 +50,8 @@ BidiscRadii = tuple[float, float]
 
 class BidiscCentre(NamedTuple):
     """The centre (w, p) of a bidisc, with the exponents of D at the centre. coefficients: (F, nu, c2, gamma3)
-    at p. derivatives: of T, N, G and X by p. S: logarithm of the scale of D. P, z_plus, z_minus: P, z+ and
-    z-. slopes_plus, slopes_minus: (dz/dw, dz/dp) of z+ and of z-."""
+    at p. derivatives: of T, N, G and X by p. log_scale: S, the logarithm of the scale of D. P, z_plus,
+    z_minus: P, z+ and z-. slopes_plus, slopes_minus: (dz/dw, dz/dp) of z+ and of z-."""
 
     w: complex
     coefficients: Coefficients

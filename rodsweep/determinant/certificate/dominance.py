@@ -1,4 +1,4 @@
-"""Discs of w in which one exponential of D dominates: D has no zero there, and the phase of D is known.
+"""Discs of w in which one exponential of D dominates, so that D has no zero and the phase of D is known.
 
 With sqrt(z+) the root of larger real part, D (`rodsweep.determinant.value`) is
 
@@ -8,7 +8,7 @@ With sqrt(z+) the root of larger real part, D (`rodsweep.determinant.value`) is
 Over a disc |dw| <= rho with |e| < 1 and Re sqrt(z+) > Re sqrt(z-) the phase of D is arg A + arg(1 + e). The
 term arg(1 + e) stays within a right angle and is needed only at the two ends of a chain of such discs. All
 bounds are relative to exp(L dw), L = z+'/(2 sqrt z+), as in `rodsweep.determinant.certificate.discs`.
-Eigenvalues lie near the negative real axis; far from there the radius may be a quarter of |w|.
+Eigenvalues lie near the negative real axis; far from this axis the radius may be a quarter of |w|.
 """
 
 import cmath
@@ -28,7 +28,8 @@ class DominanceSettings(KernelConstants):
     """Settings for discs in which one exponential of D dominates."""
 
     first_radius: float = 0.25
-    """(radius of the first trial disc) / (distance of its step's start to the next branch point of z+-)."""
+    """Radius of the first trial disc divided by the distance of the start of the step from a branch point of
+    z+-."""
     max_halvings: int = 2
     """The segment of proved dominance ends if a trial disc halved this many times is still not proved."""
     overlap_fraction: float = 1e-3
@@ -56,7 +57,7 @@ class Exponent(NamedTuple):
 
 @compiled
 def _dominant_and_recessive(w: complex, coefficients: Coefficients) -> tuple[complex, Exponent, Exponent]:
-    """(P, dominant exponent, recessive exponent) at w; the dominant exponent has the larger Re sqrt(z)."""
+    """Returns (P, dominant exponent, recessive exponent) at w; the dominant one has the larger Re sqrt(z)."""
     P, P_w, _, plus, minus = exponent_derivatives(w, coefficients)
     drag = coefficients.c2 + coefficients.gamma3
     plus_exponent = Exponent(plus, drag + 2 * P_w, cmath.sqrt(plus))
@@ -130,14 +131,15 @@ def is_dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
 
 @compiled
 def dominant_prefactor_and_exponent(w: complex, coefficients: Coefficients) -> tuple[complex, complex]:
-    """Returns (w z'/z, sqrt z) at w: four times the factor, and the exponent, of the dominant A of D."""
+    """Returns (w z'/z, sqrt z) at w, with which the dominant term of D is A = (w z'/z) exp(sqrt z)/4."""
     _, dominant, _ = _dominant_and_recessive(w, coefficients)
     return w * dominant.slope / dominant.z, dominant.root
 
 
 @compiled
 def _phase_beyond_dominant(w: complex, factors: tuple[complex, complex], coefficients: Coefficients) -> float:
-    """arg(1 + e) = arg(D/A), phase of D minus phase of A. factors: `dominant_prefactor_and_exponent`."""
+    """arg(1 + e) = arg(D/A), phase of D minus phase of A. factors: result of
+    `dominant_prefactor_and_exponent` at w."""
     D, _, _, _ = scaled_determinant(w, coefficients)
     factor, root = factors
     return cmath.phase(D / (factor * cmath.exp(complex(0.0, root.imag))))

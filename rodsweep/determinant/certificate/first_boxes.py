@@ -31,19 +31,19 @@ class CoveringSettings:
     compliance p at most doubles over an interval."""
     min_last_interval_ratio: float = 1e-3
     """If the last interval of p is below this fraction of the previous interval, the two are merged."""
-    padding_fraction: float = 1e-6
+    eta_padding: float = 1e-6
     """Length added to the upper bound of eta, in 1/tau2, because the bound is 0 at F = 0."""
 
 
 COVERING_SETTINGS = CoveringSettings()
 
 
-def path_intervals(path: ParameterPath, start: float, stop: float) -> list[tuple[float, float]]:
-    """Intervals (start, end) of p from `start` to `stop`; over each interval nu at most halves, and a drag or
-    compliance at most doubles, except on the shortest intervals."""
-    edges = [start]
-    width = (stop - start) / COVERING_SETTINGS.min_intervals
-    while edges[-1] < stop:
+def path_intervals(path: ParameterPath, p_start: float, p_stop: float) -> list[tuple[float, float]]:
+    """Intervals (start, end) of p from `p_start` to `p_stop`; over each interval nu at most halves, and a
+    drag or compliance at most doubles, except on the shortest intervals."""
+    edges = [p_start]
+    width = (p_stop - p_start) / COVERING_SETTINGS.min_intervals
+    while edges[-1] < p_stop:
         p = edges[-1]
         step = width
         nu = coefficients_at(p, path.origin, path.direction).nu
@@ -53,24 +53,24 @@ def path_intervals(path: ParameterPath, start: float, stop: float) -> list[tuple
         if path.name != "F":  # drag and compliances vary over decades
             step = min(step, max(p, COVERING_SETTINGS.min_interval_ratio * width))
         end = p + step
-        edges.append(stop if stop - end < COVERING_SETTINGS.min_last_interval_ratio * step else end)
+        edges.append(p_stop if p_stop - end < COVERING_SETTINGS.min_last_interval_ratio * step else end)
     return list(zip(edges[:-1], edges[1:], strict=True))
 
 
-def first_boxes(path: ParameterPath, start: float, stop: float) -> Array | None:
-    """Boxes (eta_from, eta_to, p_from, p_to) that contain every crossing with p from start to stop, (n, 4).
-    None if no a-priori bound exists, or if the lower bound of eta underflows, or almost."""
+def first_boxes(path: ParameterPath, p_start: float, p_stop: float) -> Array | None:
+    """Boxes (eta_from, eta_to, p_from, p_to) that contain every crossing with p from p_start to p_stop, (n,
+    4). None if no a-priori bound exists, or if the lower bound of eta underflows, or almost."""
     boxes = []
-    for a, b in path_intervals(path, start, stop):
-        top = (1 + BOX_SETTINGS.bound_excess) * frequency_bound_on_path(
-            path, a, b
-        ) + COVERING_SETTINGS.padding_fraction
-        if not math.isfinite(top):
+    for interval_start, interval_end in path_intervals(path, p_start, p_stop):
+        max_eta = (1 + BOX_SETTINGS.bound_excess) * frequency_bound_on_path(
+            path, interval_start, interval_end
+        ) + COVERING_SETTINGS.eta_padding
+        if not math.isfinite(max_eta):
             return None
-        min_eta = zero_free_radius(path, a, b, top)
-        if min_eta * sys.float_info.max <= top:  # `min_eta` is 0 or so small that top/min_eta overflows
+        min_eta = zero_free_radius(path, interval_start, interval_end, max_eta)
+        if min_eta * sys.float_info.max <= max_eta:  # `min_eta` is 0 or so small that top/min_eta overflows
             return None
-        count = max(1, math.ceil(math.log(top / min_eta) / math.log(COVERING_SETTINGS.max_eta_ratio)))
-        edges = np.geomspace(min_eta, top, count + 1)
-        boxes += [(edges[i], edges[i + 1], a, b) for i in range(count)]
+        count = max(1, math.ceil(math.log(max_eta / min_eta) / math.log(COVERING_SETTINGS.max_eta_ratio)))
+        edges = np.geomspace(min_eta, max_eta, count + 1)
+        boxes += [(edges[i], edges[i + 1], interval_start, interval_end) for i in range(count)]
     return np.array(boxes).reshape(-1, 4)

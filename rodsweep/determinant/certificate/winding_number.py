@@ -163,7 +163,7 @@ def contour_phase_change(
     node_count += abs(used_count)
     if used_count < 0 or start_height == corner.imag:  # in the latter case D is near 1 on the whole line
         return right_change + top_change, node_count if used_count > 0 else -node_count
-    # The line is walked upwards, because a sum from the top could not resolve a small foot.
+    # The line is walked upwards, because a sum from the top could not resolve a small start height.
     left_change, used_count = phase_change(complex(line, start_height), top, coefficients)
     node_count += abs(used_count)
     return right_change + top_change - left_change, node_count if used_count > 0 else -node_count
@@ -172,40 +172,40 @@ def contour_phase_change(
 def count_right_of(line: float, rod: Rod) -> EigenvalueCount:
     """Proved number of transverse eigenvalues of a uniform rod with Re w > line, for any real `line`, in
     1/tau2. A failed proof raises no exception: `number` is then None and `failure_reason` the reason."""
-    real, imag = eigenvalue_box(rod, max(-line, 0.0))
-    if not math.isfinite(imag) or not math.isfinite(real):
+    max_real, max_imag = eigenvalue_box(rod, max(-line, 0.0))
+    if not math.isfinite(max_imag) or not math.isfinite(max_real):
         place = f"at F = {rod.F:g}"
         return EigenvalueCount(None, 0, f"no a-priori bound on the eigenvalues applies to this rod {place}")
-    if line >= real:
+    if line >= max_real:
         return EigenvalueCount(0, 0)
     start_height = 0.0
-    total = 0.0
-    if line == 0.0:  # D(0) = 1, and D is near 1 up to `foot`, so this part of the line needs no nodes
-        start_height = zero_free_radius_of_rod(rod.coefficients, imag)
+    phase = 0.0
+    if line == 0.0:  # D is near D(0) = 1 up to `start_height`, so this part of the line needs no nodes
+        start_height = zero_free_radius_of_rod(rod.coefficients, max_imag)
         if start_height == 0.0:
             return EigenvalueCount(
                 None, 0, f"the pull F = {rod.F:g} is so strong that floating-point numbers underflow"
             )
-        # Downwards from the foot to w = 0, where D = 1 is real, arg D changes by minus its value at the foot.
-        total = -cmath.phase(scaled_determinant(complex(0.0, start_height), rod.coefficients)[0])
-    corner = upper_contour_corner(line, (real, imag))
+        # From w = i start_height down to w = 0, where D = 1 is real, arg D changes by minus its value.
+        phase = -cmath.phase(scaled_determinant(complex(0.0, start_height), rod.coefficients)[0])
+    corner = upper_contour_corner(line, (max_real, max_imag))
     change, node_count = contour_phase_change(line, start_height, corner, rod.coefficients)
     if node_count < 0:
         return EigenvalueCount(None, -node_count, PHASE_LOST_MESSAGE)
-    total += change
+    phase += change
     # Half the box has half the winding number: 2 pi times the count over both halves.
-    number = round(total / math.pi)
-    if abs(total / math.pi - number) > WINDING_SETTINGS.integer_tolerance:
+    count = round(phase / math.pi)
+    if abs(phase / math.pi - count) > WINDING_SETTINGS.integer_tolerance:
         return EigenvalueCount(None, node_count, NO_INTEGER_MESSAGE)
-    return EigenvalueCount(number, node_count)
+    return EigenvalueCount(count, node_count)
 
 
 def upper_contour_corner(line: float, box: tuple[float, float]) -> complex:
     """Upper right corner of the contour, in 1/tau2: the point of the contour with the largest |w|. line: real
     part of the left edge of the contour. box: bounds (max Re w, max |Im w|) of all eigenvalues right of the
     line. Also for the contours of arms."""
-    real, imag = box
+    max_real, max_imag = box
     return complex(
-        WINDING_SETTINGS.width_factor * real + WINDING_SETTINGS.additional_width,
-        max(imag, WINDING_SETTINGS.min_height_ratio * abs(line)),
+        WINDING_SETTINGS.width_factor * max_real + WINDING_SETTINGS.additional_width,
+        max(max_imag, WINDING_SETTINGS.min_height_ratio * abs(line)),
     )

@@ -86,7 +86,7 @@ def trial_radius(w: complex, coefficients: Coefficients, L: complex, S: float) -
 @compiled
 def zero_free_disc_at(w: complex, coefficients: Coefficients) -> ZeroFreeDiscNode:
     """The point w with its zero-free radius, for a uniform rod. Within the zero-free radius the phase of D
-    exp(-L dw) changes by less than pi/2. Reach and L are 0 if |D| is not above its rounding error."""
+    exp(-L dw) changes by less than pi/2. The radius and L are 0 if |D| is not above its rounding error."""
     D, D_w, S, rounding_error = scaled_determinant(w, coefficients)
     max_remainder = (
         DISC_BOUND_SETTINGS.max_relative_change * abs(D)
@@ -102,8 +102,7 @@ def zero_free_disc_at(w: complex, coefficients: Coefficients) -> ZeroFreeDiscNod
     for _ in range(2):
         M = bound_on_bidisc(centre, (L, 0j), (rho, 0.0))
         q = max_remainder / M
-        # The largest r with M r^2/(rho (rho - r)) < room, from Cauchy's estimate of the remainder on the
-        # disc.
+        # The largest r with M r^2/(rho (rho - r)) < max_remainder, Cauchy's estimate on the disc.
         valid_radius = max(valid_radius, rho * (math.sqrt(q * q + 4 * q) - q) / 2)
         rho /= 2
     return ZeroFreeDiscNode(w, D, L, valid_radius)

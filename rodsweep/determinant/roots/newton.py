@@ -126,7 +126,7 @@ def double_eigenvalue_newton(
 def _real_determinant(
     x: float, p: float, origin: Coefficients, direction: Coefficients
 ) -> tuple[float, float, float, float, float]:
-    """D, D_w, D_p, S and the rounding error of D at real w = x and p, where all of these are real."""
+    """Returns (D, D_w, D_p, S, rounding error of D) at real w = x and p, where all five are real."""
     coefficients = coefficients_at(p, origin, direction)
     D, D_w, D_p, S, rounding_error = determinant_along_path(complex(x, 0.0), coefficients, direction)
     return D.real, D_w.real, D_p.real, S, rounding_error

@@ -145,8 +145,7 @@ def sort_descending(w: Complex, order: NDArray) -> None:
 
 @compiled
 def refined_roots(raw: Complex, coefficients: Coefficients, sqrt_bound: float, max_q: float) -> Roots:
-    """Roots of D refined from those eigenvalues `raw` of a mesh, (n,), that approximate a root
-    of D.
+    """Roots of D, refined from the eigenvalues of a mesh in `raw`, (n,), that approximate a root of D.
 
     sqrt_bound: square root of `rodsweep.determinant.certificate.box.frequency_bound`. max_q:
     largest wave number |q| that the mesh resolves. Infinite eigenvalues, which rounding makes finite, are
@@ -222,8 +221,8 @@ def _refine_candidates(
 
 @compiled
 def _raise_errors_of_equal_roots(w: Complex, error: Array, coefficients: Coefficients) -> None:
-    """Sets, in place, the errors of two entries of w that converged to the same root of D to at least 2
-    |D'/D''|, the distance of the next root. w, error: roots and their errors, (n,)."""
+    """Raises, in place, the errors of any two entries of w that converged to the same root of D, to at least
+    2 |D'/D''|, the distance of the next root. w, error: roots and their errors, (n,)."""
     for i in range(len(w)):
         for j in range(i + 1, len(w)):
             distance = abs(w[i] - w[j])

@@ -16,7 +16,7 @@ def barycentric_weights(nodes: Array) -> Array:
 
 
 def lagrange_interpolation_matrix(nodes: Array, points: Array) -> Array:
-    """Matrix (m, n) from values at `nodes`, (n,), to values of their polynomial at `points`, (m,)."""
+    """Matrix (m, n) from values at `nodes`, (n,), to values of the interpolant at `points`, (m,)."""
     difference = points[:, None] - nodes[None, :]
     coincides = difference == 0
     difference[coincides] = 1.0
@@ -29,7 +29,8 @@ def lagrange_interpolation_matrix(nodes: Array, points: Array) -> Array:
 
 
 def differentiation_matrix(nodes: Array) -> Array:
-    """Matrix (n, n) from values at `nodes`, (n,), to derivatives of their polynomial there. Rows sum to 0."""
+    """Matrix (n, n) from values at `nodes`, (n,), to derivatives of the interpolant at the nodes; rows sum to
+    0."""
     weights = barycentric_weights(nodes)
     difference = nodes[:, None] - nodes[None, :]
     np.fill_diagonal(difference, 1.0)

@@ -38,8 +38,9 @@ ELEMENT_SETTINGS = ElementSettings()
 @dataclass(frozen=True)
 class Elements:
     """Elements on the rod. Element e reaches from edges[e] to edges[e + 1]; edges[0] is 0 and edges[-1] is 1.
-    order: largest order of an element. order_ratios: order of each element divided by `order`, rounded up to
-    an integer by `element_orders`; empty if all orders are equal."""
+    order: largest order of an element. order_ratios: order of each element divided by `order`, before
+    `element_orders` rounds the order up; empty if all orders are equal. In shapes, `nodes` is `node_count`,
+    which does not count one end of the rod, and `elements` is the number of elements."""
 
     edges: tuple[float, ...]
     order: int

@@ -21,7 +21,7 @@ class ReconstructionSettings:
     """Settings for the quadrature that computes the shape of a rod."""
 
     extra_points: int = 10
-    """Number of Gauss points of an element, minus the largest order, for the integrals of the shape.
+    """Number of Gauss points of an element beyond the largest order of an element, for the shape's integrals.
     Ten suffice if theta changes by up to two radians within an element."""
 
 
@@ -66,20 +66,20 @@ def mesh_with_edges(edges: tuple[float, ...], order: int, order_ratios: tuple[fl
     """The mesh whose elements lie between neighbouring `edges`; cached. order: largest order of an element.
     order_ratios: order of each element divided by `order`; empty if all orders are equal."""
     elements = Elements(edges, order, order_ratios=order_ratios)
-    nodes = elements.node_count
-    weighted = np.zeros((nodes + 1, nodes + 1))
-    total = np.zeros(nodes + 1)
+    node_count = elements.node_count
+    weighted_D = np.zeros((node_count + 1, node_count + 1))
+    node_weights = np.zeros(node_count + 1)
     for length, node_range, p in zip(elements.lengths, elements.node_ranges, elements.orders, strict=True):
         x, w = gauss_lobatto_rule(p)
-        weighted[node_range, node_range] += w[:, None] * differentiation_matrix(
+        weighted_D[node_range, node_range] += w[:, None] * differentiation_matrix(
             x
         )  # the length of the element cancels
-        total[node_range] += length / 2 * w
+        node_weights[node_range] += length / 2 * w
     # At a node shared by two elements, D gives the mean of both slopes with the quadrature weights, so that W
     # D is the assembled matrix.
-    D = weighted / total[:, None]
+    D = weighted_D / node_weights[:, None]
     # -D^T W: `weighted` is W D.
-    parts = D, D.T, -weighted.T, total
+    parts = D, D.T, -weighted_D.T, node_weights
     return Mesh(edges, order, NodeMatrices(*map(np.ascontiguousarray, parts)), order_ratios=order_ratios)
 
 
@@ -93,23 +93,23 @@ def interpolation_matrix(source: Mesh, target: Mesh) -> Array:
 def shape_from_strains(mesh: Mesh, strains: Array, clamp: Array) -> Array:
     """Shape (x, y, theta) of a rod at all nodes, (3, ..., nodes + 1), from its strains. strains: (h1, h2, Pi)
     at the nodes of every element, (3, ..., nodes + elements). clamp: (x, y, theta) at u = 0, (3,)."""
-    points = mesh.order + RECONSTRUCTION_SETTINGS.extra_points
-    state = np.empty((*strains.shape[:-1], mesh.node_count + 1), strains.dtype)
+    gauss_point_count = mesh.order + RECONSTRUCTION_SETTINGS.extra_points
+    shape = np.empty((*strains.shape[:-1], mesh.node_count + 1), strains.dtype)
     start = np.broadcast_to(clamp.reshape(3, *(1,) * (strains.ndim - 1)), (3, *strains.shape[1:-1], 1))
     for e, (element, length) in enumerate(zip(mesh.node_ranges, mesh.lengths, strict=True)):
-        values, angles, integrals, ends = shape_integration_matrices(mesh.orders[e], points)
+        values, angles, integrals, ends = shape_integration_matrices(mesh.orders[e], gauss_point_count)
         h1, h2, Pi = (strain[..., element.start + e : element.stop + e] for strain in strains)
         theta = start[2] + length * (Pi @ angles)
         cos = np.cos(theta)
         sin = np.sin(theta)
         slope_x = cos * (h1 @ values) - sin * (h2 @ values)
         slope_y = sin * (h1 @ values) + cos * (h2 @ values)
-        state[0][..., element] = start[0] + length * (slope_x @ integrals)
-        state[1][..., element] = start[1] + length * (slope_y @ integrals)
-        state[2][..., element] = start[2] + length * (Pi @ ends)
+        shape[0][..., element] = start[0] + length * (slope_x @ integrals)
+        shape[1][..., element] = start[1] + length * (slope_y @ integrals)
+        shape[2][..., element] = start[2] + length * (Pi @ ends)
         # The end of this element is the start of the next element.
-        start = state[..., element][..., -1:]
-    return state
+        start = shape[..., element][..., -1:]
+    return shape
 
 
 class ShapeIntegrationMatrices(NamedTuple):
@@ -127,11 +127,11 @@ class ShapeIntegrationMatrices(NamedTuple):
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
-def shape_integration_matrices(order: int, gauss_points: int = 0) -> ShapeIntegrationMatrices:
-    """The `ShapeIntegrationMatrices` of elements of order `order`, cached. gauss_points: number of Gauss
+def shape_integration_matrices(order: int, gauss_point_count: int = 0) -> ShapeIntegrationMatrices:
+    """The `ShapeIntegrationMatrices` of elements of order `order`, cached. gauss_point_count: number of Gauss
     points; 0: `order` plus `RECONSTRUCTION_SETTINGS.extra_points`."""
     x = gauss_lobatto_rule(order)[0]
-    g = gauss_legendre_rule(gauss_points or order + RECONSTRUCTION_SETTINGS.extra_points)[0]
+    g = gauss_legendre_rule(gauss_point_count or order + RECONSTRUCTION_SETTINGS.extra_points)[0]
     return ShapeIntegrationMatrices(
         lagrange_interpolation_matrix(x, g).T,
         integration_matrix(x, g).T,

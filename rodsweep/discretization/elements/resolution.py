@@ -71,14 +71,14 @@ def expected_wave_number(mode_count: int, amplified_wave_number: float) -> float
     )
 
 
-def mesh_accuracy(accuracy: float, vectors: bool) -> float:
+def mesh_accuracy(accuracy: float, needs_vectors: bool) -> float:
     """Relative accuracy that the eigenvalues of a mesh need for results of relative accuracy `accuracy`.
 
-    vectors: whether eigenvectors are needed. The error of an eigenvector on a mesh is the square root of the
-    error of its eigenvalue. Without eigenvectors a mesh of the accuracy `RESOLUTION_SETTINGS.start_accuracy`
-    suffices, because the eigenvalues are refined to roots of D.
+    needs_vectors: whether eigenvectors are needed. The error of an eigenvector on a mesh is the square root
+    of the error of its eigenvalue. Without eigenvectors a mesh of the accuracy
+    `RESOLUTION_SETTINGS.start_accuracy` suffices, because the eigenvalues are refined to roots of D.
     """
-    return accuracy**2 if vectors else RESOLUTION_SETTINGS.start_accuracy
+    return accuracy**2 if needs_vectors else RESOLUTION_SETTINGS.start_accuracy
 
 
 def required_order(wave_number: float, accuracy: float) -> float:
@@ -86,29 +86,32 @@ def required_order(wave_number: float, accuracy: float) -> float:
     accuracy `accuracy`."""
     settings = RESOLUTION_SETTINGS
     further_digits = max(-log10(accuracy), settings.base_digits) - settings.base_digits
-    per_digit = settings.digit_intercept + settings.digit_slope * min(
+    order_per_digit = settings.digit_intercept + settings.digit_slope * min(
         wave_number, settings.digit_slope_max_wave_number
     )
-    return settings.order_intercept + settings.order_slope * wave_number + further_digits * per_digit
+    return settings.order_intercept + settings.order_slope * wave_number + further_digits * order_per_digit
 
 
-def resolution_for(wave_number: float, accuracy: float, largest_order: int | None = None) -> Resolution:
+def resolution_for(wave_number: float, accuracy: float, max_order: int | None = None) -> Resolution:
     """The smallest number of elements, and then the lowest order (plus one for several elements), that
     resolve a wave to the relative accuracy `accuracy`.
 
     If this takes more than `RESOLUTION_SETTINGS.max_unknowns` unknowns, the result is a mesh with too many
-    unknowns that need not resolve the wave. wave_number: in 1/L. largest_order: maximum order of an element,
+    unknowns that need not resolve the wave. wave_number: in 1/L. max_order: maximum order of an element,
     `RESOLUTION_SETTINGS.max_order` by default.
     """
-    largest_order = largest_order or RESOLUTION_SETTINGS.max_order
-    max_elements = RESOLUTION_SETTINGS.max_unknowns // (3 * largest_order) + 2  # more unknowns fail anyway
-    elements = 1
-    while elements < max_elements and required_order(wave_number / elements, accuracy) > largest_order:
-        elements += 1
-    if elements == max_elements:
-        return Resolution(elements, largest_order)
-    order = max(RESOLUTION_SETTINGS.min_order, ceil(required_order(wave_number / elements, accuracy)))
-    return Resolution(elements, order + (1 if elements > 1 else 0))
+    max_order = max_order or RESOLUTION_SETTINGS.max_order
+    max_element_count = RESOLUTION_SETTINGS.max_unknowns // (3 * max_order) + 2  # more unknowns fail anyway
+    element_count = 1
+    while (
+        element_count < max_element_count
+        and required_order(wave_number / element_count, accuracy) > max_order
+    ):
+        element_count += 1
+    if element_count == max_element_count:
+        return Resolution(element_count, max_order)
+    order = max(RESOLUTION_SETTINGS.min_order, ceil(required_order(wave_number / element_count, accuracy)))
+    return Resolution(element_count, order + (1 if element_count > 1 else 0))
 
 
 def finer_resolution(resolution: Resolution) -> Resolution:
@@ -117,6 +120,6 @@ def finer_resolution(resolution: Resolution) -> Resolution:
     order = ceil(resolution.order * RESOLUTION_SETTINGS.refinement_ratio)
     if order <= RESOLUTION_SETTINGS.max_order:
         return Resolution(resolution.element_count, order)
-    elements = ceil(resolution.element_count * RESOLUTION_SETTINGS.refinement_ratio)
-    nodes = RESOLUTION_SETTINGS.refinement_ratio * resolution.element_count * resolution.order
-    return Resolution(elements, ceil(nodes / elements))
+    element_count = ceil(resolution.element_count * RESOLUTION_SETTINGS.refinement_ratio)
+    node_count = RESOLUTION_SETTINGS.refinement_ratio * resolution.element_count * resolution.order
+    return Resolution(element_count, ceil(node_count / element_count))

@@ -51,11 +51,13 @@ class CollocationMethod(NamedTuple):
 def radau_method(stage_count: int) -> CollocationMethod:
     """The Radau IIA method with s = `stage_count` stages; its nodes are the zeros of P_(s-1) - P_s, mapped to
     [0, 1]. P_s: Legendre polynomial."""
-    series = np.zeros(stage_count + 1)
-    series[-2:] = 1.0, -1.0
-    x = np.sort(legendre.legroots(series).real)
+    legendre_coefficients = np.zeros(stage_count + 1)
+    legendre_coefficients[-2:] = 1.0, -1.0
+    x = np.sort(legendre.legroots(legendre_coefficients).real)
     for _ in range(RADAU_SETTINGS.newton_steps):
-        x = x - legendre.legval(x, series) / legendre.legval(x, legendre.legder(series))
+        x = x - legendre.legval(x, legendre_coefficients) / legendre.legval(
+            x, legendre.legder(legendre_coefficients)
+        )
     x[-1] = 1.0
     moments = np.zeros(stage_count)
     moments[0] = 1.0

@@ -225,9 +225,13 @@ def time_of_rise_through_mean(samples: Array) -> float:
     """Time, in periods, at which the interpolant of samples, (N,), rises through its mean after a minimum."""
     n = len(samples)
     deviation = samples - samples.mean()
-    after = (int(np.argmin(deviation)) + np.arange(n + 1)) % n
-    k = int(np.argmax(deviation[after] >= 0))
-    return float(_bisect_rising_zero(fourier_coefficients(deviation), (after[k] - 1) / n, after[k] / n))
+    indices_after_minimum = (int(np.argmin(deviation)) + np.arange(n + 1)) % n
+    k = int(np.argmax(deviation[indices_after_minimum] >= 0))
+    return float(
+        _bisect_rising_zero(
+            fourier_coefficients(deviation), (indices_after_minimum[k] - 1) / n, indices_after_minimum[k] / n
+        )
+    )
 
 
 @compiled_for_vectors

@@ -40,17 +40,17 @@ def arm_mesh(rod: Rod, mode_count: int, accuracy: float) -> ArmMesh:
     weights = sampled_arm(rod).weights
     _, amplified_q = most_amplified_local_waves(rod)
     unloaded_q = (mode_count - RESOLUTION_SETTINGS.mode_offset) * pi * _relative_wave_number(rod)
-    waves = np.hypot(RESOLUTION_SETTINGS.wave_factor * amplified_q, unloaded_q)
-    elements = _elements_for_wave(rod, waves * weights, accuracy, RESOLUTION_SETTINGS.max_order)
+    wave_numbers = np.hypot(RESOLUTION_SETTINGS.wave_factor * amplified_q, unloaded_q)
+    elements = _elements_for_wave(rod, wave_numbers * weights, accuracy, RESOLUTION_SETTINGS.max_order)
     return ArmMesh(elements.edges, elements.order)
 
 
-def arm_elements(rod: Rod, wave_number: float, accuracy: float, largest_order: int | None = None) -> Elements:
+def arm_elements(rod: Rod, wave_number: float, accuracy: float, max_order: int | None = None) -> Elements:
     """Elements that resolve a field along an arm with the mean wave number `wave_number`, in 1/L, to a
-    relative accuracy. largest_order: of an element, `RESOLUTION_SETTINGS.max_order` by default."""
-    waves = wave_number * _relative_wave_number(rod)
+    relative accuracy. max_order: of an element, `RESOLUTION_SETTINGS.max_order` by default."""
+    wave_numbers = wave_number * _relative_wave_number(rod)
     return _elements_for_wave(
-        rod, waves * sampled_arm(rod).weights, accuracy, largest_order or RESOLUTION_SETTINGS.max_order
+        rod, wave_numbers * sampled_arm(rod).weights, accuracy, max_order or RESOLUTION_SETTINGS.max_order
     )
 
 
@@ -62,28 +62,30 @@ def _relative_wave_number(rod: Rod) -> Array:
     return wave_number / (weights @ wave_number)
 
 
-def _elements_for_wave(rod: Rod, phases: Array, accuracy: float, largest_order: int) -> Elements:
+def _elements_for_wave(rod: Rod, phases: Array, accuracy: float, max_order: int) -> Elements:
     """Elements that resolve a wave along an arm to a relative accuracy. phases: phase of the wave over each
-    sample interval, |q| times length, (n,). largest_order: maximum order of an element."""
+    sample interval, |q| times length, (n,). max_order: maximum order of an element."""
     breaks = rod.material.breaks
-    fractions = phases.reshape(len(breaks) - 1, -1).sum(axis=1)
+    phases_between_breaks = phases.reshape(len(breaks) - 1, -1).sum(axis=1)
     edges = [0.0]
-    max_fraction = 0.0
-    for start, stop, fraction in zip(breaks[:-1], breaks[1:], fractions, strict=True):
-        ratio = abs(log(_relative_radius_at(rod, stop) / _relative_radius_at(rod, start)))
-        needed_count = _element_count_for(float(fraction), accuracy, largest_order)
-        count = max(1, ceil(ratio / log(ARM_RESOLUTION_SETTINGS.max_radius_ratio)), needed_count)
-        edges += _graded_edges(rod, start, stop, count)
-        max_fraction = max(max_fraction, float(fraction) / count)
-    order = max(RESOLUTION_SETTINGS.min_order, ceil(required_order(hypot(max_fraction, 1.0), accuracy)))
+    max_element_phase = 0.0
+    for start, stop, phase in zip(breaks[:-1], breaks[1:], phases_between_breaks, strict=True):
+        log_radius_ratio = abs(log(_relative_radius_at(rod, stop) / _relative_radius_at(rod, start)))
+        min_count = _element_count_for(float(phase), accuracy, max_order)
+        element_count = max(
+            1, ceil(log_radius_ratio / log(ARM_RESOLUTION_SETTINGS.max_radius_ratio)), min_count
+        )
+        edges += _graded_edges(rod, start, stop, element_count)
+        max_element_phase = max(max_element_phase, float(phase) / element_count)
+    order = max(RESOLUTION_SETTINGS.min_order, ceil(required_order(hypot(max_element_phase, 1.0), accuracy)))
     return Elements(
         tuple(edges), order + (0 if rod.is_uniform else ARM_RESOLUTION_SETTINGS.profile_order_increase)
     )
 
 
 def finer_arm_mesh(rod: Rod, mesh: ArmMesh) -> ArmMesh:
-    """The next finer mesh of an arm: elements of 4/3 of the order or, if this exceeds the maximum order,
-    twice as many elements of 2/3 of the order."""
+    """The next finer mesh of an arm: the order is multiplied by 4/3 or, if the result exceeds the maximum
+    order, the number of elements by 2 and the order by 2/3."""
     order = ceil(mesh.order * RESOLUTION_SETTINGS.refinement_ratio)
     if order <= RESOLUTION_SETTINGS.max_order:
         return ArmMesh(mesh.edges, order)
@@ -93,11 +95,11 @@ def finer_arm_mesh(rod: Rod, mesh: ArmMesh) -> ArmMesh:
     return ArmMesh(tuple(edges), ceil(RESOLUTION_SETTINGS.refinement_ratio / 2 * mesh.order))
 
 
-def _element_count_for(phase: float, accuracy: float, largest_order: int) -> int:
-    """Number of elements of the order `largest_order` that resolve an interval in which the phase of the wave
+def _element_count_for(phase: float, accuracy: float, max_order: int) -> int:
+    """Number of elements of the order `max_order` that resolve an interval in which the phase of the wave
     grows by `phase`, to the relative accuracy `accuracy`."""
     count = 1
-    while required_order(phase / count, accuracy) > largest_order:
+    while required_order(phase / count, accuracy) > max_order:
         count += 1
     return count
 
@@ -107,14 +109,16 @@ def _relative_radius_at(rod: Rod, u: float) -> float:
     return 1 - (1 - rod.taper) * u
 
 
-def _graded_edges(rod: Rod, start: float, stop: float, count: int) -> list[float]:
-    """Edges of `count` elements from start to stop, without start. All elements have equal ratios of the
-    radii at both ends."""
-    if count == 1:
+def _graded_edges(rod: Rod, start: float, stop: float, element_count: int) -> list[float]:
+    """Edges of `element_count` elements from start to stop, without start. All elements have equal ratios of
+    the radii at both ends."""
+    if element_count == 1:
         return [float(stop)]
     if rod.taper == 1:
-        inner: Array = np.linspace(start, stop, count + 1)[1:]
+        edges: Array = np.linspace(start, stop, element_count + 1)[1:]
     else:
-        radii = np.geomspace(_relative_radius_at(rod, start), _relative_radius_at(rod, stop), count + 1)[1:]
-        inner = (1 - radii) / (1 - rod.taper)
-    return [*inner[:-1].tolist(), float(stop)]
+        radii = np.geomspace(
+            _relative_radius_at(rod, start), _relative_radius_at(rod, stop), element_count + 1
+        )[1:]
+        edges = (1 - radii) / (1 - rod.taper)
+    return [*edges[:-1].tolist(), float(stop)]

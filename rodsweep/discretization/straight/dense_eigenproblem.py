@@ -43,15 +43,15 @@ class DenseEigenproblem:
         shear = c2[:, None] * shear_force(self.mesh, vectors, points)
         return np.stack([shear.T, field_derivatives_at(self.mesh, self.displacements(vectors)[1], points).T])
 
-    def with_tip_terms(self, pair: float, tip: float) -> Array:
-        """A plus the matrix of the tip term pair (a theta - b y) - tip a y at u = 1, (unknowns, unknowns); a,
-        b: test functions of y and theta."""
+    def with_tip_terms(self, p: float, r: float) -> Array:
+        """A plus the matrix of the tip term p (a theta - b y) - r a y at u = 1, (unknowns, unknowns). p, r:
+        results of `hermitian_tip_coefficients`. a, b: test functions of y and theta."""
         A = self.A.copy()
         n = self.mesh.node_count
         y, theta = self.displacement_factors[:, -1]
-        A[n - 1, 2 * n - 1] += pair * y * theta
-        A[2 * n - 1, n - 1] -= pair * y * theta
-        A[n - 1, n - 1] -= tip * y * y
+        A[n - 1, 2 * n - 1] += p * y * theta
+        A[2 * n - 1, n - 1] -= p * y * theta
+        A[n - 1, n - 1] -= r * y * y
         return A
 
 

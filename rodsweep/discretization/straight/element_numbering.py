@@ -41,13 +41,13 @@ def element_numbering(element_count: int, order: int, components: tuple[int, ...
     unknown_count = PLANE_COMPONENT_COUNT * (2 * last_node + 1)
     stresses = [np.where(nodes == last_node, unknown_count, c * last_node + nodes) for c in components]
     velocities = [PLANE_COMPONENT_COUNT * last_node + c * (last_node + 1) + nodes for c in components]
-    width = 2 * len(components)
-    node = np.tile(np.arange(order + 1), width)
+    unknowns_per_node = 2 * len(components)
+    node = np.tile(np.arange(order + 1), unknowns_per_node)
     interior_nodes = np.flatnonzero((node > 0) & (node < order)) if element_count > 1 else np.array([], int)
     ends = np.setdiff1d(np.arange(len(node)), interior_nodes)
     ends = ends[np.argsort(node[ends], kind="stable")]
-    interface_indices = np.arange(element_count)[:, None] * width + np.arange(len(ends))
+    interface_indices = np.arange(element_count)[:, None] * unknowns_per_node + np.arange(len(ends))
     unknowns = np.concatenate([*stresses, *velocities], axis=1)
-    exists = np.ones(interface_indices[-1, -1] + 1, bool)
-    exists[interface_indices[-1]] = unknowns[-1, ends] < unknown_count
-    return ElementNumbering(unknowns, interior_nodes, ends, interface_indices, exists)
+    is_unknown = np.ones(interface_indices[-1, -1] + 1, bool)
+    is_unknown[interface_indices[-1]] = unknowns[-1, ends] < unknown_count
+    return ElementNumbering(unknowns, interior_nodes, ends, interface_indices, is_unknown)

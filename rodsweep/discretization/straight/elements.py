@@ -63,18 +63,20 @@ class StraightElements:
         Sigma = coefficients.tip_stress[:, None]
         WD, W = self._element_matrices
         # Local unknowns: stresses at all nodes, then velocities; `half` components of each.
-        half = len(self.components)
+        component_count = len(self.components)
         nodes = np.arange(len(W))
-        local_block = np.zeros((2 * half, 2 * half))
-        local_block[:half, half:] = ad(E, identity)[block]
-        local_block[half:, :half] = (coad(E, identity) + coad(np.diag(coefficients.compliance), Sigma))[block]
-        local_block[half:, half:] = -np.diag(coefficients.drag)[block]
-        A = np.zeros((2 * half, len(W), 2 * half, len(W)))
+        local_block = np.zeros((2 * component_count, 2 * component_count))
+        local_block[:component_count, component_count:] = ad(E, identity)[block]
+        local_block[component_count:, :component_count] = (
+            coad(E, identity) + coad(np.diag(coefficients.compliance), Sigma)
+        )[block]
+        local_block[component_count:, component_count:] = -np.diag(coefficients.drag)[block]
+        A = np.zeros((2 * component_count, len(W), 2 * component_count, len(W)))
         A[:, nodes, :, nodes] = W[:, None, None] * local_block
-        for stress in range(half):
-            A[stress, :, half + stress] -= WD.T
-            A[half + stress, :, stress] += WD
-        return A.reshape(2 * half * len(W), -1)
+        for stress in range(component_count):
+            A[stress, :, component_count + stress] -= WD.T
+            A[component_count + stress, :, stress] += WD
+        return A.reshape(2 * component_count * len(W), -1)
 
     @cached_property
     def M(self) -> Array:
@@ -108,10 +110,10 @@ class StraightElements:
         """Entries of a vector x, (unknowns,), by element, (elements, local)."""
         return np.append(x, 0)[self.numbering.state_indices]
 
-    def assemble(self, parts: Values) -> Values:
+    def assemble(self, element_vectors: Values) -> Values:
         """Sum of element contributions, (elements, local), as a vector (unknowns,)."""
-        x = np.zeros(self.form.unknown_count + 1, parts.dtype)
-        np.add.at(x, self.numbering.state_indices, parts)
+        x = np.zeros(self.form.unknown_count + 1, element_vectors.dtype)
+        np.add.at(x, self.numbering.state_indices, element_vectors)
         return x[:-1]
 
     def lu_factors(self, shift: complex) -> "ElementFactors":

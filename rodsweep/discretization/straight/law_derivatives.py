@@ -62,7 +62,8 @@ class LawDerivativesAtRest:
 
 
 def law_derivatives_at_rest(rod: Rod, nodal: NodalRod) -> LawDerivativesAtRest:
-    """The derivatives of a rod's constitutive law at rest, at the nodes of a mesh. nodal: the rod there."""
+    """Derivatives of a rod's constitutive law at rest, at the nodes of a mesh. nodal: the rod at the
+    nodes."""
     law: Law = rod.material.constitutive_law
     nu = nodal.rest_strain[0]
     c1, _, c3 = nodal.compliance
@@ -74,13 +75,13 @@ def law_derivatives_at_rest(rod: Rod, nodal: NodalRod) -> LawDerivativesAtRest:
     # The force compresses the straight arm: d nu/dF = -c1/(dN/dS1).
     nu_derivative = -c1 / stiffness
     ones = np.ones_like(nu)
-    change = ForceDerivatives(
+    force_derivatives = ForceDerivatives(
         nu_derivative, np.array([slope * nu_derivative, 0 * ones, bending_slope * nu_derivative])
     )
     derivatives = LawDerivativesAtRest(
         is_nonlinear=law is not LINEAR,
         tangent=np.array([stiffness, ones, bending]),
-        force_derivatives=change,
+        force_derivatives=force_derivatives,
         N11=slope * c1,
         N33=bending_slope * c3,
         M13=bending_slope * c1,
@@ -152,11 +153,11 @@ def _derivatives_beside_jump(law: Law, nu: Array, c1: Array, c3: Array) -> Deriv
     second[..., 0, 1, 1] = law.bending_factor_slope(nu) * c3
     second[..., 1, 0, 1] = second[..., 1, 1, 0] = law.bending_factor_slope(nu) * c1
     third[..., 0, 0, 0, 0] = law.stiffness_second_derivative(nu) * c1**2
-    bending = law.bending_factor_second_derivative(nu)
+    bending_curvature = law.bending_factor_second_derivative(nu)
     for indices in ((0, 1, 1), (1, 0, 1), (1, 1, 0)):
-        third[(..., 0, *indices)] = bending * c1 * c3
+        third[(..., 0, *indices)] = bending_curvature * c1 * c3
     for indices in ((1, 0, 0), (0, 1, 0), (0, 0, 1)):
-        third[(..., 1, *indices)] = bending * c1**2
+        third[(..., 1, *indices)] = bending_curvature * c1**2
     return first, second, third
 
 

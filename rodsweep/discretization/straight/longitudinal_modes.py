@@ -74,8 +74,8 @@ def _leading_eigenvalues(rod: Rod, mesh: Elements, order: int, mode_count: int) 
     singular_values = np.linalg.svd(
         _displacement_matrix(rod, np.asarray(mesh.edges), order), compute_uv=False
     )
-    rates: Array = -1 / singular_values[:mode_count] ** 2
-    return rates
+    eigenvalues: Array = -1 / singular_values[:mode_count] ** 2
+    return eigenvalues
 
 
 def _displacement_matrix(rod: Rod, edges: Array, order: int) -> Array:
@@ -83,25 +83,27 @@ def _displacement_matrix(rod: Rod, edges: Array, order: int) -> Array:
     of the elements, (elements + 1,). order: number of strains per element."""
     strain_points, strain_weights = gauss_legendre_rule(order)
     points, weights = gauss_legendre_rule(order + LONGITUDINAL_MODE_SETTINGS.extra_points)
-    halves = np.diff(edges)[:, None] / 2
+    half_lengths = np.diff(edges)[:, None] / 2
     midpoints = (edges[1:] + edges[:-1])[:, None] / 2
     sections_at_strains, sections_at_points = (
-        rod.sections((midpoints + halves * x).ravel()) for x in (strain_points, points)
+        rod.sections((midpoints + half_lengths * x).ravel()) for x in (strain_points, points)
     )
     tangent = (
         rod.material.constitutive_law.stiffness(sections_at_strains.nu) / sections_at_strains.compliance[0]
     )
-    scale = np.sqrt(tangent * (halves * strain_weights).ravel())
-    root = np.sqrt(sections_at_points.drag[0] * (halves * weights).ravel())
-    count = len(halves)
-    elements_before = np.tril(np.ones((count, count)), -1)[:, None, :, None] * (halves * strain_weights)
-    integral = np.broadcast_to(elements_before, (count, len(points), count, order)).copy()
-    diagonal = np.arange(count)
+    strain_scale = np.sqrt(tangent * (half_lengths * strain_weights).ravel())
+    drag_scale = np.sqrt(sections_at_points.drag[0] * (half_lengths * weights).ravel())
+    element_count = len(half_lengths)
+    elements_before = np.tril(np.ones((element_count, element_count)), -1)[:, None, :, None] * (
+        half_lengths * strain_weights
+    )
+    integrals = np.broadcast_to(elements_before, (element_count, len(points), element_count, order)).copy()
+    diagonal = np.arange(element_count)
     # Within the element of the point, the integral ends at the point, so Gauss weights of the full element do
     # not apply.
     to_points = legendre.legval(points, _legendre_series_of_integrals(order)).T
-    integral[diagonal, :, diagonal, :] = halves[:, :, None] * to_points
-    matrix: Array = root[:, None] * integral.reshape(len(root), len(scale)) / scale
+    integrals[diagonal, :, diagonal, :] = half_lengths[:, :, None] * to_points
+    matrix: Array = drag_scale[:, None] * integrals.reshape(len(drag_scale), len(strain_scale)) / strain_scale
     return matrix
 
 

@@ -109,9 +109,9 @@ class MixedForm:
         """Product (dA/dF) X for states X, (..., unknowns): dA/dF is the derivative of A by the force."""
         S, V = self.stresses_and_velocities(X)
         W = self.mesh.quadrature
-        change = self.law_derivatives.force_derivatives
-        E = axial_field(change.nu)
-        dE = broadcast_to_field(change.tangent, S) * S
+        force_derivatives = self.law_derivatives.force_derivatives
+        E = axial_field(force_derivatives.nu)
+        dE = broadcast_to_field(force_derivatives.tangent, S) * S
         Sigma = axial_field(-np.ones(len(W)))
         rest_strain = broadcast_to_field(self.nodal_rod.rest_strain, S)
         # F enters through the strain at rest, the tangent at rest, and Sigma1 = -F.

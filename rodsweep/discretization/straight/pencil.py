@@ -63,7 +63,7 @@ class PencilMatrices(NamedTuple):
 class Pencil(Elements):
     """The pencil A x = w B x of uniform rods on equal elements, as six constant matrices.
 
-    The matrix of one rod is A = sum_i coefficients(rod)[i] term_entries[i]. term_entries: entries of the
+    The matrix of one rod is A = sum_i term_coefficients(rod)[i] term_entries[i]. term_entries: entries of the
     constant matrices, (6, nnz). rows, columns: row and column of each entry, (nnz,), sorted by row, then
     column, with the full diagonal. nodal_masses: lumped mass of the nodes, (nodes,). B is diagonal: 1 for y,
     gamma3 divided by the squared angle weight for theta, 0 for s. The unknowns are y, theta and s,
@@ -80,7 +80,7 @@ class Pencil(Elements):
         return 3 * self.node_count
 
     def term_coefficients(self, rod: Rod) -> Array:
-        """Factors of the six constant matrices for the rod `rod`, (6,)."""
+        """Factors by which the six constant matrices are multiplied for the rod `rod`, (6,)."""
         t = angle_weight(rod.rotational_drag)
         return np.array([1.0, 1 / t**2, rod.F / t, rod.g / t, rod.nu / t, rod.c2])
 
@@ -121,12 +121,15 @@ def finite_eigenvalue_count(rod: Rod, node_count: int) -> int:
     return node_count if rod.c2 == 0 or rod.rotational_drag == 0 else 2 * node_count
 
 
-def fields_of_vectors(vectors: Complex, scale: Array) -> tuple[NDArray, NDArray]:
+def fields_of_vectors(vectors: Complex, displacement_factors: Array) -> tuple[NDArray, NDArray]:
     """Returns (y, theta) of k eigenvectors `vectors`, (unknowns, k), at all nodes, clamp included, (nodes +
-    1, k). scale: factors from the unknowns to y and theta at the nodes, clamp excluded, (2, nodes)."""
-    n = scale.shape[1]
+    1, k). displacement_factors: factors from the unknowns to y and theta at the nodes, clamp excluded, (2,
+    nodes)."""
+    n = displacement_factors.shape[1]
     clamp = np.zeros((1, vectors.shape[1]))
-    y, theta = (np.vstack([clamp, vectors[i * n : (i + 1) * n] * scale[i][:, None]]) for i in range(2))
+    y, theta = (
+        np.vstack([clamp, vectors[i * n : (i + 1) * n] * displacement_factors[i][:, None]]) for i in range(2)
+    )
     return y, theta
 
 
@@ -138,8 +141,10 @@ def angle_weight(gamma3: float) -> float:
 def factors_to_unit_tip(y: Complex, theta: Complex) -> Complex:
     """Factors, (k,), that normalise k modes to y(1) = 1; NaN for a mode whose y(1) is 0 to rounding. y,
     theta: the modes at all nodes, (nodes + 1, k)."""
-    size = np.maximum(np.abs(y).max(axis=0), np.abs(theta).max(axis=0))
-    return np.where(np.abs(y[-1]) > PENCIL_NORM_SETTINGS.min_tip_displacement * size, 1 / y[-1], COMPLEX_NAN)
+    largest_modulus = np.maximum(np.abs(y).max(axis=0), np.abs(theta).max(axis=0))
+    return np.where(
+        np.abs(y[-1]) > PENCIL_NORM_SETTINGS.min_tip_displacement * largest_modulus, 1 / y[-1], COMPLEX_NAN
+    )
 
 
 def shear_force(mesh: Elements, vectors: Complex, points: Array) -> Complex:
@@ -148,11 +153,11 @@ def shear_force(mesh: Elements, vectors: Complex, points: Array) -> Complex:
     nodes, weights = gauss_legendre_rule(mesh.order)
     mass = (weights * mesh.lengths[:, None] / 2).ravel() * PENCIL_NORM_SETTINGS.shear_weight**2
     values = vectors[2 * mesh.node_count :] / np.sqrt(mass)[:, None]
-    result = np.empty((len(points), vectors.shape[1]), complex)
+    shear = np.empty((len(points), vectors.shape[1]), complex)
     for e, indices, coordinates in mesh.points_by_element(points):
         rows = slice(e * mesh.order, (e + 1) * mesh.order)
-        result[indices] = lagrange_interpolation_matrix(nodes, coordinates) @ values[rows]
-    return result
+        shear[indices] = lagrange_interpolation_matrix(nodes, coordinates) @ values[rows]
+    return shear
 
 
 def field_derivatives_at(mesh: Elements, values: Complex, points: Array) -> Complex:
@@ -160,11 +165,11 @@ def field_derivatives_at(mesh: Elements, values: Complex, points: Array) -> Comp
     (nodes + 1, k)."""
     nodes, _ = gauss_lobatto_rule(mesh.order)
     derivative = 2 * differentiation_matrix(nodes)
-    result = np.empty((len(points), values.shape[1]), complex)
+    derivatives = np.empty((len(points), values.shape[1]), complex)
     for e, indices, coordinates in mesh.points_by_element(points):
-        changes = derivative @ values[mesh.node_ranges[e]] / mesh.lengths[e]
-        result[indices] = lagrange_interpolation_matrix(nodes, coordinates) @ changes
-    return result
+        element_slopes = derivative @ values[mesh.node_ranges[e]] / mesh.lengths[e]
+        derivatives[indices] = lagrange_interpolation_matrix(nodes, coordinates) @ element_slopes
+    return derivatives
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_pencils)
@@ -177,7 +182,7 @@ def assemble_pencil(element_count: int, order: int) -> Pencil:
     value = lagrange_interpolation_matrix(x, xg)
     slope = value @ differentiation_matrix(x)
     mass = np.zeros(n + 1)
-    entries: list[tuple[int, NDArray[np.integer], NDArray[np.integer], NDArray[np.floating]]] = []
+    blocks: list[tuple[int, NDArray[np.integer], NDArray[np.integer], NDArray[np.floating]]] = []
     for e in range(element_count):
         nodes = np.arange(e * order, (e + 1) * order + 1)
         mass[nodes] += w * h / 2
@@ -188,7 +193,7 @@ def assemble_pencil(element_count: int, order: int) -> Pencil:
         test = value[:, is_unclamped]
         test_slope = slope[:, is_unclamped]
         weight = wg * h / 2
-        entries += [
+        blocks += [
             (0, y, s, -test_slope.T * wg),
             (0, s, y, wg[:, None] * test_slope),
             (1, theta, theta, -(test_slope.T * wg) @ test_slope * 2 / h),
@@ -198,29 +203,31 @@ def assemble_pencil(element_count: int, order: int) -> Pencil:
             (5, s, s, -np.diag(weight)),
         ]
     # The follower force at the tip, -F a(1) theta(1).
-    entries.append((2, np.array([n - 1]), np.array([2 * n - 1]), np.array([[-1.0]])))
+    blocks.append((2, np.array([n - 1]), np.array([2 * n - 1]), np.array([[-1.0]])))
     masses = np.concatenate(
         [mass[1:], mass[1:], np.tile(wg * h / 2, element_count) * PENCIL_NORM_SETTINGS.shear_weight**2]
     )
-    return _assemble_blocks(element_count, order, entries, mass[1:], 1 / np.sqrt(masses))
+    return _assemble_blocks(element_count, order, blocks, mass[1:], 1 / np.sqrt(masses))
 
 
-def _assemble_blocks(element_count: int, order: int, entries: list, mass: Array, scale: Array) -> Pencil:
-    """The `Pencil` in which the blocks `entries` of all elements are summed into one sparsity pattern.
-    element_count, order: number and order of the elements. entries: (index of the constant matrix, rows,
-    columns, block) of each block. mass: lumped mass, (nodes,). scale: scale of the unknowns, (unknowns,)."""
+def _assemble_blocks(
+    element_count: int, order: int, blocks: list, mass: Array, unknown_scales: Array
+) -> Pencil:
+    """The `Pencil` in which the `blocks` of all elements are summed into one sparsity pattern. element_count,
+    order: number and order of the elements. blocks: (index of the constant matrix, rows, columns, block) of
+    each block. mass: lumped mass, (nodes,). unknown_scales: factors of the unknowns, (unknowns,)."""
     size = 3 * element_count * order
     diagonal = np.arange(size)
     keys = [diagonal * size + diagonal]
-    keys += [np.add.outer(rows * size, columns).ravel() for _, rows, columns, _ in entries]
+    keys += [np.add.outer(rows * size, columns).ravel() for _, rows, columns, _ in blocks]
     pattern, positions = np.unique(np.concatenate(keys), return_inverse=True)
     rows, columns = np.divmod(pattern, size)
     terms = np.zeros((6, len(pattern)))
     position = size
-    for term, _, _, block in entries:
+    for term, _, _, block in blocks:
         np.add.at(terms[term], positions[position : position + block.size], block.ravel())
         position += block.size
-    terms *= scale[rows] * scale[columns]
+    terms *= unknown_scales[rows] * unknown_scales[columns]
     return Pencil(
         equal_edges(element_count), order, rows.astype(np.int32), columns.astype(np.int32), terms, mass
     )

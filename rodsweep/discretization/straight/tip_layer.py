@@ -23,7 +23,8 @@ class TipLayerSettings:
     """Settings for the elements that resolve the tip layer."""
 
     max_length_ratio: float = 4.0
-    """Maximum length of the element at the tip, divided by the layer's thickness. Others may be longer."""
+    """Maximum length of the element at the tip, divided by the layer's thickness. Other elements may be
+    longer."""
     max_equal_elements: int = 64
     """Maximum number of equal elements. For a thinner layer the elements near the tip are halved."""
     samples_per_piece: int = 33
@@ -53,18 +54,18 @@ def tip_layer_ratio(rod: Rod) -> float:
     coefficients = rod.local_coefficients(edges[:-1, None] + lengths[:, None] * (points + 1) / 2)
     stiffness = 1 / coefficients.c3 * weights * (2 / lengths)[:, None]
     foundation = coefficients.g * coefficients.nu / coefficients.c2 * weights * (lengths / 2)[:, None]
-    total = 0.0
+    ratio = 0.0
     for element_stiffness, element_foundation in zip(stiffness, foundation, strict=True):
         K = (slope.T * element_stiffness) @ slope + (value.T * element_foundation) @ value
-        total = _ratio_at_right_end(K, total)
-    return total
+        ratio = _ratio_at_right_end(K, ratio)
+    return ratio
 
 
 def _ratio_at_right_end(K: Array, left_ratio: float) -> float:
     """The ratio d/m of `tip_layer_ratio` at the right end of an element. left_ratio: d/m at the left end. K:
     stiffness matrix of the element, (nodes, nodes)."""
-    # At the clamp (before = 0) d is not an unknown; otherwise all previous elements act as a spring of
-    # stiffness 1/before.
+    # At the clamp (left_ratio = 0) d is not an unknown; otherwise all previous elements act as a spring of
+    # stiffness 1/left_ratio.
     if left_ratio == 0:
         K = K[1:, 1:]
     else:
@@ -84,11 +85,16 @@ def _element_edges(rod: Rod) -> Array:
         [np.linspace(a, b, TIP_LAYER_SETTINGS.samples_per_piece + 2)[1:-1] for a, b in intervals]
     )
     coefficients = rod.local_coefficients(midpoints)
-    waves = sqrt(float(np.abs(coefficients.g * coefficients.nu / coefficients.c2 * coefficients.c3).max()))
-    count = min(
-        max(1, ceil(waves / TIP_LAYER_SETTINGS.max_length_ratio)), TIP_LAYER_SETTINGS.max_equal_elements
+    inverse_thickness = sqrt(
+        float(np.abs(coefficients.g * coefficients.nu / coefficients.c2 * coefficients.c3).max())
     )
-    equal_edges = np.linspace(0.0, 1.0, count + 1)
-    halvings = max(0, ceil(np.log2(max(waves / TIP_LAYER_SETTINGS.max_length_ratio / count, 1.0))))
-    towards_tip = 1 - 0.5 ** np.arange(1, halvings + 1) / count
+    element_count = min(
+        max(1, ceil(inverse_thickness / TIP_LAYER_SETTINGS.max_length_ratio)),
+        TIP_LAYER_SETTINGS.max_equal_elements,
+    )
+    equal_edges = np.linspace(0.0, 1.0, element_count + 1)
+    halving_count = max(
+        0, ceil(np.log2(max(inverse_thickness / TIP_LAYER_SETTINGS.max_length_ratio / element_count, 1.0)))
+    )
+    towards_tip = 1 - 0.5 ** np.arange(1, halving_count + 1) / element_count
     return np.unique(np.concatenate([breaks, equal_edges, towards_tip]))

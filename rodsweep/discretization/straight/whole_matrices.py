@@ -1,7 +1,7 @@
 """Dense matrices of the mixed form about a straight arm whose elements differ from each other.
 
-The class has the same methods as `StraightElements` of `rodsweep.discretization.straight.elements`, which
-uses the equal elements of a uniform rod.
+`WholeRodMatrices` has the same methods as `StraightElements` of `rodsweep.discretization.straight.elements`,
+which uses the equal elements of a uniform rod.
 """
 
 from dataclasses import dataclass

@@ -81,11 +81,12 @@ class StressForm(RodOnMesh):
             return self.layout.interpolate(x, interpolation_matrix(self.mesh, target))
         return self._state_on_mesh(target, self.stresses_on_mesh(target, x), x)
 
-    def increments_on_mesh(self, target: Mesh, change: Array) -> Array:
-        """Increments of states, (..., unknowns), mapped linearly to the mesh `target`, (..., unknowns)."""
+    def increments_on_mesh(self, target: Mesh, increments: Array) -> Array:
+        """The `increments` of states, (..., unknowns), mapped linearly to `target`, (..., unknowns on
+        target)."""
         if self.has_continuous_stresses:
-            return self.states_on_mesh(target, change)
-        return self._state_on_mesh(target, self.stress_increments_on_mesh(target, change), change)
+            return self.states_on_mesh(target, increments)
+        return self._state_on_mesh(target, self.stress_increments_on_mesh(target, increments), increments)
 
     def _state_on_mesh(self, target: Mesh, S: Array, x: Array) -> Array:
         """States on the mesh `target`, (..., unknowns on target), with the stresses S at all nodes of
@@ -97,11 +98,15 @@ class StressForm(RodOnMesh):
         )
         return plane_layout(target.node_count, self.unknown_velocities).state(S, V)
 
-    def parameter_derivative(self, name: str) -> NodalRodDerivative:
-        """Derivative of `nodal_rod` with respect to the coordinate of the parameter `name`: 1/k for a
-        stiffness k, else the parameter itself."""
-        change = balance_coefficient_derivatives_at_nodes(self.rod, name, self.mesh)
-        return nodal_rod_derivative(change, self.mesh, jump_derivatives(self.rod, name, self.mesh))
+    def parameter_derivative(self, parameter_name: str) -> NodalRodDerivative:
+        """Derivative of `nodal_rod` with respect to the coordinate of the parameter `parameter_name`: 1/k for
+        a stiffness k, else the parameter itself."""
+        coefficient_derivatives = balance_coefficient_derivatives_at_nodes(
+            self.rod, parameter_name, self.mesh
+        )
+        return nodal_rod_derivative(
+            coefficient_derivatives, self.mesh, jump_derivatives(self.rod, parameter_name, self.mesh)
+        )
 
     @cached_property
     def mass_diagonal(self) -> Array:

@@ -62,9 +62,9 @@ class SlenderArm:
     def __post_init__(self) -> None:
         """Converts quantities to SI. Raises InputError for invalid quantities, NotSlender for a short arm."""
         object.__setattr__(self, "poisson", getattr(self.poisson, "tolist", lambda: self.poisson)())
-        numbers = {name: arm_quantity_in_si(name, getattr(self, name)) for name in UNITS}
+        si_values = {name: arm_quantity_in_si(name, getattr(self, name)) for name in UNITS}
         texts = None if self.segments is None else segment_texts(self.segments)
-        object.__setattr__(self, "si", SimpleNamespace(**numbers))
+        object.__setattr__(self, "si", SimpleNamespace(**si_values))
         object.__setattr__(self, "segments", texts)
         object.__setattr__(self, "si_segments", segments_of(texts or ()))
         refuse_wrong_choices(self)
@@ -204,7 +204,9 @@ class SlenderArm:
     def drags_along(self, drag: Drag) -> tuple[Drag, ...]:
         """Drag at every station of `shape`. drag: the estimate at the base, one of `drags`."""
         index = self.drags.index(drag)
-        return tuple(self.shape.drags_at(place, self.si.viscosity)[index] for place in self.shape.stations)
+        return tuple(
+            self.shape.drags_at(station, self.si.viscosity)[index] for station in self.shape.stations
+        )
 
     @property
     def chosen_drag(self) -> Drag:

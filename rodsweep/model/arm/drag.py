@@ -80,19 +80,19 @@ def drag_estimates(viscosity: float, length: float, radius: float, half_height: 
     gamma3 is from pi eta a^2 to 4 pi eta a^2; the likeliest estimate has the geometric mean. The smallest is
     for sections that turn about a diameter: the surface velocity -Omega x2 of a long cylinder is axial, and
     the flow outside is harmonic and decays like 1/r; its traction eta Omega cos(phi) has the torque gamma3
-    Omega. The largest is that for rotation about the axis of the cylinder (Powers 2010).
+    Omega. The largest gamma3 is the drag of rotation about the axis of the cylinder (Powers 2010).
     """
     slenderness = length / radius
     min_rotational = pi * half_height**2
     max_rotational = 4 * pi * half_height**2
-    translations = (gray_hancock_drag(slenderness), lighthill_drag(slenderness))
-    members = [(*cox_drag(slenderness), (min_rotational * max_rotational) ** 0.5)]
-    members += [
+    translational_drags = (gray_hancock_drag(slenderness), lighthill_drag(slenderness))
+    drag_factors = [(*cox_drag(slenderness), (min_rotational * max_rotational) ** 0.5)]
+    drag_factors += [
         (*translation, rotational)
-        for translation in translations
+        for translation in translational_drags
         for rotational in (min_rotational, max_rotational)
     ]
     return tuple(
         Drag(viscosity=viscosity, axial=axial, across=across, rotational=rotational)
-        for axial, across, rotational in members
+        for axial, across, rotational in drag_factors
     )

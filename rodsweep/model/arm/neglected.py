@@ -99,21 +99,23 @@ def neglected_effects(
     Weight is included if the arm has a density difference, flattening of the wall if the arm has a bore.
     """
     drag = smallest_drag(arm) if drag is None else drag
-    omega, forces, y_over_L = np.broadcast_arrays(*(np.asarray(x, float) for x in (rate, F, amplitude)))
+    omega, forces, tip_amplitude = np.broadcast_arrays(*(np.asarray(x, float) for x in (rate, F, amplitude)))
     omega = abs(omega)
     effects = [
         arm_inertia_effect(arm, omega, drag),
         fluid_inertia_effect(arm, omega, drag),
         compression_effect(arm, forces),
-        reynolds_number_effect(arm, omega, y_over_L),
+        reynolds_number_effect(arm, omega, tip_amplitude),
     ]
     if not isnan(arm.si.density_difference):
         effects.append(weight_effect(arm, forces))
     tubes = [station.section for station in arm.shape.stations if isinstance(station.section, Tube)]
     if tubes:
         L = arm.si.length
-        walls = [wall_flattening_effect(L, t.radius, t.inner_radius, arm.poisson, y_over_L) for t in tubes]
-        effects.append(max(walls, key=lambda effect: np.fmax.reduce(np.ravel(effect.value))))
+        wall_effects = [
+            wall_flattening_effect(L, t.radius, t.inner_radius, arm.poisson, tip_amplitude) for t in tubes
+        ]
+        effects.append(max(wall_effects, key=lambda effect: np.fmax.reduce(np.ravel(effect.value))))
     return tuple(effects)
 
 
@@ -134,27 +136,29 @@ def angular_frequency_at_smallest_drag(arm: SlenderArm, frequency: ArrayLike) ->
     return np.asarray(frequency, float) / arm.tau2_with(smallest_drag(arm))
 
 
-def arm_inertia_effect(arm: SlenderArm, rate: Array, drag: Drag) -> Effect:
-    """Phase lag m omega/gamma2 of the drag, caused by the arm's mass. rate: omega in rad/s, (...,)."""
+def arm_inertia_effect(arm: SlenderArm, omega: Array, drag: Drag) -> Effect:
+    """Phase lag m omega/gamma2 of the drag, caused by the arm's mass. omega: omega in rad/s, (...,)."""
     stations_and_drags = zip(arm.shape.stations, arm.drags_along(drag), strict=True)
     # The value is taken at the section with the largest ratio of mass to drag.
-    value = max(arm.mass_at(station) / local_drag.gamma2 for station, local_drag in stations_and_drags) * rate
+    value = (
+        max(arm.mass_at(station) / local_drag.gamma2 for station, local_drag in stations_and_drags) * omega
+    )
     # omega ~ 1/viscosity and gamma2 ~ viscosity, so the value is proportional to 1/viscosity^2.
     factor = np.sqrt(value / INERTIA_LIMIT)
     return Effect(name="inertia of the arm", value=value, limit=INERTIA_LIMIT, viscosity_factor=factor)
 
 
-def fluid_inertia_effect(arm: SlenderArm, rate: Array, drag: Drag) -> Effect:
-    """Phase lag of the drag, caused by the inertia of the fluid. rate: in rad/s, (...,)."""
+def fluid_inertia_effect(arm: SlenderArm, omega: Array, drag: Drag) -> Effect:
+    """Phase lag of the drag, caused by the inertia of the fluid. omega: in rad/s, (...,)."""
     logarithm = 4 * pi * arm.si.viscosity / max(local_drag.gamma2 for local_drag in arm.drags_along(drag))
     # Vorticity diffuses over a wavelength of the bending wave, not over the radius.
     k = FLUTTER_WAVENUMBER / arm.si.length
-    s = arm.si.fluid_density * rate / (arm.si.viscosity * k**2)
+    relative_frequency = arm.si.fluid_density * omega / (arm.si.viscosity * k**2)
     return Effect(
         name="inertia of the fluid",
-        value=drag_phase_lag(s, logarithm),
+        value=drag_phase_lag(relative_frequency, logarithm),
         limit=INERTIA_LIMIT,
-        viscosity_factor=np.sqrt(s / frequency_of_phase_lag(INERTIA_LIMIT, logarithm)),
+        viscosity_factor=np.sqrt(relative_frequency / frequency_of_phase_lag(INERTIA_LIMIT, logarithm)),
     )
 
 
@@ -166,16 +170,18 @@ def compression_effect(arm: SlenderArm, F: Array) -> Effect:
 def equivalent_base_force(arm: SlenderArm, F: ArrayLike) -> Array:
     """Force that compresses the base as much as F compresses the weakest section, in the shape of F, (...,).
     F: in k3/L^2. The result is nan for rubber, whose constitutive law includes large compression."""
-    fraction = arm.crushing_force / arm.k1
-    return np.asarray(F, float) / fraction if fraction < inf else np.full(np.shape(F), np.nan)
+    crushing_ratio = arm.crushing_force / arm.k1
+    return np.asarray(F, float) / crushing_ratio if crushing_ratio < inf else np.full(np.shape(F), np.nan)
 
 
 def weight_effect(arm: SlenderArm, F: Array) -> Effect:
     """Ratio of weight minus buoyancy to the weight that buckles the upright arm, shaped as F, (...,)."""
-    heaviness = abs(arm.si.density_difference) * GRAVITY
-    load = heaviness * arm.cross_section.area * arm.si.length
-    uniform = load / (SELF_BUCKLING_WEIGHT * arm.force_scale)
-    value = arm.shape.weight_over_buckling_weight(heaviness) if arm.shape.varies else uniform
+    weight_density = abs(arm.si.density_difference) * GRAVITY
+    weight = weight_density * arm.cross_section.area * arm.si.length
+    ratio_of_uniform_arm = weight / (SELF_BUCKLING_WEIGHT * arm.force_scale)
+    value = (
+        arm.shape.weight_over_buckling_weight(weight_density) if arm.shape.varies else ratio_of_uniform_arm
+    )
     return _effect_independent_of_viscosity("weight", np.full(F.shape, value), WEIGHT_LIMIT)
 
 
@@ -194,21 +200,21 @@ def wall_flattening_effect(
     the radius of the middle of the wall and t the thickness; the remaining fraction of its stiffness is 1 - 3
     zeta/2 (Brazier 1927).
     """
-    outer, inner, ratio = (np.asarray(x, float) for x in (radius, bore, poisson))
+    outer, inner, nu = (np.asarray(x, float) for x in (radius, bore, poisson))
     curvature = CURVATURE_OVER_AMPLITUDE * np.asarray(amplitude, float) / np.asarray(length, float)
-    middle = (outer + inner) / 2
+    middle_radius = (outer + inner) / 2
     thickness = outer - inner
-    value = 1.5 * (1 - ratio**2) * (curvature * middle**2 / thickness) ** 2
+    value = 1.5 * (1 - nu**2) * (curvature * middle_radius**2 / thickness) ** 2
     return _effect_independent_of_viscosity(
         "flattening of the wall", value, WALL_FLATTENING_LIMIT, of_cycles_only=True
     )
 
 
-def reynolds_number_effect(arm: SlenderArm, rate: Array, amplitude: Array) -> Effect:
-    """Reynolds number rho U (2 a)/eta of the tip, which has the speed U = rate * amplitude * L. rate: in
-    rad/s, (...,). amplitude: in L. The effect has the shape of `rate`."""
+def reynolds_number_effect(arm: SlenderArm, omega: Array, amplitude: Array) -> Effect:
+    """Reynolds number rho U (2 a)/eta of the tip, which has the speed U = rate * amplitude * L. omega: in
+    rad/s, (...,). amplitude: in L. The effect has the shape of `omega`."""
     # The tip is the fastest point of the arm.
-    speed = rate * amplitude * arm.si.length
+    speed = omega * amplitude * arm.si.length
     value = arm.si.fluid_density * speed * 2 * arm.shape.largest_drag_radius / arm.si.viscosity
     return Effect(
         name="Reynolds number",
@@ -225,5 +231,7 @@ def _effect_independent_of_viscosity(
     """The effect `name`, whose `value` does not depend on the viscosity: its viscosity factor is inf if
     `value` exceeds `limit`, otherwise 0. of_cycles_only: whether the effect changes only limit cycles."""
     # No viscosity reduces the effect; below the limit a fluid of any viscosity is allowed.
-    factor = np.where(value > limit, inf, 0.0)
-    return Effect(name=name, value=value, limit=limit, viscosity_factor=factor, of_cycles_only=of_cycles_only)
+    viscosity_factor = np.where(value > limit, inf, 0.0)
+    return Effect(
+        name=name, value=value, limit=limit, viscosity_factor=viscosity_factor, of_cycles_only=of_cycles_only
+    )

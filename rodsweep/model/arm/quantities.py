@@ -15,7 +15,8 @@ LOADS = ("pressure", "force")
 
 
 class Quantity(NamedTuple):
-    """A quantity of an arm: SI unit, meaning, and an example with a unit; empty for a pure number."""
+    """A quantity of an arm: SI unit, meaning, and an example with a unit (empty text for a pure
+    number)."""
 
     unit: str
     meaning: str
@@ -53,7 +54,7 @@ QUANTITIES = {
     },
 }
 """All quantities of an arm that a user may give, by name."""
-UNITS = {name: (each.unit, each.example) for name, each in QUANTITIES.items() if each.example}
+UNITS = {name: (quantity.unit, quantity.example) for name, quantity in QUANTITIES.items() if quantity.example}
 """(SI unit, example) of each quantity with a unit, by name."""
 LOAD_OF_RATIO = {f"{load}_over_flutter": load for load in LOADS}
 """Name of the load, "pressure" or "force", by name of the relative load: the load divided by the load at
@@ -79,8 +80,8 @@ def arm_quantity_in_si(name: str, quantity: GivenQuantity | None) -> float:
         return float("nan")
     value = quantity_in_si(name, quantity, *UNITS[name])
     if not (QUANTITIES[name].may_be_nonpositive or value > 0):
-        solid = "; leave it out for a solid arm" if name == "inner_radius" and value == 0 else ""
-        raise InputError(f"{quoted_quantity(name, quantity)} is not above 0{solid}")
+        advice = "; leave it out for a solid arm" if name == "inner_radius" and value == 0 else ""
+        raise InputError(f"{quoted_quantity(name, quantity)} is not above 0{advice}")
     return value
 
 

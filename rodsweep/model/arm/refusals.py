@@ -34,14 +34,14 @@ class NotSlender(InputError):
 def refuse_wrong_choices(arm: "SlenderArm") -> None:
     """Raises InputError for an invalid Poisson's ratio, drag name, law or section of the arm. A swelling
     section requires a Poisson's ratio of 0.5."""
-    ratio: Any = arm.poisson
-    is_number = isinstance(ratio, Real) and not isinstance(ratio, bool | np.bool_)
-    if not is_number or not -1 < ratio <= INCOMPRESSIBLE_POISSON:
+    poisson: Any = arm.poisson
+    is_number = isinstance(poisson, Real) and not isinstance(poisson, bool | np.bool_)
+    if not is_number or not -1 < poisson <= INCOMPRESSIBLE_POISSON:
         try:
-            text = repr(ratio) if isinstance(ratio, str) else str(ratio)
+            poisson_text = repr(poisson) if isinstance(poisson, str) else str(poisson)
         except ValueError:  # an integer of thousands of digits
-            text = "an integer too large to be shown"
-        raise InputError(f"poisson = {text:.60} is not a number above -1 and up to 0.5")
+            poisson_text = "an integer too large to be shown"
+        raise InputError(f"poisson = {poisson_text:.60} is not a number above -1 and up to 0.5")
     if arm.drag == DRAG_RANGE_NAME:
         raise InputError(
             f"drag = {arm.drag!r} is for sweeps over all estimates; for one arm choose one of "
@@ -51,17 +51,20 @@ def refuse_wrong_choices(arm: "SlenderArm") -> None:
         raise InputError(f"drag = {arm.drag!r:.60} is not one name; choose one of {', '.join(DRAG_NAMES)}")
     if arm.drag not in DRAG_NAMES:
         raise InputError(f"drag = {arm.drag!r:.60} is not known; choose one of {', '.join(DRAG_NAMES)}")
-    texts = (("law", arm.law, "linear or neo_hookean"), ("section", arm.section, "fixed or swelling"))
-    for name, value, allowed in texts:
+    allowed_by_name = (
+        ("law", arm.law, "linear or neo_hookean"),
+        ("section", arm.section, "fixed or swelling"),
+    )
+    for name, value, allowed in allowed_by_name:
         if not isinstance(value, str):
             raise InputError(f"{name} = {value!r:.60} is not a text; write {allowed}")
     try:
         law_of(arm.law, arm.section)
     except ValueError as error:
         raise InputError(str(error)) from None
-    if arm.section == "swelling" and ratio != INCOMPRESSIBLE_POISSON:
+    if arm.section == "swelling" and poisson != INCOMPRESSIBLE_POISSON:
         raise InputError(
-            f"poisson = {ratio} contradicts section = swelling, which is for incompressible rubber; "
+            f"poisson = {poisson} contradicts section = swelling, which is for incompressible rubber; "
             f"poisson must be {INCOMPRESSIBLE_POISSON:g}, or section fixed"
         )
 
@@ -88,14 +91,16 @@ def refuse_wrong_combinations(arm: "SlenderArm") -> None:
 def _refuse_sections(arm: "SlenderArm") -> None:
     """Raises InputError unless an arm without segments has exactly one cross-section, with valid radii;
     BoreTooWide if the bore is too wide."""
-    sides = (arm.width, arm.height)
+    width_and_height = (arm.width, arm.height)
     for name, reason in (
         ("inner_radius", "a rectangular section has no bore"),
         ("tip_radius", "only a cone has a tip radius"),
     ):
         if getattr(arm, name) is not None and arm.radius is None:
             raise InputError(f"{arm.text_of(name)} needs a radius; {reason}")
-    if (arm.radius is None) == (sides == (None, None)) or (arm.radius is None and None in sides):
+    if (arm.radius is None) == (width_and_height == (None, None)) or (
+        arm.radius is None and None in width_and_height
+    ):
         sizes = ("radius", "width", "height")
         given_sizes = " and ".join(name for name in sizes if getattr(arm, name) is not None) or "no size"
         raise InputError(
@@ -180,8 +185,8 @@ def refuse_out_of_range(arm: "SlenderArm") -> None:
 def _radius_text(arm: "SlenderArm") -> str:
     """The largest radius of the arm for messages: as given by the user, or else as a number in m."""
     if arm.radius is None:
-        name = "largest" if arm.segments else "equivalent"
-        return f"{'a' if arm.segments else 'an'} {name} radius of {arm.shape.largest_drag_radius:.3g} m"
+        adjective = "largest" if arm.segments else "equivalent"
+        return f"{'a' if arm.segments else 'an'} {adjective} radius of {arm.shape.largest_drag_radius:.3g} m"
     is_wider_at_tip = arm.tip_radius is not None and arm.si.tip_radius > arm.si.radius
     return arm.text_of("tip_radius" if is_wider_at_tip else "radius")
 
@@ -193,10 +198,10 @@ def refuse_crushed(arm: "SlenderArm") -> None:
     if load is None or arm.share_of_flutter is not None or CRUSHED_FORCE_RATIO * arm.crushing_force > arm.F:
         return
     limit = arm.crushing_force * arm.load_scale
-    si = UNITS[load][0]
-    unit = unit_of(getattr(arm, load), si)
-    place = "the weakest section of" if arm.shape.varies else ""
+    si_unit = UNITS[load][0]
+    unit = unit_of(getattr(arm, load), si_unit)
+    phrase = "the weakest section of" if arm.shape.varies else ""
     raise InputError(
-        f"{arm.text_of(load)} crushes {f'{place} the arm'.strip()}; the load on a linear material must be "
-        f"below {float(f'{value_in_unit(limit, unit, si):.4g}'):g} {unit}"
+        f"{arm.text_of(load)} crushes {f'{phrase} the arm'.strip()}; the load on a linear material must "
+        f"be below {float(f'{value_in_unit(limit, unit, si_unit):.4g}'):g} {unit}"
     )

@@ -44,11 +44,11 @@ def segment_texts(segments: Any) -> tuple[str, ...]:
             f"segments = {str(segments):.60} is not a list; write each segment as in '{EXAMPLE_SEGMENT}'"
         )
     if len(segments) > MAX_SEGMENTS:
-        raise InputError(f"segments: {len(segments)} are given; an arm has at most {MAX_SEGMENTS}")
-    written = [written_segment(number, segment) for number, segment in enumerate(segments, 1)]
-    for number, quantities in enumerate(written, 1):
+        raise InputError(f"segments: {len(segments)} are given; give at most {MAX_SEGMENTS}")
+    written_segments = [written_segment(number, segment) for number, segment in enumerate(segments, 1)]
+    for number, quantities in enumerate(written_segments, 1):
         _segment_in_si(number, quantities)
-    return tuple(map(_segment_text, written))
+    return tuple(map(_segment_text, written_segments))
 
 
 def segments_of(texts: Sequence[str]) -> tuple[ArmSegment, ...]:
@@ -58,61 +58,62 @@ def segments_of(texts: Sequence[str]) -> tuple[ArmSegment, ...]:
     )
 
 
-def written_segment(number: int, segment: Any) -> WrittenSegment:
+def written_segment(segment_number: int, segment: Any) -> WrittenSegment:
     """Quantities of a segment. segment: a text or a mapping. Raises InputError for an unknown or a missing
-    key. number: position of the segment, counted from 1 at the base, for messages."""
-    place = f"segments, number {number}"
-    quantities = dict(_quantities_by_name(place, segment))
+    key. segment_number: position of the segment, counted from 1 at the base, for messages."""
+    start = f"segments, number {segment_number}"
+    quantities = dict(_quantities_by_name(start, segment))
     for name in quantities:
         if name not in SEGMENT_KEYS:
             radius = radius_of_diameter(name, SEGMENT_KEYS)
             advice = f"give {radius}, half of it" if radius else f"a segment has {', '.join(SEGMENT_KEYS)}"
-            raise InputError(f"{place}: unknown key {name}; {advice}")
+            raise InputError(f"{start}: unknown key {name}; {advice}")
     for name in ("length", "radius"):
         if quantities.get(name) is None:
-            raise InputError(f"{place}: {name} is missing; write a segment as in '{EXAMPLE_SEGMENT}'")
+            raise InputError(f"{start}: {name} is missing; write a segment as in '{EXAMPLE_SEGMENT}'")
     return {name: quantities[name] for name in SEGMENT_KEYS if quantities.get(name) is not None}
 
 
-def _quantities_by_name(place: str, segment: Any) -> Mapping[str, GivenQuantity]:
-    """Quantities of a segment by name. segment: a mapping or a text. InputError begins with `place`."""
+def _quantities_by_name(start: str, segment: Any) -> Mapping[str, GivenQuantity]:
+    """Quantities of a segment by name. segment: a mapping or a text. InputError begins with
+    `start`."""
     if isinstance(segment, Mapping):
         return {str(name): value for name, value in segment.items()}
     length, colon, parts = str(segment).partition(":")
     if not isinstance(segment, str) or not colon:
         raise InputError(
-            f"{place}: {str(segment)!r:.60} is not a segment; write a segment as in '{EXAMPLE_SEGMENT}'"
+            f"{start}: {str(segment)!r:.60} is not a segment; write a segment as in '{EXAMPLE_SEGMENT}'"
         )
     quantities: dict[str, GivenQuantity] = {"length": length.strip()}
     for part in parts.split(","):
-        text_of = SEGMENT_QUANTITY_PATTERN.fullmatch(part)
-        if text_of is None:
+        match = SEGMENT_QUANTITY_PATTERN.fullmatch(part)
+        if match is None:
             raise InputError(
-                f"{place}: {part.strip()!r:.60} is not a quantity; write a segment as in '{EXAMPLE_SEGMENT}'"
+                f"{start}: {part.strip()!r:.60} is not a quantity; write a segment as in '{EXAMPLE_SEGMENT}'"
             )
-        name = text_of[1].replace("-", "_").replace(" ", "_")
+        name = match[1].replace("-", "_").replace(" ", "_")
         if name in quantities:
-            raise InputError(f"{place}: {name} is given twice; give it once")
-        quantities[name] = text_of[2]
+            raise InputError(f"{start}: {name} is given twice; give it once")
+        quantities[name] = match[2]
     return quantities
 
 
-def _segment_in_si(number: int, quantities: WrittenSegment) -> ArmSegment:
-    """The segment in SI units. number: its position, for messages. Raises InputError for a value
+def _segment_in_si(segment_number: int, quantities: WrittenSegment) -> ArmSegment:
+    """The segment in SI units. segment_number: its position, for messages. Raises InputError for a value
     out of range, and BoreTooWide if the bore is too wide."""
-    place = f"segments, number {number}"
+    start = f"segments, number {segment_number}"
     try:
-        length, radius, inner, young = (
+        length, radius, inner_radius, young = (
             arm_quantity_in_si(name, quantities.get(name)) for name in SEGMENT_KEYS
         )
     except InputError as error:
-        raise InputError(f"{place}: {error}") from None
+        raise InputError(f"{start}: {error}") from None
     if "inner_radius" not in quantities:
         return ArmSegment(length, Circle(radius), young if "young" in quantities else None)
-    if inner >= radius:
+    if inner_radius >= radius:
         bore, outer = (quoted_quantity(name, quantities[name]) for name in ("inner_radius", "radius"))
-        raise BoreTooWide(f"{place}: {bore} is not below {outer}")
-    return ArmSegment(length, Tube(radius, inner), young if "young" in quantities else None)
+        raise BoreTooWide(f"{start}: {bore} is not below {outer}")
+    return ArmSegment(length, Tube(radius, inner_radius), young if "young" in quantities else None)
 
 
 def _segment_text(quantities: WrittenSegment) -> str:

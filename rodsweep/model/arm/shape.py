@@ -75,41 +75,41 @@ class ArmGeometry:
         section = station.section
         return drag_estimates(viscosity, self.length, section.drag_radius, section.half_height)
 
-    def profile(self, poisson: float, drag: int) -> Profile | None:
+    def profile(self, poisson: float, drag_index: int) -> Profile | None:
         """Factors of stiffness and drag along the arm, relative to the base; None for a uniform arm.
 
         The profile of a cone contains only the factors that the parameter `taper` does not imply. poisson:
-        Poisson's ratio. drag: index of the drag estimate in DRAG_NAMES. Raises ValueError for a factor that
-        overflows or underflows.
+        Poisson's ratio. drag_index: index of the drag estimate in DRAG_NAMES. Raises ValueError for a factor
+        that overflows or underflows.
         """
         if not self.varies:
             return None
         if self.taper != 1:
-            return self._cone_profile(drag)
-        ends = [0.0, *(place.end for place in self.stations)]
+            return self._cone_profile(drag_index)
+        segment_ends = [0.0, *(place.end for place in self.stations)]
         u = list[float]()
         rows = list[tuple[float, ...]]()
-        for start, station in zip(ends, self.stations, strict=False):
-            row = self._factors_at_station(station, poisson, drag)
+        for start, station in zip(segment_ends, self.stations, strict=False):
+            factors = self._factors_at_station(station, poisson, drag_index)
             # Equal neighbouring segments are merged, because every jump, even of size 0, splits elements.
-            if rows and rows[-1] == row:
+            if rows and rows[-1] == factors:
                 u[-1] = station.end
             else:
                 u += [start, station.end]
-                rows += [row, row]
+                rows += [factors, factors]
         return Profile(tuple(u), tuple(rows))
 
-    def _cone_profile(self, drag: int) -> Profile:
+    def _cone_profile(self, drag_index: int) -> Profile:
         """Profile of a cone: factors of gamma1 and gamma2. All other factors are 1, because the parameter
-        `taper` implies them. drag: index of the drag estimate in DRAG_NAMES."""
-        count = max(2, ceil(abs(log(self.taper)) / log(MAX_RADIUS_RATIO)))
+        `taper` implies them. drag_index: index of the drag estimate in DRAG_NAMES."""
+        interval_count = max(2, ceil(abs(log(self.taper)) / log(MAX_RADIUS_RATIO)))
         # Neighbouring radii have equal ratios, since the drag depends on the logarithm of the radius.
-        radii = self.taper ** (np.arange(count + 1) / count)
+        radii = self.taper ** (np.arange(interval_count + 1) / interval_count)
         u = (1 - radii) / (1 - self.taper)
-        base_drag = self.drags_at(self.base, 1.0)[drag]
+        base_drag = self.drags_at(self.base, 1.0)[drag_index]
         rows = list[tuple[float, ...]]()
         for radius in (radii * self.base.section.drag_radius).tolist():
-            local_drag = drag_estimates(1.0, self.length, radius, radius)[drag]
+            local_drag = drag_estimates(1.0, self.length, radius, radius)[drag_index]
             factors = {
                 "gamma1": local_drag.axial / base_drag.axial,
                 "gamma2": local_drag.across / base_drag.across,
@@ -117,54 +117,55 @@ class ArmGeometry:
             rows.append(tuple(factors.get(name, 1.0) for name in FACTOR_NAMES))
         return Profile((0.0, *u[1:-1].tolist(), 1.0), tuple(rows))
 
-    def _factors_at_station(self, station: Station, poisson: float, drag: int) -> tuple[float, ...]:
+    def _factors_at_station(self, station: Station, poisson: float, drag_index: int) -> tuple[float, ...]:
         """k1, k2, k3, gamma1, gamma2, gamma3 at a station, each divided by the value at the base. poisson:
-        Poisson's ratio. drag: index of the drag estimate in DRAG_NAMES."""
+        Poisson's ratio. drag_index: index of the drag estimate in DRAG_NAMES."""
         values, base_values = (
-            np.array(self._stiffnesses_and_drags(place, poisson, drag)) for place in (station, self.base)
+            np.array(self._stiffnesses_and_drags(place, poisson, drag_index))
+            for place in (station, self.base)
         )
         with np.errstate(all="ignore"):
             return tuple((values / base_values).tolist())
 
-    def _stiffnesses_and_drags(self, station: Station, poisson: float, drag: int) -> tuple[float, ...]:
+    def _stiffnesses_and_drags(self, station: Station, poisson: float, drag_index: int) -> tuple[float, ...]:
         """E A, kappa E A, E I at a station, and the axial, normal and rotational drag divided by the
-        viscosity. poisson: Poisson's ratio. drag: index of the drag estimate in DRAG_NAMES."""
+        viscosity. poisson: Poisson's ratio. drag_index: index of the drag estimate in DRAG_NAMES."""
         section = station.section
-        friction = self.drags_at(station, 1.0)[drag]
-        stretch = station.young * section.area
+        local_drag = self.drags_at(station, 1.0)[drag_index]
+        stretch_stiffness = station.young * section.area
         return (
-            stretch,
-            section.shear_coefficient(poisson) * stretch,
+            stretch_stiffness,
+            section.shear_coefficient(poisson) * stretch_stiffness,
             station.young * section.second_moment,
-            friction.axial,
-            friction.across,
-            friction.rotational,
+            local_drag.axial,
+            local_drag.across,
+            local_drag.rotational,
         )
 
-    def weight_over_buckling_weight(self, weight: float) -> float:
+    def weight_over_buckling_weight(self, weight_density: float) -> float:
         """Ratio of the weight of the upright arm to the weight at which the arm buckles.
 
-        weight: weight per volume, in N/m^3. With the weight W(u) of the part beyond u, an arm of the buckling
-        weight has a nonzero solution of theta' = m/(E I), m' = -W theta, theta(0) = 0, m(1) = 0. The ratio is
-        therefore the largest eigenvalue of the operator theta -> int_0^u (1/(E I)) int_u^1 W theta. Power
-        iteration converges fast: the kernel of the operator is positive, and the second eigenvalue of a
+        weight_density: weight per volume, in N/m^3. With the weight W(u) of the part beyond u, an arm of the
+        buckling weight has a nonzero solution of theta' = m/(E I), m' = -W theta, theta(0) = 0, m(1) = 0. The
+        ratio is therefore the largest eigenvalue of the operator theta -> int_0^u (1/(E I)) int_u^1 W theta.
+        Power iteration converges fast: the kernel of the operator is positive, and the second eigenvalue of a
         uniform arm is a seventh of the largest.
         """
-        h, area, stiffness = self._sections_at_midpoints()
+        lengths, area, stiffness = self._sections_at_midpoints()
         # Integrals up to a midpoint include half of the interval around the midpoint.
-        volume = area * h
+        volume = area * lengths
         volume_beyond = np.cumsum(volume[::-1])[::-1] - volume / 2
-        theta = np.ones(len(h))
+        theta = np.ones(len(lengths))
         ratio = previous_ratio = 0.0
         for _ in range(BUCKLING_MAX_ITERATIONS):
-            load = volume_beyond * theta * h
-            angle_step = (np.cumsum(load[::-1])[::-1] - load / 2) * h / stiffness
+            moment_step = volume_beyond * theta * lengths
+            angle_step = (np.cumsum(moment_step[::-1])[::-1] - moment_step / 2) * lengths / stiffness
             theta = np.cumsum(angle_step) - angle_step / 2
             previous_ratio, ratio = ratio, float(theta[-1])
             theta /= ratio
             if abs(ratio - previous_ratio) <= BUCKLING_TOLERANCE * ratio:
                 break
-        return weight * ratio
+        return weight_density * ratio
 
     def _sections_at_midpoints(self) -> tuple[Array, Array, Array]:
         """Returns (length, A, E I) of the quadrature's subintervals, (subintervals,), in m, m^2, N m^2."""
@@ -175,19 +176,23 @@ class ArmGeometry:
             area = base.section.area * radius ** RADIUS_POWERS["k1"]
             stiffness = base.young * base.section.second_moment * radius ** RADIUS_POWERS["k3"]
             return np.full(len(u), self.length / len(u)), area, stiffness
-        count = max(4, BUCKLING_NODE_COUNT // len(self.stations))
+        interval_count = max(4, BUCKLING_NODE_COUNT // len(self.stations))
         lengths = np.diff([0.0, *(station.end for station in self.stations)]) * self.length
         areas = [station.section.area for station in self.stations]
         stiffnesses = [station.young * station.section.second_moment for station in self.stations]
-        return np.repeat(lengths / count, count), np.repeat(areas, count), np.repeat(stiffnesses, count)
+        return (
+            np.repeat(lengths / interval_count, interval_count),
+            np.repeat(areas, interval_count),
+            np.repeat(stiffnesses, interval_count),
+        )
 
 
 def shape_of_segments(segments: Sequence[tuple[float, Circle | Tube, float]]) -> ArmGeometry:
-    """Shape of an arm made of segments. segments: (length in m, section, Young's modulus in Pa) of each
+    """Geometry of an arm made of segments. segments: (length in m, section, Young's modulus in Pa) of each
     segment, from the base to the tip."""
     ends = np.cumsum([length for length, _, _ in segments])
-    fractions = [*(ends[:-1] / ends[-1]).tolist(), 1.0]
+    end_positions = [*(ends[:-1] / ends[-1]).tolist(), 1.0]
     stations = [
-        Station(u, section, young) for u, (_, section, young) in zip(fractions, segments, strict=True)
+        Station(u, section, young) for u, (_, section, young) in zip(end_positions, segments, strict=True)
     ]
     return ArmGeometry(float(ends[-1]), tuple(stations))

@@ -8,9 +8,9 @@ from numpy.typing import ArrayLike
 from ...arrays import Array
 
 MAX_SERIES_FREQUENCY = 1e-3
-"""Below this frequency s of the flow, in eta k^2/rho, the mobility is computed from its series. At this
-frequency rounding errors of the closed formula are 1e-11 of the phase lag, the terms left out of the series
-less than 1e-12."""
+"""The mobility is computed from a power series for frequencies s below this number, in eta k^2/rho. At this
+frequency the rounding error of the closed formula is 1e-11 of the phase lag, the truncation error of the
+series less than 1e-12."""
 LOWEST_FREQUENCY = 1e-6
 """Lower end of the frequencies s among which `frequency_of_phase_lag` searches."""
 SUBINTERVAL_COUNT = 64
@@ -33,10 +33,13 @@ def drag_phase_lag(s: ArrayLike, logarithm: float) -> Array:
     and Lambda/(4 pi eta) in steady flow. The phase, of the shape of s, is 3 s/(4 Lambda) for small s.
     """
     z = 1j * np.asarray(s, float)
-    series = z * (3 / 4 - z * (5 / 12 - z * (7 / 24 - z * (9 / 40))))
+    series_for_small_s = z * (3 / 4 - z * (5 / 12 - z * (7 / 24 - z * (9 / 40))))
     with np.errstate(invalid="ignore", divide="ignore"):  # nan where nothing moves; 1/z is not used at 0
-        integral = 0.5 + (1 - 1 / z) * np.log1p(z) / 2
-    return np.asarray(0.0 - np.angle(logarithm - np.where(z.imag < MAX_SERIES_FREQUENCY, series, integral)))
+        closed_formula = 0.5 + (1 - 1 / z) * np.log1p(z) / 2
+    return np.asarray(
+        0.0
+        - np.angle(logarithm - np.where(z.imag < MAX_SERIES_FREQUENCY, series_for_small_s, closed_formula))
+    )
 
 
 def frequency_of_phase_lag(phase: float, logarithm: float) -> float:

@@ -42,7 +42,7 @@ PACKAGE_DIRECTORY = Path(__file__).parents[2]
 DIGEST_BYTES = 32
 """Length, in bytes, of the SHA-256 checksum at the start of a cache file, which reveals truncation."""
 _texts_at_first_use: dict[FunctionType, FunctionText] = {}
-"""Text of each function at its first use in this process, which is the code that numba compiled."""
+"""Text of each function at its first use in this process: numba compiled the code of this text."""
 
 
 def cache_directories() -> list[Path]:
@@ -109,10 +109,12 @@ class KernelCache(_Cache):
                 "to compile the formulas again; set NUMBA_CACHE_DIR to another directory"
             )
 
-    def _cache_file_name(self, sig: Any, codegen: Any, parts: dict[FunctionType, FunctionText]) -> str:
+    def _cache_file_name(self, sig: Any, codegen: Any, texts: dict[FunctionType, FunctionText]) -> str:
         arguments, result = normalize_signature(sig)
-        kinds = [type_text(kind) for kind in (*arguments, *([] if result is None else [result]))]
-        content = repr((COMPILER_VERSIONS, codegen.magic_tuple(), kinds, kernel_digest(self._kernel, parts)))
+        type_texts = [type_text(kind) for kind in (*arguments, *([] if result is None else [result]))]
+        content = repr(
+            (COMPILER_VERSIONS, codegen.magic_tuple(), type_texts, kernel_digest(self._kernel, texts))
+        )
         function = self._kernel.function
         name = f"{function.__module__}.{function.__qualname__}".replace("<", "").replace(">", "")
         return f"{name}-{sha256(content.encode()).hexdigest()[:32]}.kernel"

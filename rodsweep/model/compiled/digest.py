@@ -29,7 +29,8 @@ REPR_STABLE_TYPES = (bool, int, float, complex, str, bytes, type(None), type(Ell
 
 
 class FunctionText(NamedTuple):
-    """A Python function in the digest. text: its code and constants. called_kernels: those it calls."""
+    """A Python function in the digest. text: its code and constants. called_kernels: the kernels that it
+    calls."""
 
     text: str
     called_kernels: list["Kernel"]
@@ -123,8 +124,8 @@ def _code_objects(code: CodeType) -> Iterator[CodeType]:
 
 
 def _code_lines(code: CodeType, instructions: Iterable[dis.Instruction]) -> list[str]:
-    """Lines of text of the bytecode of a code object, with constants in place of their indices. The indices
-    are left out because an added docstring changes them."""
+    """Bytecode of a code object as lines of text, with constants in place of their indices. The indices are
+    left out because an added docstring changes them."""
     counts = code.co_argcount, code.co_posonlyargcount, code.co_kwonlyargcount, code.co_flags & VARIADIC_FLAGS
     lines = [code.co_name, repr((counts, code.co_varnames, code.co_freevars, code.co_cellvars))]
     lines.append(code.co_exceptiontable.hex())

@@ -52,7 +52,7 @@ class UnrolledOverAlgebra(Generic[P, R]):
         tree = ast.parse(dedent(inspect.getsource(self.function)))
         ast.increment_lineno(tree, self.function.__code__.co_firstlineno - 1)
         definition: Any = tree.body[0]
-        first = definition.args.args.pop(0).arg
+        algebra_name = definition.args.args.pop(0).arg
         definition.decorator_list = []
         definition.returns = None
         for argument in definition.args.args:
@@ -68,7 +68,7 @@ class UnrolledOverAlgebra(Generic[P, R]):
                 namespace[name] = value
         tree.body = [
             _UnrollingTransformer(
-                {first: g, **ALWAYS_KNOWN_VALUES}, _UnrollingState(set(), called_functions, {}, {})
+                {algebra_name: g, **ALWAYS_KNOWN_VALUES}, _UnrollingState(set(), called_functions, {}, {})
             ).visit(definition)
         ]
         exec(compile(ast.fix_missing_locations(tree), self.function.__code__.co_filename, "exec"), namespace)

@@ -38,11 +38,11 @@ def factors_along(profile: Profile | None, taper: Any, u: Array) -> dict[str, Ar
 
 @lru_cache(maxsize=FACTOR_CACHE_SETTINGS.max_entries)
 def _cached_factors(
-    profile: Profile | None, taper: float, points: bytes, shape: tuple[int, ...]
+    profile: Profile | None, taper: float, point_bytes: bytes, shape: tuple[int, ...]
 ) -> dict[str, Array]:
     """The result of `factors_along`, cached by the bytes of the points, because the arms of a sweep over F
-    are evaluated at the same points. points, shape: bytes and shape of the array of points."""
-    return _factors_along(profile, taper, np.frombuffer(points).reshape(shape))
+    are evaluated at the same points. point_bytes, shape: bytes and shape of the array of points."""
+    return _factors_along(profile, taper, np.frombuffer(point_bytes).reshape(shape))
 
 
 def _factors_along(profile: Profile | None, taper: Any, u: Array) -> dict[str, Array]:
@@ -67,15 +67,15 @@ def smallest_factor_along(profile: Profile | None, taper: float, name: str) -> f
     the base."""
     exponent = RADIUS_POWERS.get(name, 0)
     # The power of the radius of a cone is monotone, so its minimum is at an end.
-    ends = min(1.0, taper**exponent)
+    smallest_end_factor = min(1.0, taper**exponent)
     if profile is None:
-        return ends
+        return smallest_end_factor
     column = FACTOR_NAMES.index(name)
-    rows = [
+    row_factors = [
         (1 - (1 - taper) * u) ** exponent * row[column]
         for u, row in zip(profile.u, profile.rows, strict=True)
     ]
     fractions = (np.arange(FACTOR_SAMPLE_COUNT) + 0.5) / FACTOR_SAMPLE_COUNT
     points = (profile.breaks[:-1, None] + np.diff(profile.breaks)[:, None] * fractions).ravel()
-    factors = (1 - (1 - taper) * points) ** exponent * profile.factors_at(points)[column]
-    return min(*rows, float(factors.min()))
+    factors_between_rows = (1 - (1 - taper) * points) ** exponent * profile.factors_at(points)[column]
+    return min(*row_factors, float(factors_between_rows.min()))

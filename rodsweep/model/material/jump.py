@@ -30,8 +30,8 @@ from .stress_strain import (
 )
 
 SIDE_COLUMNS = ("nu", "c1", "c3", "share of c1", "share of c3", "share of the quadrature", "c2")
-"""Columns of the array that describes both sides of a jump: fields of `LocalSection`, weights w of q1 and q3
-in the mean strain, weight of the quadrature, and c2."""
+"""Columns of the array that describes both sides of a jump: the fields of `LocalSection`, the side's weights
+w in the mean of q1 and of q3, the side's fraction of the quadrature weight of the node, and c2."""
 SHEAR_COLUMN = SIDE_COLUMNS.index("c2")
 """Index of the shear compliance c2 in `SIDE_COLUMNS`."""
 MAX_ITERATIONS = 40

@@ -34,8 +34,8 @@ class Law:
     nu at the load x = F/k1, from W'(nu) = -x, without cancellation for small loads. crushing_load: the load x
     that crushes the rod; inf if no force crushes the rod."""
 
-    law: str
-    section: str
+    law_name: str
+    section_name: str
     energy_over_square: Callable[[Values], Values]
     stress: Callable[[Values], Values]
     stiffness: Callable[[Values], Values]
@@ -52,13 +52,13 @@ def _neo_hookean_shortening(x: Values) -> Values:
     """Shortening e = 1 - nu of neo-Hookean rubber under the load x = F/k1, (...,); nu^3 + 3 x nu^2 = 1.
     Cardano's formula gives a start for Newton's method for e."""
     x = np.asarray(x, dtype=float)
-    square = 0.25 - x**3
-    root = np.cbrt(0.5 + np.sqrt(np.maximum(square, 0.0)))
+    discriminant = 0.25 - x**3
+    root = np.cbrt(0.5 + np.sqrt(np.maximum(discriminant, 0.0)))
     nu = root**2 - x + (x / root) ** 2
-    if (square < 0).any():  # three real roots; only one root is positive
+    if (discriminant < 0).any():  # three real roots; only one root is positive
         load = np.maximum(x, 0.5)
         angle = np.arccos(np.minimum(0.5 / load**1.5, 1.0)) / 3
-        nu = np.where(square < 0, 0.5 / (np.sqrt(load) * np.cos(angle)), nu)
+        nu = np.where(discriminant < 0, 0.5 / (np.sqrt(load) * np.cos(angle)), nu)
     e = 1 - nu
     for _ in range(SHORTENING_NEWTON_STEPS):
         nu = 1 - e
@@ -76,8 +76,8 @@ def _zeros(h1: Values) -> Values:
 
 
 LINEAR = Law(
-    law="linear",
-    section="fixed",
+    law_name="linear",
+    section_name="fixed",
     energy_over_square=lambda h: 0.5 * _ones(h),
     stress=lambda h: h - 1,
     stiffness=_ones,
@@ -90,8 +90,8 @@ LINEAR = Law(
     crushing_load=1.0,
 )
 NEO_HOOKEAN = Law(
-    law="neo_hookean",
-    section="fixed",
+    law_name="neo_hookean",
+    section_name="fixed",
     energy_over_square=lambda h: (h + 2) / (6 * h),
     stress=lambda h: (h - 1 / h**2) / 3,
     stiffness=lambda h: (1 + 2 / h**3) / 3,
@@ -104,22 +104,23 @@ NEO_HOOKEAN = Law(
 )
 SWELLING = replace(
     NEO_HOOKEAN,
-    section="swelling",
+    section_name="swelling",
     bending_factor=lambda h: (1 + 2 / h**3) / (3 * h),
     bending_factor_slope=lambda h: -(1 + 8 / h**3) / (3 * h**2),
     bending_factor_second_derivative=lambda h: (2 / h**3 + 40 / h**6) / 3,
 )
-LAWS = {(law.law, law.section): law for law in (LINEAR, NEO_HOOKEAN, SWELLING)}
+LAWS = {(law.law_name, law.section_name): law for law in (LINEAR, NEO_HOOKEAN, SWELLING)}
 """All constitutive laws by (law name, section name)."""
 
 
-def law_of(law: str, section: str) -> Law:
-    """The constitutive law with the key (law, section) in `LAWS`. Raises ValueError for an unknown pair."""
-    if (law, section) not in LAWS:
-        sections = [s for name, s in LAWS if name == law]
+def law_of(law_name: str, section_name: str) -> Law:
+    """The constitutive law with the key (law_name, section_name) in `LAWS`. Raises ValueError for an unknown
+    pair."""
+    if (law_name, section_name) not in LAWS:
+        sections = [key[1] for key in LAWS if key[0] == law_name]
         if not sections:
             allowed = " or ".join(dict.fromkeys(name for name, _ in LAWS))
-            raise ValueError(f"law = {law} is not known; it must be {allowed}")
+            raise ValueError(f"law = {law_name} is not known; it must be {allowed}")
         allowed = " or ".join(sections)
-        raise ValueError(f"section = {section} is not known for law = {law}; it must be {allowed}")
-    return LAWS[law, section]
+        raise ValueError(f"section = {section_name} is not known for law = {law_name}; it must be {allowed}")
+    return LAWS[law_name, section_name]

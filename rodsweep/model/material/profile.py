@@ -47,11 +47,11 @@ class Profile:
                     f"two rows near u = {a:g} differ by {b - a:.2g} in u; allowed: 0 (a jump) or at least "
                     f"{MIN_ROW_DISTANCE:g}"
                 )
-        for number, value in enumerate(self.u):
+        for row_number, value in enumerate(self.u):
             if self.u.count(value) > (1 if value in (0, 1) else 2):
                 allowed = "one row" if value in (0, 1) else "two rows (a jump)"
                 raise ValueError(f"there are {self.u.count(value)} rows at u = {value:g}; allowed: {allowed}")
-            for name, factor in zip(FACTOR_NAMES, self.rows[number], strict=True):
+            for name, factor in zip(FACTOR_NAMES, self.rows[row_number], strict=True):
                 if not 0 < factor < np.inf:
                     raise ValueError(
                         f"the factor of {name} at u = {value:g} is {factor:g}; it must be finite and above 0"
@@ -66,7 +66,8 @@ class Profile:
     def _cubic_coefficients(self) -> Array:
         """Coefficients of the cubic polynomials between neighbouring u, (4, factors, 2, intervals). The first
         axis is the power of the distance from one end of the interval, cubes first; the distance is 1 at the
-        opposite end. The third axis is this end: the lower u, the upper u."""
+        opposite end. The third axis is the end from which the distance is counted: the lower u, the upper
+        u."""
         u = np.array(self.u)
         rows = np.array(self.rows)
         jumps = np.flatnonzero(np.diff(u) == 0) + 1
@@ -77,16 +78,17 @@ class Profile:
             h = np.diff(u[part])[:, None]
             slopes = _monotone_slopes(u[part], y)
             lower, upper = h * slopes[:-1], h * slopes[1:]
-            from_lower = _cubic_coefficients(y[:-1], y[1:], lower, upper)
-            from_upper = _cubic_coefficients(y[1:], y[:-1], -upper, -lower)
+            from_lower = _hermite_cubics(y[:-1], y[1:], lower, upper)
+            from_upper = _hermite_cubics(y[1:], y[:-1], -upper, -lower)
             coefficients.append(np.stack([from_lower, from_upper], axis=1))
         return np.ascontiguousarray(np.concatenate(coefficients, axis=2).transpose(0, 3, 1, 2))
 
-    def with_factors_above(self, name: str, least: float) -> "Profile":
-        """The profile whose factors of the stiffness or drag `name` are at least `least` in every row, and
-        thus everywhere, because factors between two rows lie between the factors of the rows."""
+    def with_factors_above(self, name: str, min_factor: float) -> "Profile":
+        """The profile whose factors of the stiffness or drag `name` are raised to at least `min_factor` in
+        every row, and thus everywhere, because factors between two rows lie between the factors of the
+        rows."""
         column = FACTOR_NAMES.index(name)
-        rows = (row[:column] + (max(row[column], least),) + row[column + 1 :] for row in self.rows)
+        rows = (row[:column] + (max(row[column], min_factor),) + row[column + 1 :] for row in self.rows)
         return Profile(self.u, tuple(rows))
 
     def factors_at(self, u: Array) -> Array:
@@ -96,16 +98,16 @@ class Profile:
         from_left, from_right = u - breaks[interval], breaks[interval + 1] - u
         # Powers of the distance from the nearer end keep the digits of a factor that falls to a small part of
         # its value at the other end.
-        end = (from_right < from_left).astype(int)
+        nearer_end = (from_right < from_left).astype(int)
         t = np.minimum(from_left, from_right) / (breaks[interval + 1] - breaks[interval])
-        cubic, square, linear, constant = self._cubic_coefficients[:, :, end, interval]
+        cubic, square, linear, constant = self._cubic_coefficients[:, :, nearer_end, interval]
         factors: Array = ((cubic * t + square) * t + linear) * t + constant
         return factors
 
 
-def _cubic_coefficients(first: Array, last: Array, first_slope: Array, last_slope: Array) -> Array:
+def _hermite_cubics(first: Array, last: Array, first_slope: Array, last_slope: Array) -> Array:
     """Coefficients of cubic polynomials on [0, 1], cubes first, (4, intervals, factors). first, last: values
-    at 0 and at 1. first_slope, last_slope: slopes there. Each is (intervals, factors)."""
+    at 0 and at 1. first_slope, last_slope: slopes at 0 and at 1. Each is (intervals, factors)."""
     increment = last - first
     return np.array(
         [

@@ -43,8 +43,8 @@ class RodMaterial:
     (law, section): a key of `LAWS`. profile: factors of stiffnesses and drags along the arm; None for
     constant stiffnesses and drags. Raises ValueError for an unknown law."""
 
-    law: str = LINEAR.law
-    section: str = LINEAR.section
+    law: str = LINEAR.law_name
+    section: str = LINEAR.section_name
     profile: Profile | None = None
 
     def __post_init__(self) -> None:
@@ -125,15 +125,15 @@ class RodMaterial:
         nu = 1 - law.shortening(F / (at_base["k1"] * factors["k1"]))
         c2 = 1 / (at_base["k2"] * factors["k2"])
         # With a fixed section the bending factor is 1; a product with an array of ones would take time.
-        c3 = 1 / (factors["k3"] if law.section == "fixed" else factors["k3"] * law.bending_factor(nu))
+        c3 = 1 / (factors["k3"] if law.section_name == "fixed" else factors["k3"] * law.bending_factor(nu))
         gamma3 = at_base["gamma3"] * factors["gamma3"]
         # A copy, because the factors are cached.
         return LocalCoefficients(nu, c2, c3, factors["gamma2"].copy(), gamma3, nu + F * c2)
 
     def sections(self, F: float, at_base: Mapping[str, float], u: Array) -> CrossSections:
         """Properties of the cross-sections at points u, (points,), under the tip force F. No point may be a
-        break of the profile. The compliances are values of the undeformed arm. at_base: stiffnesses and drags
-        at u = 0, and taper, by name."""
+        break of the profile. The compliances belong to the undeformed arm. at_base: stiffnesses and drags at
+        u = 0, and taper, by name."""
         factors = factors_along(self.profile, at_base["taper"], u)
         stiffness = {name: at_base.get(name, 1.0) * factors[name] for name in ("k1", "k2", "k3")}
         drag = [at_base.get(name, 1.0) * factors[name] for name in ("gamma1", "gamma2", "gamma3")]
@@ -168,9 +168,11 @@ class RodMaterial:
                 compliance[i] -= sections.compliance[i] * RADIUS_POWERS.get(name, 0) * growth
             for i, name in enumerate(("gamma1", "gamma2", "gamma3")):
                 drag[i] += sections.drag[i] * RADIUS_POWERS.get(name, 0) * growth
-        load = slopes.get("F", 0.0) * sections.compliance[0] + F * compliance[0]
+        load_derivative = slopes.get("F", 0.0) * sections.compliance[0] + F * compliance[0]
         # W'(nu) = -F c1, so the change of nu is minus the change of F c1, divided by W''(nu).
-        return CrossSections(compliance, drag, -load / self.constitutive_law.stiffness(sections.nu))
+        return CrossSections(
+            compliance, drag, -load_derivative / self.constitutive_law.stiffness(sections.nu)
+        )
 
 
 DEFAULT_MATERIAL = RodMaterial()

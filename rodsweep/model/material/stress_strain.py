@@ -63,7 +63,8 @@ def _neo_hookean_secant(nu: float, h: float) -> float:
 
 @compiled
 def stress_beyond_rest(law: int, material: LocalSection, q1: float, q3: float) -> Stress:
-    """Stresses N and M at one point, minus their values at rest, for q1 and q3. law: number of the law."""
+    """Stresses N and M at one point, minus their values at rest, for the unknowns q1 and q3. law: number of
+    the law. material: stretch at rest and compliances at the point."""
     if law == LINEAR_LAW:
         return Stress(q1, q3)
     h = material.nu + material.c1 * q1
@@ -73,7 +74,8 @@ def stress_beyond_rest(law: int, material: LocalSection, q1: float, q3: float) -
 
 @compiled
 def stress_tangent(law: int, material: LocalSection, q1: float, q3: float) -> TangentMatrix:
-    """Derivatives of the stresses N and M at one point by the unknowns q1 and q3. law: number of the law."""
+    """Derivatives of the stresses N and M at one point by the unknowns q1 and q3. law: number of the law.
+    material: stretch at rest and compliances at the point."""
     if law == LINEAR_LAW:
         return TangentMatrix(1.0, 0.0, 0.0, 1.0)
     h = material.nu + material.c1 * q1

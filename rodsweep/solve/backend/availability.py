@@ -12,7 +12,7 @@ from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 
-from ...errors import EnvironmentIncomplete, InputError, import_refusal
+from ...errors import EnvironmentIncomplete, InputError, import_failure_error
 
 LIBRARIES = Path("/usr/lib")
 
@@ -65,7 +65,7 @@ def require_solvers() -> None:
     add_debian_modules()
     for name in ("petsc4py", "slepc4py"):
         if not is_module_found(name):
-            raise import_refusal(name, "not found")
+            raise import_failure_error(name, "not found")
 
 
 def start_solvers() -> None:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from threadpoolctl import threadpool_info
 
-from ...errors import import_refusal
+from ...errors import import_failure_error
 from .availability import add_debian_modules
 
 add_debian_modules()
@@ -25,7 +25,7 @@ try:
     from petsc4py import PETSc
     from slepc4py import SLEPc
 except (ImportError, ValueError) as error:  # ValueError: compiled for another NumPy
-    raise import_refusal("petsc4py and slepc4py", error) from error
+    raise import_failure_error("petsc4py and slepc4py", error) from error
 
 __all__ = [
     "PETSC_ERRORS",

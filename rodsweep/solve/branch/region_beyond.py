@@ -1,5 +1,4 @@
-"""A region of the continuation parameter beyond one end of the range, in which branches are followed but not
-stored.
+"""A region of the parameter beyond one end of the range, in which branches are followed but not stored.
 
 A branch may leave the range, turn back at a fold beyond its end, and enter the range again; and the branch of
 a Hopf point beyond the end may enter the range. Both are followed up to the place where they enter the range.

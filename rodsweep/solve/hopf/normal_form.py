@@ -21,7 +21,7 @@ from math import ceil
 import numpy as np
 
 from ...arrays import Array, Complex
-from ...determinant.arm.determinant import wave_number
+from ...determinant.arm.determinant import eigenfunction_wave_number
 from ...discretization.elements.elements import Elements, equal_edges, halve_elements
 from ...discretization.elements.mesh import mesh_with_edges
 from ...discretization.elements.resolution import RESOLUTION_SETTINGS, resolution_for
@@ -149,7 +149,7 @@ def elements_for_landau_coefficient(rod: Rod, w: complex, accuracy: float) -> El
     """Elements on which the Landau coefficient c at the eigenvalue w has the relative accuracy `accuracy`, by
     the mesh rule for eigenvalues."""
     accuracy *= NORMAL_FORM_SETTINGS.mesh_accuracy_ratio
-    wave_number_of_harmonics = HARMONIC_WAVE_NUMBER_RATIO * wave_number(rod, w)
+    wave_number_of_harmonics = HARMONIC_WAVE_NUMBER_RATIO * eigenfunction_wave_number(rod, w)
     if not rod.is_uniform_and_linear:
         return arm_elements(rod, wave_number_of_harmonics, accuracy, NORMAL_FORM_SETTINGS.max_order)
     resolution = resolution_for(wave_number_of_harmonics, accuracy, NORMAL_FORM_SETTINGS.max_order)

@@ -16,7 +16,7 @@ from math import nan
 
 import numpy as np
 
-from ...determinant.arm.determinant import wave_number
+from ...determinant.arm.determinant import eigenfunction_wave_number
 from ...discretization.elements.quadrature import lobatto_points
 from ...discretization.elements.resolution import Resolution
 from ...discretization.straight.transverse_mesh import mesh_for
@@ -119,7 +119,7 @@ def _with_modes(rod: Rod, request: ModesRequest, outcome: Modes) -> Modes:
     """`outcome` with modes and, if requested, transient growth. The status changes if no mesh small enough
     resolves the modes, or if the largest error exceeds the accuracy."""
     spectrum = outcome.spectrum
-    max_q = max(wave_number(rod, complex(w)) for w in spectrum.eigenvalues)
+    max_q = max(eigenfunction_wave_number(rod, complex(w)) for w in spectrum.eigenvalues)
     points = lobatto_points(request.node_count)
     vectors = converged_modes(rod, spectrum.eigenvalues, points, max_q, request.accuracy)
     if vectors is None:

@@ -60,7 +60,7 @@ def _spectrum_or_raise(rod: Rod, request: SpectrumRequest) -> Spectrum:
     problem = transverse_problem(rod)
     modes = request.modes
     mesh_tolerance = (
-        mesh_accuracy(request.accuracy, vectors=True) if request.vector_node_count else request.accuracy
+        mesh_accuracy(request.accuracy, needs_vectors=True) if request.vector_node_count else request.accuracy
     )
     mesh: AnyMesh = problem.mesh_for(modes, mesh_tolerance)
     coarser_eigenvalues = _leading_eigenvalues(problem, mesh, modes)

@@ -29,37 +29,38 @@ NO_FORCE = FlutterForce(np.nan)
 
 
 def grid_of_arms(
-    section: ArmConfig,
+    arm_config: ArmConfig,
     given_parameters: Mapping[str, Array],
     names: tuple[str, ...],
-    flutter: FlutterSearch,
+    find_force: FlutterSearch,
     material: RodMaterial = DEFAULT_MATERIAL,
 ) -> Points:
     """Points of a grid over an arm's quantities, and over the parameters in `given_parameters` that have
     several values.
 
     given_parameters: values, (n,), of the parameters that replace the arm's parameters, by name. names: the
-    parameters of the task. flutter: force of first flutter of an arm, for relative loads. material:
-    constitutive law and profile of all arms. Raises ValueError if the rod model applies to no point.
+    parameters of the task. find_force: force of first flutter of an arm, for relative loads.
+    material: constitutive law and profile of all arms. Raises ValueError if the rod model applies to no
+    point.
     """
-    arms, statuses = zip(*(_arm_or_status(section, v) for v in section.values_of_arms()), strict=True)
-    loads = section.quantity_axes[section.load_key].array() if section.load_key else np.zeros(1)
-    crossed = dict(zip(given_parameters, np.meshgrid(*given_parameters.values(), indexing="ij"), strict=True))
-    shape = (len(arms), len(loads), next(iter(crossed.values())).size if crossed else 1)
-    parameter_names = (*parameter_names_except("F", NONLINEAR_PARAMETERS), *section.cone_parameters)
+    arms, statuses = zip(*(_arm_or_status(arm_config, v) for v in arm_config.values_of_arms()), strict=True)
+    loads = arm_config.quantity_axes[arm_config.load_key].array() if arm_config.load_key else np.zeros(1)
+    grid = dict(zip(given_parameters, np.meshgrid(*given_parameters.values(), indexing="ij"), strict=True))
+    shape = (len(arms), len(loads), next(iter(grid.values())).size if grid else 1)
+    parameter_names = (*parameter_names_except("F", NONLINEAR_PARAMETERS), *arm_config.cone_parameters)
     table = {name: _quantity_of_arms(arms, methodcaller("parameter", name)) for name in parameter_names}
     units = {name: _quantity_of_arms(arms, attrgetter(name)) for name in ARM_SCALES}
-    forces = _unit_load_forces(section, arms, crossed.get("taper"), flutter)
-    scale = np.vectorize(attrgetter("F"), otypes=[float])(forces)
+    forces = _unit_load_forces(arm_config, arms, grid.get("taper"), find_force)
+    unit_load_F = np.vectorize(attrgetter("F"), otypes=[float])(forces)
     codes = np.broadcast_to(_along_dimension(0, statuses), shape).copy()
-    if section.load_key in LOAD_OF_RATIO:
-        codes = _with_flutter_codes(codes, scale)
-    if section.load:
-        table["F"] = np.where(np.isinf(scale), np.nan, scale) * _along_dimension(1, loads)
-        if section.load_key in LOAD_OF_RATIO:
-            units[section.load] = table["F"] * units[SCALE_NAME[section.load]]
-    table |= {name: _along_dimension(2, column.ravel()) for name, column in crossed.items()}
-    materials = _materials_of(arms) if section.is_nonuniform else ()
+    if arm_config.load_key in LOAD_OF_RATIO:
+        codes = _with_flutter_codes(codes, unit_load_F)
+    if arm_config.load:
+        table["F"] = np.where(np.isinf(unit_load_F), np.nan, unit_load_F) * _along_dimension(1, loads)
+        if arm_config.load_key in LOAD_OF_RATIO:
+            units[arm_config.load] = table["F"] * units[SCALE_NAME[arm_config.load]]
+    table |= {name: _along_dimension(2, column.ravel()) for name, column in grid.items()}
+    materials = _materials_of(arms) if arm_config.is_nonuniform else ()
     if "F" in table:
         ratios = material.relative_crushing_forces(table.get("taper", np.ones(1)))
         if materials:
@@ -67,14 +68,14 @@ def grid_of_arms(
         is_crushed = np.broadcast_to(table["F"] >= CRUSHED_FORCE_RATIO * table["k1"] * ratios, shape)
         codes[(codes == SLENDER) & is_crushed] = CRUSHED
     if (codes != SLENDER).all():
-        _refuse_grid_without_rods(section, given_parameters, bool((codes == NO_FLUTTER).any()), forces)
-    axes = {name: section.quantity_axes[name].array() for name in section.varying_quantities}
+        _refuse_grid_without_rods(arm_config, given_parameters, bool((codes == NO_FLUTTER).any()), forces)
+    axes = {name: arm_config.quantity_axes[name].array() for name in arm_config.varying_quantities}
     values = axes | {name: column for name, column in given_parameters.items() if len(column) > 1}
     columns = tuple(np.broadcast_to(table[name], shape).ravel() for name in names)
     units = {name: np.broadcast_to(column, shape).ravel() for name, column in units.items()}
     failures = _search_failures(codes, forces)
-    stored = codes.astype(np.int8).ravel()
-    return Points(names, columns, False, values, units, DEFAULT_MATERIAL, materials, stored, failures)
+    arm_statuses = codes.astype(np.int8).ravel()
+    return Points(names, columns, False, values, units, DEFAULT_MATERIAL, materials, arm_statuses, failures)
 
 
 def _materials_of(arms: Sequence[SlenderArm | None]) -> tuple[RodMaterial, ...]:
@@ -87,71 +88,81 @@ def _quantity_of_arms(arms: Sequence[SlenderArm | None], quantity: Callable[[Sle
     return _along_dimension(0, [quantity(arm) if arm else np.nan for arm in arms])
 
 
-def _arm_or_status(section: ArmConfig, values: Mapping[str, float]) -> tuple[SlenderArm | None, int]:
+def _arm_or_status(arm_config: ArmConfig, values: Mapping[str, float]) -> tuple[SlenderArm | None, int]:
     """Returns (arm without load, status code). The arm is None if the rod model does not apply. values:
     quantities of the arm in SI units, by name."""
     try:
-        return section.arm_of(values), SLENDER
+        return arm_config.arm_of(values), SLENDER
     except ArmOutsideModel as error:
         return None, error.status
 
 
 def _unit_load_forces(
-    section: ArmConfig, arms: Sequence[SlenderArm | None], tapers: Array | None, flutter: FlutterSearch
+    arm_config: ArmConfig, arms: Sequence[SlenderArm | None], tapers: Array | None, find_force: FlutterSearch
 ) -> ForceArray:
     """Dimensionless force F of a unit load (see `_unit_load_force`) on each arm. tapers: values, (n,), that
     replace the arms' taper; None for no replacement."""
     given_tapers = (
-        [None] if tapers is None or section.load_key not in LOAD_OF_RATIO else tapers.ravel().tolist()
+        [None] if tapers is None or arm_config.load_key not in LOAD_OF_RATIO else tapers.ravel().tolist()
     )
     forces = np.empty((len(arms), 1, len(given_tapers)), object)
     for i, arm in enumerate(arms):
-        by_taper = {taper: _unit_load_force(section, arm, taper, flutter) for taper in set(given_tapers)}
-        forces[i, 0] = [by_taper[taper] for taper in given_tapers]
+        force_by_taper = {
+            taper: _unit_load_force(arm_config, arm, taper, find_force) for taper in set(given_tapers)
+        }
+        forces[i, 0] = [force_by_taper[taper] for taper in given_tapers]
     return forces
 
 
 def _unit_load_force(
-    section: ArmConfig, arm: SlenderArm | None, taper: float | None, flutter: FlutterSearch
+    arm_config: ArmConfig, arm: SlenderArm | None, taper: float | None, find_force: FlutterSearch
 ) -> FlutterForce:
     """Dimensionless force F of a unit load on an arm; NO_FORCE if `arm` is None or has no load. The unit load
     is 1 Pa or 1 N; for a load relative to flutter, the load at first flutter. taper: replaces the arm's taper
     unless None."""
-    if arm is None or not section.load:
+    if arm is None or not arm_config.load:
         return NO_FORCE
-    if section.load_key in LOAD_OF_RATIO:
-        return flutter(arm, taper)
-    return FlutterForce(1.0 / getattr(arm, SCALE_NAME[section.load]))
+    if arm_config.load_key in LOAD_OF_RATIO:
+        return find_force(arm, taper)
+    return FlutterForce(1.0 / getattr(arm, SCALE_NAME[arm_config.load]))
 
 
-def _with_flutter_codes(codes: Array, flutter: Array) -> Array:
-    """Status codes `codes`, with NO_FLUTTER and FLUTTER_UNKNOWN where a relative load has no value. flutter:
-    F at flutter; inf without flutter, nan if unknown. The shapes broadcast to (arms, loads, n)."""
-    rod_codes = np.where(np.isinf(flutter), NO_FLUTTER, np.where(np.isnan(flutter), FLUTTER_UNKNOWN, SLENDER))
-    result: Array = np.where(codes == SLENDER, rod_codes, codes)
+def _with_flutter_codes(status_codes: Array, flutter_F: Array) -> Array:
+    """Status codes `status_codes`, with NO_FLUTTER and FLUTTER_UNKNOWN where a relative load has no value.
+    flutter_F: F at flutter; inf without flutter, nan if unknown. The shapes broadcast to (arms, loads, n)."""
+    rod_codes = np.where(
+        np.isinf(flutter_F), NO_FLUTTER, np.where(np.isnan(flutter_F), FLUTTER_UNKNOWN, SLENDER)
+    )
+    result: Array = np.where(status_codes == SLENDER, rod_codes, status_codes)
     return result
 
 
-def _search_failures(codes: Array, forces: ForceArray) -> dict[int, str]:
-    """Reasons why the search for flutter failed, by flat index of the point. codes: status codes, (arms,
-    loads, combinations of replaced parameters)."""
-    force_of_points = np.broadcast_to(forces, codes.shape).ravel()
-    return {int(index): force_of_points[index].failure for index in np.flatnonzero(codes == FLUTTER_UNKNOWN)}
+def _search_failures(status_codes: Array, forces: ForceArray) -> dict[int, str]:
+    """Reasons why the search for flutter failed, by flat index of the point. status_codes: status codes,
+    (arms, loads, combinations of replaced parameters)."""
+    force_of_points = np.broadcast_to(forces, status_codes.shape).ravel()
+    return {
+        int(index): force_of_points[index].failure
+        for index in np.flatnonzero(status_codes == FLUTTER_UNKNOWN)
+    }
 
 
 def _refuse_grid_without_rods(
-    section: ArmConfig, given_parameters: Mapping[str, Array], no_flutter: bool, forces: ForceArray
+    arm_config: ArmConfig,
+    given_parameters: Mapping[str, Array],
+    has_arm_without_flutter: bool,
+    forces: ForceArray,
 ) -> None:
     """Raises ValueError with the reason why the rod model applies to no point. given_parameters: values,
-    (n,), of the parameters that replace the arm's parameters, by name. no_flutter: whether some arm does not
-    flutter. forces: result of `_unit_load_forces`."""
-    section.arm_of(section.first_values, with_load=True)
+    (n,), of the parameters that replace the arm's parameters, by name. has_arm_without_flutter: whether some
+    arm does not flutter. forces: result of `_unit_load_forces`."""
+    arm_config.arm_of(arm_config.first_values, with_load=True)
     for force in forces.ravel():
         if force.failure:
-            raise ValueError(f"parameters.arm.{section.load}: {force.failure}")
-    if no_flutter:
+            raise ValueError(f"parameters.arm.{arm_config.load}: {force.failure}")
+    if has_arm_without_flutter:
         raise ValueError(
-            f"parameters.arm.{section.load} is relative to flutter, but with the likeliest drag no arm "
+            f"parameters.arm.{arm_config.load} is relative to flutter, but with the likeliest drag no arm "
             "flutters; give an absolute load"
         )
     k1 = float(given_parameters["k1"][0])

@@ -63,10 +63,12 @@ class Chains:
         """Number of chains, numbered in row-major order of the remaining axes."""
         return math.prod(self.shape) // self.length
 
-    def indices(self, chain: int) -> NDArray[np.int64]:
+    def indices(self, chain_number: int) -> NDArray[np.int64]:
         """Flat indices of the points of a chain in the order of solution, shape (length,)."""
         positions = np.arange(self.length)
-        return indices_along(self.shape, self.axis, chain, positions if self.is_upward else positions[::-1])
+        return indices_along(
+            self.shape, self.axis, chain_number, positions if self.is_upward else positions[::-1]
+        )
 
     def unsolved_ranges(self, missing: IndexSet) -> list[IndexRange]:
         """Ranges of the numbers of chains with missing points. missing: flat indices of missing points."""
@@ -86,15 +88,15 @@ class SweepChains:
 @dataclass(frozen=True, slots=True)
 class ChainSolver:
     """Function from the number of a chain to the outcomes of its missing points; resumes from checkpoints.
-    work: the chains. missing: flat indices of the missing points. checkpoints: store of solver states. stop:
-    a stop request ends the chain after the current point."""
+    work: the chains and the functions that solve them. missing: flat indices of the missing points.
+    checkpoints: store of solver states. stop: a stop request ends the chain after the current point."""
 
     work: SweepChains
     missing: IndexSet
     checkpoints: CheckpointStore
     stop: StopRequest
 
-    def __call__(self, chain: int) -> Iterator[tuple[int, Any]]:
+    def __call__(self, chain_number: int) -> Iterator[tuple[int, Any]]:
         """Yields (flat index, outcome) of each missing point of a chain; ends early after a stop request.
         Points that are not missing are solved too, from the checkpoint on, because later points start from
         them.
@@ -102,8 +104,8 @@ class ChainSolver:
         The caller stores an outcome before the state of the chain after this point is stored. A kill in
         between costs a second solve of the point; in the reverse order the point could be lost.
         """
-        order = list(map(int, self.work.chains.indices(chain)))
-        first_position, state = self._resume(chain, order)
+        order = list(map(int, self.work.chains.indices(chain_number)))
+        first_position, state = self._resume(chain_number, order)
         for index in order[first_position:]:
             if self.stop:
                 return
@@ -111,14 +113,14 @@ class ChainSolver:
             if self.missing[index]:
                 yield index, outcome
             if index != order[-1]:
-                self.checkpoints.write(chain, index, state)
-        self.checkpoints.remove(chain)
+                self.checkpoints.write(chain_number, index, state)
+        self.checkpoints.remove(chain_number)
 
-    def _resume(self, chain: int, order: list[int]) -> tuple[int, State]:
+    def _resume(self, chain_number: int, order: list[int]) -> tuple[int, State]:
         """Returns (position in the chain of the first point to solve, its initial state). order: flat indices
         of the points of the chain in the order of solution. The checkpoint is used if no point up to the
         checkpoint is missing; otherwise the chain starts again without an initial state."""
-        checkpoint = self.checkpoints.read(chain)
+        checkpoint = self.checkpoints.read(chain_number)
         if checkpoint is None or checkpoint[0] not in order:
             return 0, None
         position = order.index(checkpoint[0]) + 1

@@ -37,24 +37,24 @@ OWN_TAPER: ReplacedTapers = (None,)
 
 
 def rods_needing_flutter_force(
-    section: ArmConfig | None, material: RodMaterial | None = None, tapers: ReplacedTapers = OWN_TAPER
+    arm_config: ArmConfig | None, material: RodMaterial | None = None, tapers: ReplacedTapers = OWN_TAPER
 ) -> list[Rod]:
     """The distinct rods whose flutter forces the points of an arm need; empty if the load is not relative to
     flutter. material: constitutive law and profile from the config section `material`, None if the section is
     not given. Raises InputError for an invalid arm."""
-    if section is None or section.load_key not in LOAD_OF_RATIO:
+    if arm_config is None or arm_config.load_key not in LOAD_OF_RATIO:
         return []
     from ...verdict.relative_load import rods_by_plane
 
-    shapes = ((arm, taper) for arm in _unloaded_arms(section) for taper in tapers)
+    shapes = ((arm, taper) for arm in _unloaded_arms(arm_config) for taper in tapers)
     return list(dict.fromkeys(rod for arm, taper in shapes for rod, _ in rods_by_plane(arm, material, taper)))
 
 
-def _unloaded_arms(section: ArmConfig) -> Iterable[SlenderArm]:
+def _unloaded_arms(arm_config: ArmConfig) -> Iterable[SlenderArm]:
     """Yields the arms of a config section to which the model applies, without load. Raises InputError."""
-    for values in section.values_of_arms():
+    for values in arm_config.values_of_arms():
         try:
-            yield section.arm_of(values)
+            yield arm_config.arm_of(values)
         except ArmOutsideModel:
             continue
         except ValueError as error:

@@ -36,10 +36,10 @@ def grid_size(config: Config) -> int:
     return math.prod(config.parameters.axes[name].size for name in config.parameter_names)
 
 
-def points_of(config: Config, directory: Path, flutter: FlutterForces | None = None) -> Points:
+def points_of(config: Config, directory: Path, flutter_forces: FlutterForces | None = None) -> Points:
     """Points of the sweep that a config describes; raises InputError for a parameter value outside the model,
-    and for an invalid file of points. directory: folder of relative file names. flutter: flutter forces of
-    all rods of `rods_for_flutter_forces`; if None, the forces are computed here."""
+    and for an invalid file of points. directory: folder of relative file names. flutter_forces: flutter
+    forces of all rods of `rods_for_flutter_forces`; if None, this function computes the forces."""
     parameters = config.parameters
     for name, value in parameters.constant_parameters.items():
         require_in_range(PARAMETERS[name].allowed, name, (value,))
@@ -51,15 +51,23 @@ def points_of(config: Config, directory: Path, flutter: FlutterForces | None = N
         for name, column in axes.items():
             require_in_range(PARAMETERS[name].allowed, name, column)
         try:
-            forces = flutter or {rod: flutter_force_of_rod(rod) for rod in rods_for_flutter_forces(config)}
-            of_arm = partial(flutter_force_of_arm, flutter_forces=forces, material=config.stated_rod_material)
-            return grid_of_arms(parameters.arm, axes, config.parameter_names, of_arm, config.rod_material)
+            forces = flutter_forces or {
+                rod: flutter_force_of_rod(rod) for rod in rods_for_flutter_forces(config)
+            }
+            find_flutter_force = partial(
+                flutter_force_of_arm, flutter_forces=forces, material=config.stated_rod_material
+            )
+            return grid_of_arms(
+                parameters.arm, axes, config.parameter_names, find_flutter_force, config.rod_material
+            )
         except ValueError as error:
             raise InputError(str(error)) from None
-    by_name = {name: axes[name] for name in config.parameter_names}
-    arm_statuses = None if parameters.arm is None else _crushing_codes(by_name, config.rod_material)
+    columns_by_name = {name: axes[name] for name in config.parameter_names}
+    arm_statuses = None if parameters.arm is None else _crushing_codes(columns_by_name, config.rod_material)
     refuse_invalid_axes(axes, config.allows_crushed_rods or arm_statuses is not None, config.rod_material)
-    return Points(config.parameter_names, tuple(by_name.values()), is_grid=True, arm_statuses=arm_statuses)
+    return Points(
+        config.parameter_names, tuple(columns_by_name.values()), is_grid=True, arm_statuses=arm_statuses
+    )
 
 
 def _crushing_codes(axes: dict[str, Array], material: RodMaterial) -> NDArray[np.int8] | None:
@@ -96,11 +104,11 @@ def require_in_range(
 ) -> None:
     """Raises InputError for the first of `values` outside the range `allowed` of the parameter `name`. place,
     reason: phrases inserted into the message after the value and at the end."""
-    invalid = allowed.first_outside(values)
-    if invalid is not None:
-        described = allowed.description_for(invalid)
+    invalid_value = allowed.first_outside(values)
+    if invalid_value is not None:
+        allowed_text = allowed.description_for(invalid_value)
         raise InputError(
-            f"parameters.{name} = {invalid:g} is not allowed{place}; it must be {described}{reason}"
+            f"parameters.{name} = {invalid_value:g} is not allowed{place}; it must be {allowed_text}{reason}"
         )
 
 
@@ -129,15 +137,15 @@ def refuse_invalid_axes(
         )
 
 
-def _refuse_crushed(F: Array, k1: Array, is_partial: bool) -> None:
-    """Raises InputError if any rod of a grid is crushed or, with `is_partial`, if all rods are crushed. F,
-    k1: values on the axes, (n,). is_partial: whether some rods may be crushed."""
-    if is_partial and F.min() >= k1.max():
+def _refuse_crushed(F: Array, k1: Array, allows_crushed_rods: bool) -> None:
+    """Raises InputError if any rod of a grid is crushed or, with `allows_crushed_rods`, if all rods are
+    crushed. F, k1: values on the axes, (n,). allows_crushed_rods: whether some rods may be crushed."""
+    if allows_crushed_rods and F.min() >= k1.max():
         raise InputError(
             f"parameters.F starts at {F.min():.15g} and parameters.k1 ends at {k1.max():.15g}; the rod is "
             "crushed where F >= k1, which is everywhere here"
         )
-    if not is_partial and F.max() >= k1.min():
+    if not allows_crushed_rods and F.max() >= k1.min():
         raise InputError(
             f"parameters.F reaches {F.max():.15g} and parameters.k1 starts at {k1.min():.15g}; F must stay "
             "below every k1, because the rod is crushed at F = k1"

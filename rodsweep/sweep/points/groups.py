@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from .ranges import IndexRange, IndexSet, index_count, indices_along, merged_ranges
 
 GROUP_POINTS = 128
-"""Maximum number of points in a stretch. Arms along a path share what is computed once per stretch; longer
-groups would leave fewer work items to the ranks."""
+"""Maximum number of points in a group. The arms of a group share quantities that are computed once per group;
+longer groups would leave fewer work items to the ranks."""
 MIN_GROUP_AXIS_VALUES = 8
 """Minimum number of values on the axis of groups. On a shorter axis, neighbouring points differ too much."""
 GROUPS_PER_BLOCK = 1 << 12
@@ -27,7 +27,8 @@ GROUPS_PER_BLOCK = 1 << 12
 @dataclass(frozen=True, slots=True)
 class GroupResult:
     """Result of a group of n points solved together. values: every variable of the result file at the points,
-    (n, ...), by name. is_solved: mask of points solved together, (n,); others must be solved one by one."""
+    (n, ...), by name. is_solved: mask of points solved together, (n,); the other points must be solved one by
+    one."""
 
     values: dict[str, NDArray]
     is_solved: NDArray[np.bool_]
@@ -61,18 +62,19 @@ class PointGroups:
         row-major order of the remaining axes. Consecutive groups are therefore neighbours in the file."""
         return self.line_count * -(-self.shape[self.axis] // GROUP_POINTS)
 
-    def indices(self, group: int) -> NDArray[np.int64]:
-        """Flat indices of the points of the group number `group`, (n,)."""
-        segment, line = divmod(group, self.line_count)
+    def indices(self, group_number: int) -> NDArray[np.int64]:
+        """Flat indices of the points of the group number `group_number`, (n,)."""
+        position_of_group, line = divmod(group_number, self.line_count)
         positions = np.arange(
-            segment * GROUP_POINTS, min((segment + 1) * GROUP_POINTS, self.shape[self.axis])
+            position_of_group * GROUP_POINTS,
+            min((position_of_group + 1) * GROUP_POINTS, self.shape[self.axis]),
         )
         return indices_along(self.shape, self.axis, line, positions)
 
     def missing_counts(self, groups: IndexRange, missing: IndexSet) -> NDArray[np.int64]:
         """Number of points in `missing` of each group in a range of group numbers, (groups,)."""
-        segment, line = np.divmod(np.arange(*groups)[:, None], self.line_count)
-        positions = segment * GROUP_POINTS + np.arange(GROUP_POINTS)
+        position_of_group, line = np.divmod(np.arange(*groups)[:, None], self.line_count)
+        positions = position_of_group * GROUP_POINTS + np.arange(GROUP_POINTS)
         index = indices_along(self.shape, self.axis, line, positions)
         return (missing[index] & (positions < self.shape[self.axis])).sum(axis=1)
 
@@ -90,21 +92,22 @@ class PointGroups:
         return merged_ranges(ranges)
 
     def missing_total(self, groups: Sequence[IndexRange], missing: Sequence[IndexRange]) -> int:
-        """Number of missing points in groups. groups: ranges of their numbers. missing: of flat indices."""
+        """Number of missing points in groups. groups: ranges of group numbers. missing: ranges of flat
+        indices."""
         missing_points = IndexSet(missing)
-        number = 0
+        missing_count = 0
         for start, end in groups:
             for block_start in range(start, end, GROUPS_PER_BLOCK):
                 block = (block_start, min(block_start + GROUPS_PER_BLOCK, end))
-                number += int(self.missing_counts(block, missing_points).sum())
-        return number
+                missing_count += int(self.missing_counts(block, missing_points).sum())
+        return missing_count
 
 
-def groups_along_longest_axis(shape: tuple[int, ...], varied: Sequence[str]) -> PointGroups | None:
+def groups_along_longest_axis(shape: tuple[int, ...], varied_parameters: Sequence[str]) -> PointGroups | None:
     """Groups of a grid along the first of its longest usable axes; None if no usable axis has
-    MIN_GROUP_AXIS_VALUES values. shape: shape of the grid. varied: the only parameter that varies along each
-    axis; "" for an axis of several parameters, which is not usable."""
-    followable_axes = [axis for axis, name in enumerate(varied) if name]
+    MIN_GROUP_AXIS_VALUES values. shape: shape of the grid. varied_parameters: the only parameter that varies
+    along each axis; "" for an axis of several parameters, which is not usable."""
+    followable_axes = [axis for axis, name in enumerate(varied_parameters) if name]
     axis = max(followable_axes, key=lambda i: shape[i], default=None)
     return PointGroups(shape, axis) if axis is not None and shape[axis] >= MIN_GROUP_AXIS_VALUES else None
 
@@ -120,11 +123,11 @@ class GroupSolver:
     solve: Callable[[int], Any]
     missing: IndexSet
 
-    def __call__(self, group: int) -> Iterator[tuple[NDArray[np.int64] | int, Any]]:
+    def __call__(self, group_number: int) -> Iterator[tuple[NDArray[np.int64] | int, Any]]:
         """Solves a group of points; yields (flat indices, (m,), `GroupResult`) of all missing points that are
         solved together, then (flat index, outcome) of each further missing point. A run that ends between two
         points loses no point that was yielded before."""
-        indices = self.groups.indices(group)
+        indices = self.groups.indices(group_number)
         result = self.solve_group(indices)
         missing = self.missing[indices]
         solved_indices = np.flatnonzero(missing & result.is_solved)

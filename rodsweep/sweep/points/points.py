@@ -121,8 +121,8 @@ class Points:
         """Returns (distinct materials, index of the material of each point of `rod_values`, (rods,))."""
         distinct_materials = list(dict.fromkeys(self.materials)) or [self.material]
         material_of_arm = np.array([distinct_materials.index(material) for material in self.materials] or [0])
-        numbers = material_of_arm[np.arange(self.count) * len(material_of_arm) // self.count]
-        return distinct_materials, numbers if self.arm_statuses is None else numbers[
+        material_indices = material_of_arm[np.arange(self.count) * len(material_of_arm) // self.count]
+        return distinct_materials, material_indices if self.arm_statuses is None else material_indices[
             self.arm_statuses == SLENDER
         ]
 
@@ -145,17 +145,18 @@ class ParameterLine:
     """Flat indices of the points in the sweep, (n,)."""
 
 
-def lines_along(columns: Mapping[str, Array], name: str) -> Iterator[ParameterLine]:
-    """Yields the lines of points along the parameter `name`, in the order of their first points. Points at
-    which the parameter is inf or NaN are left out. columns: each parameter at every point, (points,)."""
-    x = columns[name]
-    others = [other for other in columns if other != name]
-    table = np.stack([columns[other] for other in others], axis=-1)
-    _, first_rows, line = np.unique(table, axis=0, return_index=True, return_inverse=True)
-    sorted_points = np.argsort(line.ravel(), kind="stable")
-    ends = np.cumsum(np.bincount(line.ravel()))
-    for number in np.argsort(first_rows):
-        line_points = sorted_points[ends[number - 1] if number else 0 : ends[number]]
+def lines_along(columns: Mapping[str, Array], parameter_name: str) -> Iterator[ParameterLine]:
+    """Yields the lines of points along the parameter `parameter_name`, in the order of their first points.
+    Points at which the parameter is inf or NaN are left out. columns: each parameter at every point,
+    (points,)."""
+    x = columns[parameter_name]
+    other_names = [other for other in columns if other != parameter_name]
+    other_values = np.stack([columns[other] for other in other_names], axis=-1)
+    _, first_rows, line_numbers = np.unique(other_values, axis=0, return_index=True, return_inverse=True)
+    sorted_points = np.argsort(line_numbers.ravel(), kind="stable")
+    ends = np.cumsum(np.bincount(line_numbers.ravel()))
+    for line_number in np.argsort(first_rows):
+        line_points = sorted_points[ends[line_number - 1] if line_number else 0 : ends[line_number]]
         line_points = line_points[np.isfinite(x[line_points])]
-        fixed = dict(zip(others, table[first_rows[number]].tolist(), strict=True))
-        yield ParameterLine(name, fixed, x[line_points], line_points)
+        values_of_line = dict(zip(other_names, other_values[first_rows[line_number]].tolist(), strict=True))
+        yield ParameterLine(parameter_name, values_of_line, x[line_points], line_points)

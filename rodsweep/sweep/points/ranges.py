@@ -1,4 +1,4 @@
-"""Ranges (first, end) of flat indices of points or numbers of work items, sets of indices, and shards."""
+"""Ranges (first, end) of indices (flat indices of points, numbers of work items), index sets, and shards."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -48,8 +48,8 @@ class IndexSet:
 
     def __getitem__(self, indices: Any) -> Any:
         """Whether each of `indices` is in the set: a boolean, or a boolean array of the same shape."""
-        number = np.searchsorted(self.firsts, indices, side="right") - 1
-        return indices < self.ends[number]
+        range_index = np.searchsorted(self.firsts, indices, side="right") - 1
+        return indices < self.ends[range_index]
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,18 +62,20 @@ class Shard:
     def __str__(self) -> str:
         return f"{self.number}/{self.shard_count}"
 
-    def ranges_of_shard(self, ranges: Sequence[IndexRange], items: int) -> list[IndexRange]:
-        """Ranges of the items in `ranges` that belong to this shard. Blocks of the sweep's `items` items are
-        assigned to the shards in turn."""
+    def ranges_of_shard(self, ranges: Sequence[IndexRange], item_count: int) -> list[IndexRange]:
+        """Ranges of the items in `ranges` that belong to this shard. Blocks of the sweep's `item_count` items
+        are assigned to the shards in turn."""
         if self.shard_count == 1:
             return list(ranges)
-        block = max(1, items // (self.shard_count * BLOCKS_PER_SHARD))
+        block_size = max(1, item_count // (self.shard_count * BLOCKS_PER_SHARD))
         own_ranges: list[IndexRange] = []
         for start, end in ranges:
-            block_number = start // block
+            block_number = start // block_size
             block_number += (self.number - 1 - block_number) % self.shard_count
-            while block_number * block < end:
-                own_ranges.append((max(start, block_number * block), min(end, (block_number + 1) * block)))
+            while block_number * block_size < end:
+                own_ranges.append(
+                    (max(start, block_number * block_size), min(end, (block_number + 1) * block_size))
+                )
                 block_number += self.shard_count
         return own_ranges
 

@@ -213,7 +213,7 @@ class ArmValidity:
         whose constitutive law includes large compression. F, index: forces, and indices of their points, as
         in `variables_of_points`."""
         material = self.points.material_of(int(np.ravel(index)[0]))
-        if material.law != LINEAR.law:
+        if material.law != LINEAR.law_name:
             return np.full(np.shape(F), np.nan)
         tapers = self._parameter_values("taper", index)
         ratios = material.relative_crushing_forces(np.ones(()) if tapers is None else tapers)

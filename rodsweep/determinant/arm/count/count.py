@@ -2,8 +2,8 @@
 
 The number is the change of arg D along the upper half of a box that contains all these eigenvalues, divided
 by pi, as in `rodsweep.determinant.certificate.winding_number`. The phase between two nodes follows from the
-tangents log D(w) + L (v - w), L = D'/D, at both nodes, if the error of each tangent is below pi/2 at a common
-point between the nodes.
+tangents log D(w) + L (v - w), L = D'/D, of log D(v) at both nodes w, if the error of each tangent is below
+pi/2 at a common point between the nodes.
 
 Known eigenvalues close to the line are divided out: D above stands for D(w)/prod (w - w_n), whose zeros are
 far from the line. The known eigenvalues right of the line are then added to the count.
@@ -84,19 +84,20 @@ def count_right_of(
     height = np.maximum(np.abs(known_w.imag), abs(line))
     known_w = known_w[np.abs(known_w.real - line) < CONTOUR_SETTINGS.max_known_distance_ratio * height]
     try:
-        change, nodes = _phase_change(line, determinant, hull, known_w)
+        phase_change, node_count = _phase_change(line, determinant, hull, known_w)
     except PhaseLost as lost:
         return EigenvalueCount(None, lost.node_count, str(lost))
     except FloatingPointError as unresolved:
         return EigenvalueCount(None, 0, str(unresolved))
-    number = round(change / math.pi)
-    if abs(change / math.pi - number) > WINDING_SETTINGS.integer_tolerance:
-        return EigenvalueCount(None, nodes, NO_INTEGER_MESSAGE)
-    return EigenvalueCount(number + int((known_w.real > line).sum()), nodes)
+    count = round(phase_change / math.pi)
+    if abs(phase_change / math.pi - count) > WINDING_SETTINGS.integer_tolerance:
+        return EigenvalueCount(None, node_count, NO_INTEGER_MESSAGE)
+    return EigenvalueCount(count + int((known_w.real > line).sum()), node_count)
 
 
 def is_countable(determinant: ArmDeterminant, hull: EigenvalueHull) -> bool:
-    """Whether eigenvalues right of a line at Re w <= 0 are countable: bounded hull, elements resolve D."""
+    """Whether eigenvalues right of a line Re w <= 0 are countable: the hull is bounded, elements resolve
+    D."""
     if not math.isfinite(hull.a):
         return False
     try:
@@ -128,8 +129,11 @@ def _phase_change(
     largest_w = largest_w_of_count(line, determinant, hull)
     propagators = determinant.propagators_for(largest_w, CONTOUR_SETTINGS.max_W_ratio)
     samples = determinant.samples, determinant.gauss_samples
-    unit = determinant.w_scale(corners[0])
-    trial_radii = unit, min(CONTOUR_SETTINGS.first_radius_in_lengths * unit, propagators[0] - abs(corners[0]))
+    scale = determinant.w_scale(corners[0])
+    trial_radii = (
+        scale,
+        min(CONTOUR_SETTINGS.first_radius_in_lengths * scale, propagators[0] - abs(corners[0])),
+    )
     first_node = phase_node(corners[0], known_w, trial_radii, hull, (samples[1], propagators))
     traversal = ContourTraversal(0, 0.0, 0.0, 1, first_node, 0.0, 0.0, 0.0)
     while True:
@@ -204,15 +208,16 @@ def _serves_efficiently(W: float, required_W: float) -> bool:
 @compiled
 def _overlapping_distance(reach: float, growth: float) -> float:
     """Distance to the next node: `radius_overlap` times the sum of the current valid radius and of the valid
-    radius expected there. growth: expected change of the valid radius per distance, clipped to between -1 and
-    `max_radius_growth`."""
+    radius expected there. reach: the current valid radius. growth: expected change of the valid radius per
+    distance, clipped to between -1 and `max_radius_growth`."""
     overlap = CONTOUR_SETTINGS.radius_overlap
     return 2 * overlap * reach / (1 - overlap * min(max(growth, -1.0), CONTOUR_SETTINGS.max_radius_growth))
 
 
 @compiled
 def _shortened_distance(reach: float, growth: float, distance: float) -> float:
-    """A distance to the next node below `distance`; repeated calls lead to a distance below `reach`."""
+    """A distance to the next node below `distance`. Repeated calls lead to a distance below `reach`, the
+    valid radius. growth: expected change of the valid radius per distance."""
     shorter_distance = min(_overlapping_distance(reach, growth), CONTOUR_SETTINGS.max_step_ratio * distance)
     return (
         shorter_distance

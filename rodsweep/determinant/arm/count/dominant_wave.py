@@ -3,8 +3,8 @@
 With the local exponents of the minors, +-sqrt(z+-) of `rodsweep.determinant.arm.local_waves`, D is about
 exp(Phi), Phi = int sqrt(z+) du, times a factor that changes slowly where no eigenvalue is near.
 
-For Im w > 0 is Im P > 0 and Im z+ > 0: Phi has no branch point in the upper half plane. The count does not
-rely on Phi being close to log D: it divides D by exp(Phi), and Phi, as a quadrature sum, is analytic.
+If Im w > 0, then Im P > 0 and Im z+ > 0, so Phi has no branch point in the upper half plane. The count does
+not require that Phi is close to log D: D is divided by exp(Phi), and Phi, a quadrature sum, is analytic.
 """
 
 import cmath

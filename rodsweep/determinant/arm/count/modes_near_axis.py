@@ -1,8 +1,8 @@
 """Eigenvalues of an arm close to the imaginary axis, by Newton's method from points on the axis.
 
-With the dominant wave Phi, D exp(-Phi) varies slowly on the axis but for its zeros close by. Newton's method
-on this function, with the zeros found before divided out, converges to a further zero if a zero is close to
-the starting point. It is not proved that all zeros close to the axis are found.
+With the dominant wave Phi (`dominant_wave`), D exp(-Phi) varies slowly on the axis, except near its zeros.
+Newton's method for this function, divided by the factors of the zeros found before, converges to a further
+zero if a zero is close to the starting point. It is not proved that all zeros close to the axis are found.
 """
 
 import math
@@ -87,7 +87,7 @@ def _modes_from(
 def _mode_near(
     guess: complex, known_w: Complex, propagator_set: PropagatorsUpToW, samples: ArmSamples
 ) -> complex:
-    """The eigenvalue close to `guess` that is not in `known_w`, (n,); nan if no further one is close."""
+    """The eigenvalue close to `guess` that is not in `known_w`, (n,); nan if no other eigenvalue is close."""
     w = guess
     for _ in range(NEAR_AXIS_SETTINGS.max_steps):
         value = determinant_from_propagators(w, propagator_set[0], propagator_set[1])

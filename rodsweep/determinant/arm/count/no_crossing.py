@@ -40,9 +40,9 @@ from .settings import CONTOUR_SETTINGS, NO_CROSSING_SETTINGS
 class ArmsOfInterval(NamedTuple):
     """Some arms of an interval: the middle arm, then the arms at both ends, then further arms.
 
-    known_eigenvalues: followed from arm to arm; known_errors: their errors; (n, m) each. squares, weights: as
-    in `ArmSamples`, (n, 4, points) and (points,). largest_w, propagators: W, and the propagators of the arms
-    for |w| <= W, (n, elements, terms, PADDED).
+    known_eigenvalues, known_errors: eigenvalues followed from arm to arm, and their errors, (n, m) each.
+    squares, weights: as in `ArmSamples`, (n, 4, points) and (points,). largest_w, propagators: W, and the
+    propagators of the arms for |w| <= W, (n, elements, terms, PADDED).
     """
 
     known_eigenvalues: Complex
@@ -66,13 +66,15 @@ class LineNode(NamedTuple):
     exponent_and_slope: tuple[complex, complex]
 
 
-def sampled_point_indices(first: int, last: int) -> list[int]:
-    """Indices of the `NO_CROSSING_SETTINGS.arm_count` points, of the points `first` to `last`, at which D is
-    evaluated: the middle, the ends, and further points."""
-    steps = NO_CROSSING_SETTINGS.arm_count - 1
-    further_indices = [first + (last - first) * k // steps for k in range(1, steps)]
-    middle = further_indices.pop(steps // 2 - 1)
-    return [middle, first, last, *further_indices]
+def sampled_point_indices(first_index: int, last_index: int) -> list[int]:
+    """Indices of the `NO_CROSSING_SETTINGS.arm_count` points, of the points `first_index` to `last_index`, at
+    which D is evaluated: the middle, the ends, and further points."""
+    step_count = NO_CROSSING_SETTINGS.arm_count - 1
+    further_indices = [
+        first_index + (last_index - first_index) * k // step_count for k in range(1, step_count)
+    ]
+    middle = further_indices.pop(step_count // 2 - 1)
+    return [middle, first_index, last_index, *further_indices]
 
 
 def proves_no_crossing(
@@ -87,25 +89,25 @@ def proves_no_crossing(
 
     rods: arms of the interval in the order of `sampled_point_indices`; p: their path variables, (n,).
     eigenvalues_and_errors: their known eigenvalues, followed from arm to arm, and the errors, (n, m) each.
-    family, hulls: as of the whole path.
+    family, hulls: propagators and hulls of all arms of the path.
     """
     w, error = eigenvalues_and_errors
     overlaps = (hulls.p[:-1] <= p.max()) & (hulls.p[1:] >= p.min())
     intervals = zip(hulls.a[overlaps].tolist(), hulls.c[overlaps].tolist(), strict=True)
     # Largest |Im w| right of the line in the hulls of all arms.
     top = max(EigenvalueHull(a, c).box(max(-line, 0.0))[1] for a, c in intervals)
-    if not math.isfinite(top) or not all(has_conjugate(here).all() for here in w):
+    if not math.isfinite(top) or not all(has_conjugate(w_of_arm).all() for w_of_arm in w):
         return False
     samples = [ArmDeterminant(rod).gauss_samples for rod in rods]
     squares = np.array([arm_samples.squares for arm_samples in samples])
-    propagators = [propagators_at(family, here)[1] for here in p.tolist()]
+    propagators = [propagators_at(family, p_of_arm)[1] for p_of_arm in p.tolist()]
     arms = ArmsOfInterval(w, error, squares, samples[0].weights, family.largest_w, np.array(propagators))
-    unit = mean_wave_number_and_w_scale(complex(line, 0.0), samples[0])[1]
+    scale = mean_wave_number_and_w_scale(complex(line, 0.0), samples[0])[1]
     height, radius = covered_height(
         line,
         0.0,
         top,
-        (CONTOUR_SETTINGS.first_radius_in_lengths * unit, NO_CROSSING_SETTINGS.min_radius * unit),
+        (CONTOUR_SETTINGS.first_radius_in_lengths * scale, NO_CROSSING_SETTINGS.min_radius * scale),
         arms,
     )
     if height < top and radius > 0:
@@ -116,7 +118,7 @@ def proves_no_crossing(
         except FloatingPointError:
             return False
         arms = arms._replace(largest_w=W, propagators=larger)
-        height, _ = covered_height(line, height, top, (radius, NO_CROSSING_SETTINGS.min_radius * unit), arms)
+        height, _ = covered_height(line, height, top, (radius, NO_CROSSING_SETTINGS.min_radius * scale), arms)
     return height >= top
 
 
@@ -183,8 +185,8 @@ def _is_too_close_to_divide(v: complex, w: complex, error: float) -> bool:
 
 @compiled
 def _has_small_change(node: LineNode, radius: float, arm: int, arms: ArmsOfInterval) -> bool:
-    """Whether |f(v, p)/f(w0, q) - 1| is below 1, divided by the safety factors, at the points of the circle
-    and for arm number `arm`; False if a point is too close to a known eigenvalue."""
+    """Whether |f(v, p)/f(w0, q) - 1| <= `NO_CROSSING_SETTINGS.max_change` at the points v of the circle, for
+    the arm number `arm`; False if a point is too close to a known eigenvalue."""
     samples = ArmSamples(arms.squares[arm], arms.weights)
     growth = 0.0
     if node.exponent_and_slope[0] == 0:

@@ -20,7 +20,7 @@ class ContourSettings(KernelConstants):
     circle_safety_factor: float = 1.5
     """Safety factor on the largest |f| at the points of a circle, for larger values between the points."""
     max_change: float = 0.9
-    """Within the valid radius of a node, the change of f is at most this number times |D|."""
+    """The change of f within the valid radius of a node is at most this number times |D|."""
     rounding_safety_factor: float = 100.0
     """|rounding error of D| <= this number times `rounding_error` of the value. Where |D| is below this
     bound, the valid radius of a node is 0."""

@@ -1,13 +1,13 @@
 """The transverse problem of arms in minors of two solutions, and its collocation over elements.
 
-With the state (y, theta, s, m) the eigenproblem of an arm with profiles reads (physics: the arm as it is
-built)
+With the state (y, theta, s, m) the eigenproblem of an arm whose coefficients vary with u reads
 
     y' = nu theta + c2 s,   theta' = c3 m,   s' = w gamma2 y + F c3 m,   m' = w gamma3 theta - g s.
 
-D is the minor of the rows s and m of the two solutions that start with s = 1 or m = 1 at the clamp. With y^s
-for the minor of the rows y and s, and so on, y^s + theta^m - F y^theta is constant along the arm: 0 for these
-two solutions. The other five minors then obey a linear system of their own,
+D is the minor of the rows s and m of the two solutions that start with s = 1 or m = 1 at the clamp. Let y^s
+be the minor (2 x 2 determinant) of the rows y and s of both solutions, and so on. y^s + theta^m - F y^theta
+is constant along the arm, and 0 for these two solutions. The five minors other than y^s then satisfy a closed
+linear system,
 
     (s^m)'     = w (gamma2 y^m - gamma3 theta^s)
     (theta^s)' = F c3 theta^m - c3 s^m - w gamma2 y^theta

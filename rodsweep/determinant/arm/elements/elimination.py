@@ -10,7 +10,7 @@ from .settings import ARM_ELEMENT_SETTINGS
 
 @compiled
 def elimination_matrix(F: float, c3: Array, g: Array, Q: Array) -> Array:
-    """[M 1, M Q], (STAGES, 1 + STAGES), with the inverse M of 1 + F Q c3 Q g.
+    """The matrix [M 1, M Q], (STAGES, 1 + STAGES), where M is the inverse of the matrix 1 + F Q c3 Q g.
 
     M eliminates theta^m and y^m: M Q integrates the rates of theta^s and y^theta; M 1 is the contribution of
     a start value of 1. Q: matrix of integrals from 0 to each Gauss point, (STAGES, STAGES). c3, g:

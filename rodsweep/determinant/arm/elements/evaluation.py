@@ -1,8 +1,8 @@
 """Propagators of elements at one z = w/W, from polynomials in z, and their products with minors.
 
 A propagator has the MINORS^2 entries of its columns one after the other, and then zeros up to PADDED: loops
-over PADDED entries are whole vector instructions. Real and imaginary parts are rows of their own, so that a
-sum over powers of z is a vector instruction over the entries. At real z there are no imaginary parts.
+over PADDED entries are whole vector instructions. Real and imaginary parts are separate rows, so that a sum
+over powers of z is a vector instruction over the entries. Arrays at real z have no imaginary parts.
 
 powers: result of `powers_and_derivatives`, (terms, 4). polynomial: coefficients of an element, (at least as
 many terms, PADDED). Minors: (2, MINORS), real and imaginary parts.
@@ -70,7 +70,8 @@ def fill_propagator(polynomial: Array, powers: Array, out: Array) -> None:
 
 @compiled_for_vectors
 def fill_propagator_value(polynomial: Array, powers: Array, out: Array) -> None:
-    """Writes a propagator C, without dC/dz, into out, (2, PADDED). polynomial, powers: see the module."""
+    """Writes a propagator C, without dC/dz, into out, (2, PADDED). polynomial, powers: see the module
+    docstring."""
     _fill_rows(polynomial, powers, (RE, IM), out)
 
 

@@ -1,10 +1,11 @@
-"""Rates d/du of the five minors along an element, one power of w at a time, and the start values of the
-minors.
+"""Rates d/du of the five minors along an element, one power of w at a time, and start values of the minors.
 
-The equations are given in `rodsweep.determinant.arm.elements.collocation`. STAGES: number of Gauss points of
-an element. WIDTH: number of pairs (initial value, element). values, rates: values and rates of the minors at
-the Gauss points of some elements, (MINORS, STAGES, WIDTH). local: coefficients there, (6, STAGES, WIDTH).
-turning: `elimination_matrix` of each element, (STAGES, 1 + STAGES, WIDTH). start: 1 at the power w^0, else 0.
+The minor s^m is the 2 x 2 determinant of the rows s and m of two solutions; s^m, theta^s, ... and their
+equations are defined in `rodsweep.determinant.arm.elements.collocation`. STAGES: number of Gauss points of an
+element. WIDTH: number of pairs (initial value, element). values, rates: values and rates of the minors at the
+Gauss points of some elements, (MINORS, STAGES, WIDTH). coefficients: `LocalCoefficients` at these points, (6,
+STAGES, WIDTH). eliminations: `elimination_matrix` of each element, (STAGES, 1 + STAGES, WIDTH). start: 1 at
+the power w^0, else 0.
 """
 
 from ....arrays import Array
@@ -31,8 +32,9 @@ def add_start_value(minor: int, start: float, values: Array) -> None:
 
 @compiled_for_vectors
 def add_eliminated_start_value(minor: int, start: float, eliminations: Array, values: Array) -> None:
-    """`add_start_value` for the minor theta^s or y^theta, from whose equation one is eliminated. values:
-    (MINORS, STAGES, WIDTH). eliminations: (STAGES, 1 + STAGES, WIDTH), whose column 0 multiplies `start`."""
+    """`add_start_value` for the minor theta^s or y^theta, from whose equation another minor is eliminated.
+    values: (MINORS, STAGES, WIDTH). eliminations: (STAGES, 1 + STAGES, WIDTH), whose column 0 multiplies
+    `start`."""
     for i in range(ARM_ELEMENT_SETTINGS.stages):
         for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
             c = minor * ARM_ELEMENT_SETTINGS.lane_count + lane
@@ -42,8 +44,8 @@ def add_eliminated_start_value(minor: int, start: float, eliminations: Array, va
 @compiled_for_vectors
 def fill_drag_rates(W: float, coefficients: Array, values: Array, rates: Array) -> None:
     """Writes the terms proportional to w in the rates of s^m, theta^s and y^m, from the values of the minors
-    at the previous power of w. values, rates: (MINORS, STAGES, WIDTH). coefficients: coefficients, (6,
-    STAGES, WIDTH). W: unit of w."""
+    at the previous power of w. values, rates: (MINORS, STAGES, WIDTH). coefficients: (6, STAGES, WIDTH). W:
+    unit of w."""
     for i in range(ARM_ELEMENT_SETTINGS.stages):
         for c in range(ARM_ELEMENT_SETTINGS.width):
             transverse_drag = W * coefficients[GAMMA2, i, c]
@@ -67,7 +69,8 @@ def add_theta_s_rates(F: float, start: float, coefficients: Array, values: Array
 
 @compiled_for_vectors
 def fill_theta_m_rates(coefficients: Array, values: Array, rates: Array) -> None:
-    """Writes the rates -g theta^s of the minor theta^m, (STAGES, WIDTH); arguments: see the module."""
+    """Writes the rates -g theta^s of the minor theta^m, (STAGES, WIDTH); arguments: see the module
+    docstring."""
     for i in range(ARM_ELEMENT_SETTINGS.stages):
         for c in range(ARM_ELEMENT_SETTINGS.width):
             rates[TM, i, c] = -coefficients[G, i, c] * values[TS, i, c]
@@ -102,7 +105,8 @@ def fill_y_theta_rates(coefficients: Array, values: Array, rates: Array) -> None
 
 @compiled_for_vectors
 def add_rates_by_y_theta(F: float, coefficients: Array, values: Array, rates: Array) -> None:
-    """Adds to the rates of y^m, (STAGES, WIDTH), the term -F g y^theta; arguments: see the module."""
+    """Adds to the rates of y^m, (STAGES, WIDTH), the term -F g y^theta; arguments: see the module
+    docstring."""
     for i in range(ARM_ELEMENT_SETTINGS.stages):
         for c in range(ARM_ELEMENT_SETTINGS.width):
             rates[YM, i, c] -= F * coefficients[G, i, c] * values[YT, i, c]

@@ -17,8 +17,8 @@ from .settings import ARM_ELEMENT_SETTINGS
 
 @cache
 def gauss_method(stage_count: int) -> tuple[Array, Array, Array]:
-    """(Gauss points on [0, 1], (s,); integrals from 0 to each, (s, s); Gauss weights, (s,)); s:
-    `stage_count`."""
+    """Returns (Gauss points on [0, 1], (s,); matrix of integrals from 0 to each Gauss point, (s, s); Gauss
+    weights, (s,)); s: `stage_count`."""
     x, weights = np.polynomial.legendre.leggauss(stage_count)
     # The Legendre coefficients of a function's interpolant, integrated exactly.
     vandermonde = np.polynomial.legendre.legvander(x, stage_count - 1)
@@ -47,7 +47,7 @@ def element_propagators(F: Sequence[float], coefficients: Array, lengths: Array,
     terms = propagator_terms(np.array(F, float), W, coefficients, lengths, _collocation_method())
     if not terms.size:
         raise FloatingPointError(
-            f"D of this arm at |w| = {W:g} needs more than the maximum of {ARM_ELEMENT_SETTINGS.max_terms} "
-            "powers of w in an element"
+            f"the determinant of this arm at |w| = {W:g} needs more than the maximum of "
+            f"{ARM_ELEMENT_SETTINGS.max_terms} powers of w in an element"
         )
     return terms

@@ -15,8 +15,8 @@ n^2 N^2 with 4 c^2 = int (g - alpha nu)^2/(alpha c2) (int_0^u c3) du. Both give,
 
     Re w <= a n - (1 - c) n^2,   |Im w| <= a n + c n^2,
 
-a convex region bounded by a parabola. Of several alpha the one with the smallest region is taken. With alpha
-= g/(nu + |F| sqrt(c2 c3 gamma3/gamma2)) the region of a uniform rod equals the region of
+a convex region bounded by a parabola. Several weights alpha are tried, and the smallest region is used. With
+alpha = g/(nu + |F| sqrt(c2 c3 gamma3/gamma2)) the region of a uniform rod equals the region of
 `rodsweep.determinant.certificate.box`.
 
 Extremes along the arm are evaluated at points between the breaks, and `HULL_SETTINGS.enlargement_fraction`
@@ -44,13 +44,13 @@ def hull_of(rod: Rod) -> EigenvalueHull:
     return _hull_of_sampled_arms(_hull_samples([rod]))
 
 
-def hulls_along(path: ParameterPath, low: float, high: float, count: int) -> PathHulls:
-    """The hulls of all arms of a path between neighbouring ones of `count` equally spaced values of p, from
+def hulls_along(path: ParameterPath, low: float, high: float, point_count: int) -> PathHulls:
+    """The hulls of all arms of a path between neighbouring values of `point_count` equally spaced p, from
     `low` to `high`. Extremes along the path are evaluated at these values only;
     `HULL_SETTINGS.enlargement_fraction` allows for the arms between."""
-    p = np.linspace(low, high, count)
+    p = np.linspace(low, high, point_count)
     arms = _hull_samples([path.rod_at(x) for x in p.tolist()])
-    hulls = [_hull_of_sampled_arms(_slice_of_samples(arms, slice(i, i + 2))) for i in range(count - 1)]
+    hulls = [_hull_of_sampled_arms(_slice_of_samples(arms, slice(i, i + 2))) for i in range(point_count - 1)]
     return PathHulls(p, np.array([hull.a for hull in hulls]), np.array([hull.c for hull in hulls]))
 
 
@@ -84,15 +84,16 @@ def _hull_samples(rods: Sequence[Rod]) -> HullSamples:
     lengths, u = _chebyshev_points_of_material(material)
     F = np.array([rod.F for rod in rods])
     coefficients = np.array(Rod.local_coefficients_of_rods(rods, u))
-    averaged = np.empty((len(rods), 0, 2))
+    averaged_regions = np.empty((len(rods), 0, 2))
     if material.jump_positions:
-        averaged = _averaged_regions_by_arm(F, lengths, coefficients)
-    return HullSamples(F, lengths, coefficients, averaged)
+        averaged_regions = _averaged_regions_by_arm(F, lengths, coefficients)
+    return HullSamples(F, lengths, coefficients, averaged_regions)
 
 
 @lru_cache(maxsize=HULL_SETTINGS.max_cached_materials)
 def _chebyshev_points_of_material(material: RodMaterial) -> tuple[Array, Array]:
-    """(lengths of the intervals between breaks, (pieces,); their Chebyshev points u, (pieces, points))."""
+    """Returns (lengths, u): lengths of the intervals between breaks of the profile, (pieces,), and their
+    Chebyshev points u, (pieces, points)."""
     x = (1 - 2 * HULL_SETTINGS.end_distance_fraction) * _chebyshev_matrices().points
     lengths = np.diff(material.breaks)
     u = material.breaks[:-1, None] + lengths[:, None] * (x + 1) / 2
@@ -153,8 +154,8 @@ def _chebyshev_matrices() -> ChebyshevMatrices:
 def _smallest_region(
     F: Array, lengths: Array, coefficients: Array, averaged: Array, chebyshev: ChebyshevMatrices, max_c: float
 ) -> tuple[float, float]:
-    """(a, c) of the smallest region that contains the spectra of all arms, without the margin of a; (inf, 0)
-    if no bound is found.
+    """Returns (a, c) of the smallest region that contains the spectra of all arms, before a is enlarged;
+    (inf, 0) if no bound is found.
 
     F: forces, (n,). lengths: lengths of the intervals between breaks, (pieces,). coefficients: (6, n, pieces,
     points). averaged: constants (a, c) of trial regions from averaged weights, (n, trials, 2). max_c: bound

@@ -43,8 +43,8 @@ HULL_SETTINGS = HullSettings()
 
 class EigenvalueHull(NamedTuple):
     """Region that contains all eigenvalues: Re w <= a n - (1 - c) n^2 and |Im w| <= a n + c n^2 for some n >=
-    0. n is the weighted norm of the stresses of an eigenfunction divided by that of its displacements, see
-    `rodsweep.determinant.arm.hull.hull`. a = inf if no bound exists."""
+    0. n is the weighted norm of an eigenfunction's stresses divided by the weighted norm of its
+    displacements, see `rodsweep.determinant.arm.hull.hull`. a = inf if no bound exists."""
 
     a: float
     """Largest growth rate divided by n, without damping."""

@@ -119,7 +119,7 @@ def _proves_middle(
     arm = arm_determinant(path.rod_at(p))
     line = line_for_proof(complex(roots.w[request.modes - 1]), float(roots.error[request.modes - 1]))
     try:
-        return prove_complete(line, roots.w, roots.error, arm, hull_at(interval.hulls, p))[0]
+        return prove_complete(line, roots.w, roots.error, arm, hull_at(interval.hulls, p)).is_complete
     except FloatingPointError:
         return False
 
