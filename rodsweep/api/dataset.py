@@ -79,7 +79,11 @@ def _open_result_file(path: Path) -> xr.Dataset:
 def with_arm_indexes(data: xr.Dataset) -> xr.Dataset:
     """The Dataset with an index for every quantity of an arm that varies along an axis, so that `sel` accepts
     this quantity."""
-    for name in (n for n in PARAMETER_STORED_ALONG if n in data.coords and n not in data.xindexes):
+    for name in (
+        coordinate_name
+        for coordinate_name in PARAMETER_STORED_ALONG
+        if coordinate_name in data.coords and coordinate_name not in data.xindexes
+    ):
         if data[name].dims == (PARAMETER_STORED_ALONG[name],):
             data = data.set_xindex(name)
     return data
@@ -88,7 +92,7 @@ def with_arm_indexes(data: xr.Dataset) -> xr.Dataset:
 def in_layout_order(data: xr.Dataset, layout: Layout, config: dict[str, Any]) -> xr.Dataset:
     """The Dataset with its variables in the order of the layout, as HDF5 stores variables alphabetically."""
     layout_variables = (*layout.variables, *sweep_wide_variables(config, "point" not in data.dims))
-    ordered_names = (*DIMENSIONS, *ALL_QUANTITIES, *(v.name for v in layout_variables))
+    ordered_names = (*DIMENSIONS, *ALL_QUANTITIES, *(variable.name for variable in layout_variables))
     order = {name: i for i, name in enumerate(ordered_names)}
     names = sorted(data.variables, key=lambda name: order.get(str(name), len(order)))
     variables = {name: data.variables[name] for name in names}
@@ -117,9 +121,11 @@ def with_checksums(data: xr.Dataset) -> xr.Dataset:
     """The Dataset with the checksums of its variables and attributes as an attribute, by which readers verify
     a file written by xarray."""
     variables = {}
-    for name, v in data.variables.items():
-        numbers = [np.ascontiguousarray(v.values)]
-        variables[str(name)] = variable_digest(v.dtype, v.shape, map(str, v.dims), v.attrs, numbers)
+    for name, variable in data.variables.items():
+        buffers = [np.ascontiguousarray(variable.values)]
+        variables[str(name)] = variable_digest(
+            variable.dtype, variable.shape, map(str, variable.dims), variable.attrs, buffers
+        )
     digests = {"attributes": attribute_digests(data.attrs), "variables": variables}
     return data.assign_attrs({SEAL_ATTRIBUTE: json.dumps(digests)})
 
@@ -149,5 +155,9 @@ def view_of_dataset(data: xr.Dataset, path: Path) -> ResultView:
             )
     stored = {str(name): variable for name, variable in data.variables.items()}
     values = {name: variable.values for name, variable in stored.items()}
-    units = {name: str(v.attrs[TYPED_UNIT]) for name, v in stored.items() if TYPED_UNIT in v.attrs}
+    units = {
+        name: str(stored_variable.attrs[TYPED_UNIT])
+        for name, stored_variable in stored.items()
+        if TYPED_UNIT in stored_variable.attrs
+    }
     return ResultView(path, dict(data.attrs), values, layout.parameters, flags, 0, layout.arm_axes, units)

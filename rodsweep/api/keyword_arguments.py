@@ -77,7 +77,11 @@ def _write_out_arm(task: str, tree: ConfigTree) -> None:
         if not has_load and arm.load == "force":  # loads at thresholds have the unit of the arm's load
             quantities["load_kind"] = arm.load
         given = {name: value for name, value in quantities.items() if value is not None}
-        written = {n: v for n, v in given.items() if n not in DEFAULT_VALUES or v != DEFAULT_VALUES[n]}
+        written = {
+            quantity_name: quantity
+            for quantity_name, quantity in given.items()
+            if quantity_name not in DEFAULT_VALUES or quantity != DEFAULT_VALUES[quantity_name]
+        }
         parameters["arm"] = {name: plain_value(value) for name, value in written.items()}
 
 

@@ -73,7 +73,7 @@ class SoftRod:
         for name in parameters:
             if name not in PARAMETERS:
                 names = (*PARAMETERS, "arm", *material)
-                missing = [other for other in names if other not in given_values]
+                missing = [known_name for known_name in names if known_name not in given_values]
                 suggestion = unknown_key_hint(name, missing if similar_keys(name, missing) else names)
                 raise InputError(f"a rod has no parameter {name}; {rod_argument_hint(name) or suggestion}")
         if arm is not None:

@@ -108,12 +108,16 @@ def _solve_points(
     """Returns (variables, messages, reasons). variables: values by name of the variable, with the dimensions
     of the points first. messages: one message for each point. reasons: reasons why points failed."""
     reasons = FailureReasons(_point_text_of(job))
-    count = job.points.count
-    columns = {name: np.repeat(value[None], count, axis=0) for name, value in plan.layout.empty_point.items()}
-    messages = [""] * count
-    unsolved = range(count) if solver.grouped is None else _solve_groups(*solver.grouped, columns, display)
-    outcomes = _solve_outcomes(unsolved, count, solver, display)
-    for solved_count, (index, outcome) in enumerate(outcomes, count - len(unsolved) + 1):
+    point_count = job.points.count
+    columns = {
+        name: np.repeat(value[None], point_count, axis=0) for name, value in plan.layout.empty_point.items()
+    }
+    messages = [""] * point_count
+    unsolved = (
+        range(point_count) if solver.grouped is None else _solve_groups(*solver.grouped, columns, display)
+    )
+    outcomes = _solve_outcomes(unsolved, point_count, solver, display)
+    for solved_count, (index, outcome) in enumerate(outcomes, point_count - len(unsolved) + 1):
         record = solver.record(index, outcome)
         for name, array in columns.items():
             array[index] = record[name]
@@ -167,17 +171,17 @@ def _change_points(
 
 
 def _solve_outcomes(
-    unsolved: Sequence[int], count: int, solver: Solver, display: Display
+    unsolved: Sequence[int], point_count: int, solver: Solver, display: Display
 ) -> Iterator[tuple[int, Any]]:
     """Solves the points with flat indices `unsolved`; yields (flat index, outcome) of each point. Along a
-    chain, each point starts from the solution of the previous point. count: number of all points."""
-    solved_count = count - len(unsolved)
+    chain, each point starts from the solution of the previous point. point_count: number of all points."""
+    solved_count = point_count - len(unsolved)
 
     @contextmanager
     def point_progress() -> Iterator[None]:
         """Marks the reports in the `with` block as reports of the next point."""
-        name = f"point {solved_count + 1} of {count}" if count > 1 else ""
-        share = solved_count / count, (solved_count + 1) / count
+        name = f"point {solved_count + 1} of {point_count}" if point_count > 1 else ""
+        share = solved_count / point_count, (solved_count + 1) / point_count
         with solve_part(name, share), reporting_to(display_listener(display, name)):
             yield
 

@@ -75,9 +75,11 @@ def _warn_of_failed_points(indices: Sequence[int], error: Exception) -> None:
     """Issues a RuntimeWarning with the traceback of an unforeseen exception."""
     first = indices[0] + 1
     last_number = indices[-1] + 1
-    points = f"point {first}" if first == last_number else f"points {first} to {last_number}"
-    trace = "".join(traceback.format_exception(error))
-    warnings.warn(f"{points}: {describe_exception(error)}\n{trace}", RuntimeWarning, stacklevel=2)
+    points_text = f"point {first}" if first == last_number else f"points {first} to {last_number}"
+    traceback_text = "".join(traceback.format_exception(error))
+    warnings.warn(
+        f"{points_text}: {describe_exception(error)}\n{traceback_text}", RuntimeWarning, stacklevel=2
+    )
 
 
 def _refuse_idle_ranks(ranks: int, points: int | None) -> None:

@@ -69,6 +69,8 @@ def parameter_options(command: CommandFunction) -> CommandFunction:
         parameter = PARAMETERS[name]
         meaning = f"{parameter.meaning[0].upper()}{parameter.meaning[1:]}"
         unit = "" if parameter.unit == "1" else f", in {parameter.unit}"
-        default = "" if parameter.default is None else f"; by default {parameter.default:g}"
-        command = click.option(f"--{name}", name, type=float, help=f"{meaning}{unit}{default}.")(command)
+        default_clause = "" if parameter.default is None else f"; by default {parameter.default:g}"
+        command = click.option(f"--{name}", name, type=float, help=f"{meaning}{unit}{default_clause}.")(
+            command
+        )
     return command

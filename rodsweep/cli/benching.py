@@ -78,7 +78,11 @@ def machine_attributes() -> dict[str, str]:
 
 def machine_and_versions_line(peers: Mapping[str, str]) -> str:
     """Processor, date and versions in one line of text. peers: versions of the peers by name."""
-    versions = petsc.versions() | {k.removesuffix("_version"): v for k, v in provenance().items()}
+    versions = petsc.versions() | {
+        package.removesuffix("_version"): package_version for package, package_version in provenance().items()
+    }
     versions_to_print = {name: versions[name] for name in ("rodsweep", "petsc", "slepc", "numpy", "python")}
-    where = ", ".join(f"{name} {version}" for name, version in (versions_to_print | dict(peers)).items())
-    return f"One core of {cpu_name()}, {platform.system()}, {utc_time()[:10]}; {where}. Threads: one."
+    versions_text = ", ".join(
+        f"{name} {version}" for name, version in (versions_to_print | dict(peers)).items()
+    )
+    return f"One core of {cpu_name()}, {platform.system()}, {utc_time()[:10]}; {versions_text}. Threads: one."

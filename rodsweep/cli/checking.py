@@ -31,7 +31,7 @@ def print_job_check(job: Job) -> None:
     console.print(job.task.headline())
     if arms := job.task.arms_line():
         print_lines(console, [arms])
-    print_lines(console, _arm_lines(job) if job.quantities else [])
+    print_lines(console, _arm_lines(job) if job.quantity_variables else [])
     table = Table("part", "modelled", "why", box=None, pad_edge=False)
     for quantity, is_modelled, reason in job.task.check_rows():
         table.add_row(quantity, "yes" if is_modelled else "no", reason)
@@ -66,7 +66,7 @@ def _arm_lines(job: Job) -> list[str]:
     rod, validity of the model at rest."""
     arm = job.config.parameters.arm
     assert arm is not None
-    quantities = {variable.name: np.asarray(values) for variable, values in job.quantities}
+    quantities = {variable.name: np.asarray(values) for variable, values in job.quantity_variables}
     columns = job.points.columns_by_name | {"tau2": quantities["tau2"]}
     texts = (f"{name} = {span_text(np.asarray(values))}" for name, values in columns.items())
     at_rest = ArmValidity(job.config, job.points).variables_at_rest()
@@ -89,9 +89,9 @@ def _arm_lines(job: Job) -> list[str]:
 
 def _material_text(arm: ArmConfig) -> str:
     """Text with the segments, the law and the section of an arm, to be appended to the list of quantities."""
-    segments = "".join(f"; segment {text}" for text in arm.segments or ())
+    segments_clause = "".join(f"; segment {text}" for text in arm.segments or ())
     laws = [value.replace("_", "-") for value in (arm.law, arm.section and f"{arm.section} section") if value]
-    return f"{segments}; {', '.join(laws)}" if laws else segments
+    return f"{segments_clause}; {', '.join(laws)}" if laws else segments_clause
 
 
 def _wall_lines(arm: ArmConfig) -> list[str]:
@@ -119,9 +119,9 @@ def _lines_on_points_without_rod(points: Points) -> list[str]:
     if rods is not None:
         modelled_rods = rods if points.arm_statuses is None else rods[points.arm_statuses == SLENDER]
         rods_text = counted(len(np.unique(modelled_rods)), "different rod")
-        lines.append(f"{rods_text} at {len(modelled_rods)} points; rods that are equal are solved once")
+        lines.append(f"{rods_text} at {len(modelled_rods)} points; equal rods are solved once")
     for status in OutsideModelStatus:
-        number = 0 if points.arm_statuses is None else int((points.arm_statuses == status).sum())
-        if number:
-            lines.append(f"{status.name} at {number} of {points.count} points: {status.sentence}")
+        point_count = 0 if points.arm_statuses is None else int((points.arm_statuses == status).sum())
+        if point_count:
+            lines.append(f"{status.name} at {point_count} of {points.count} points: {status.sentence}")
     return lines

@@ -76,16 +76,16 @@ def merge(output: Path, shards: tuple[Path, ...]) -> None:
     from ..tasks.running.job import plan_without_solver
 
     output = result_file_path(output)
-    result = merge_files(output, tuple(map(link_target, shards)), plan_without_solver)
-    sources = counted(len(shards), "file")
-    points = counted(result.point_count, "point")
-    click.echo(f"{output}: {points} from {sources}, {result.missing_count} missing")
-    if result.kernel_warning:
-        click.echo(f"{output}: {result.kernel_warning}")
-    if result.missing_count:
+    joined_file = merge_files(output, tuple(map(link_target, shards)), plan_without_solver)
+    sources_text = counted(len(shards), "file")
+    points_text = counted(joined_file.point_count, "point")
+    click.echo(f"{output}: {points_text} from {sources_text}, {joined_file.missing_count} missing")
+    if joined_file.kernel_warning:
+        click.echo(f"{output}: {joined_file.kernel_warning}")
+    if joined_file.missing_count:
         click.echo(f"`rodsweep run CONFIG -o {output}` computes the missing points")
         sys.exit(STOPPED_STATUS)
-    if not result.is_finished:
+    if not joined_file.is_finished:
         click.echo(f"`rodsweep run CONFIG -o {output}` adds the variables that need all points")
 
 

@@ -17,11 +17,13 @@ OUTPUT = ("-o", "--output")
 
 def result_file_path(path: Path) -> Path:
     """Path of a result file, symbolic links resolved; InputError for a directory or a wrong ending."""
-    endings = ", ".join(RESULT_ENDINGS)
+    allowed_endings = ", ".join(RESULT_ENDINGS)
     if path.is_dir() or not path.name:
-        raise InputError(f"{path} is a directory; name a file for results, which ends in {endings}")
+        raise InputError(f"{path} is a directory; name a file for results, which ends in {allowed_endings}")
     if path.suffix not in RESULT_ENDINGS:
-        raise InputError(f"{path} is not a name for results, which are HDF5: it must end in {endings}")
+        raise InputError(
+            f"{path} is not a name for results, which are HDF5: it must end in {allowed_endings}"
+        )
     return link_target(path)
 
 

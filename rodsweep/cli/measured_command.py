@@ -45,14 +45,14 @@ class TabulatedSpectra(SpectrumTask):
         from ..solve.spectrum.status import SpectrumStatus
 
         points = self.points
-        shape = (OUTCOME_COUNT, 3, self.config.spectrum.modes)
+        table_shape = (OUTCOME_COUNT, 3, self.config.spectrum.modes)
         solved = partial(
             Spectrum, status=SpectrumStatus.ok, unstable_count=0, certified=True, elements=1, order=20,
             seconds=1e-7,
         )  # fmt: skip
         outcomes = [
-            solved(eigenvalues=100 * (-np.abs(a) + 1j * b), error_estimate=1e-12 * c)
-            for a, b, c in np.random.default_rng(1).standard_normal(shape)
+            solved(eigenvalues=100 * (-np.abs(growth) + 1j * frequency), error_estimate=1e-12 * error)
+            for growth, frequency, error in np.random.default_rng(1).standard_normal(table_shape)
         ]
 
         def solve(index: int) -> Spectrum:

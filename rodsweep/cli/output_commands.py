@@ -80,9 +80,9 @@ def _parsed_at_values(at: tuple[str, ...]) -> dict[str, str]:
             raise InputError(f"--at {printable(text)} must be NAME=VALUE, such as k1=150 or 'length=12 cm'")
         name = name.strip()
         if name in values:
-            both = f"{printable(values[name])} and {printable(value.strip())}"
-            one = "give one value for each parameter"
-            raise InputError(f"--at {printable(name)} is given twice ({both}); {one}")
+            both_values_text = f"{printable(values[name])} and {printable(value.strip())}"
+            advice = "give one value for each parameter"
+            raise InputError(f"--at {printable(name)} is given twice ({both_values_text}); {advice}")
         values[name] = value.strip()
     return values
 

@@ -55,9 +55,9 @@ def rod_of_options(
         return DescribedRod(parameters=parameter_values, material=_read_material(material_values), arm=of_arm)
     for name in REQUIRED_PARAMETERS:
         if name not in parameter_values:
-            options = ", ".join(f"--{each}" for each in REQUIRED_PARAMETERS)
-            arm = "or the quantities of an arm, such as --length"
-            raise InputError(f"--{name} is missing; give {options}, {arm}")
+            options_text = ", ".join(f"--{option}" for option in REQUIRED_PARAMETERS)
+            arm_text = "or the quantities of an arm, such as --length"
+            raise InputError(f"--{name} is missing; give {options_text}, {arm_text}")
     values = {name: parameter_values.get(name, DEFAULT_VALUES_OF_PARAMETERS.get(name)) for name in PARAMETERS}
     return DescribedRod(parameters=_options_that_are_set(values), material=_read_material(material_values))
 
@@ -77,7 +77,7 @@ def _options_that_are_set(options: Mapping[str, Any]) -> dict[str, Any]:
 @contextmanager
 def solve_with_progress(reporter: "ProgressReporter", solve: "SolveJob") -> "Iterator[SolveJob]":
     """Yields `solve` with a progress display: number of solved jobs, and position of a long solve."""
-    numbers = count(1)
+    job_numbers = count(1)
 
     def show(position: SolvePosition) -> None:
         reporter.show_position(position.text, position.completed_fraction or 0.0)
@@ -86,7 +86,7 @@ def solve_with_progress(reporter: "ProgressReporter", solve: "SolveJob") -> "Ite
         name = job.config.task.replace("_", " ")
         with reporting_to(RankListener(SingleRankCommunication(show), StopRequest(), lambda: name)):
             view = solve(job)
-        reporter(next(numbers))
+        reporter(next(job_numbers))
         return view
 
     reporter(0)

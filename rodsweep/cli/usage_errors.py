@@ -27,8 +27,8 @@ def usage_error_text(error: click.UsageError) -> str:
         return error.format_message()
     from ..model.arm.quantities import radius_of_diameter
 
-    options = [parameter.name or "" for parameter in error.ctx.command.params]
-    radius = radius_of_diameter(error.option_name.lstrip("-"), options)
+    option_names = [parameter.name or "" for parameter in error.ctx.command.params]
+    radius = radius_of_diameter(error.option_name.lstrip("-"), option_names)
     if not radius:
         return error.format_message()
     return f"unknown option {error.option_name}; give --{radius.replace('_', '-')}, half of it"

@@ -78,8 +78,8 @@ class Axis(StrictConfigSection):
     def json_value(self) -> dict[str, Any]:
         """The axis as JSON-compatible keys and values, with `factor` applied to start and stop of a range."""
         axis = self.model_dump(mode="json", exclude_none=True)
-        ends = {} if self.values is not None else {"start": self.start, "stop": self.stop}
-        return axis | {name: self.factor * value for name, value in ends.items()}
+        range_ends = {} if self.values is not None else {"start": self.start, "stop": self.stop}
+        return axis | {name: self.factor * value for name, value in range_ends.items()}
 
     def scaled(self, scale: float) -> "Axis":
         """A copy of the axis with all values multiplied by `scale`."""

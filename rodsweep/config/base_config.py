@@ -112,8 +112,13 @@ class Config(StrictConfigSection):
         Two configs with equal settings and equal points give the same results.
         """
         options = getattr(self, self.task).model_dump(mode="json", exclude=set(self.options_without_effect))
-        numbers = dict(self.parameters.constant_parameters)
-        settings = {"task": self.task, "parameters": numbers, "accuracy": self.accuracy, self.task: options}
+        constant_values = dict(self.parameters.constant_parameters)
+        settings = {
+            "task": self.task,
+            "parameters": constant_values,
+            "accuracy": self.accuracy,
+            self.task: options,
+        }
         if self.material is not None and not self.rod_material.is_uniform_and_linear:
             settings["material"] = self.material.model_dump(mode="json", exclude_none=True)
         if self.parameters.arm is None:
@@ -121,7 +126,11 @@ class Config(StrictConfigSection):
         if arm_axes := self.parameters.arm_axes:  # these axes do not contain parameters with one value
             given_axes = self.parameters.given_axes
             names = [name for name in self.parameter_names if name not in arm_axes]
-            first_values = {n: float(axis.array()[0]) for n, axis in given_axes.items() if n in names}
+            first_values = {
+                axis_name: float(axis.array()[0])
+                for axis_name, axis in given_axes.items()
+                if axis_name in names
+            }
             settings["parameters"] |= {name: first_values.get(name) for name in names}
         return settings | {"arm": self.parameters.arm.settings_of_results}
 

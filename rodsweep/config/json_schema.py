@@ -70,21 +70,25 @@ def json_schema() -> dict[str, Any]:
 
 def section_classes(config: type[BaseModel]) -> Iterator[type[BaseModel]]:
     """Yields the classes of the sections of a config, including nested sections."""
-    for field in config.model_fields.values():
-        kind = value_type_of_key(field)
-        if isinstance(kind, type) and issubclass(kind, StrictConfigSection) and not issubclass(kind, Axis):
-            yield kind
-            yield from section_classes(kind)
+    for key_field in config.model_fields.values():
+        value_type = value_type_of_key(key_field)
+        if (
+            isinstance(value_type, type)
+            and issubclass(value_type, StrictConfigSection)
+            and not issubclass(value_type, Axis)
+        ):
+            yield value_type
+            yield from section_classes(value_type)
 
 
 def key_docstrings(section: type[BaseModel]) -> dict[str, str]:
     """Docstring of every key of a section, by key, including keys of base classes."""
     docstrings: dict[str, str] = {}
-    for kind in reversed(section.__mro__):
-        if not (issubclass(kind, BaseModel) and kind.__module__.startswith("rodsweep.")):
+    for base_class in reversed(section.__mro__):
+        if not (issubclass(base_class, BaseModel) and base_class.__module__.startswith("rodsweep.")):
             continue
         try:
-            source = inspect.getsource(kind)
+            source = inspect.getsource(base_class)
         except OSError:  # a class without source, created from the table of parameters
             continue
         body = ast.parse(textwrap.dedent(source)).body[0]
@@ -100,7 +104,9 @@ def key_docstrings(section: type[BaseModel]) -> dict[str, str]:
 def _describe_keys(schema: dict[str, Any], section: type[BaseModel]) -> None:
     """Adds the docstrings of the keys of `section` as descriptions to `schema`, in place; removes pydantic's
     titles."""
-    parameters = {name: f"{p.long_name}, in {p.unit}" for name, p in PARAMETERS.items()}
+    parameters = {
+        name: f"{parameter.long_name}, in {parameter.unit}" for name, parameter in PARAMETERS.items()
+    }
     meanings = parameters | key_docstrings(section)
     for name, key in schema["properties"].items():
         key.pop("title", None)
@@ -131,10 +137,13 @@ def with_axis_bounds(
     inf."""
     copy = deepcopy(schema)
     for node in iterate_subschemas(copy):
-        kinds = node.get("anyOf", [])
-        if any("enum" in kind and "inf" in kind["enum"] for kind in kinds):
+        alternatives = node.get("anyOf", [])
+        if any("enum" in kind and "inf" in kind["enum"] for kind in alternatives):
             options = [{"enum": list(allowed_texts)}] if allowed_texts else []
-            node["anyOf"] = [*(k for k in kinds if "inf" not in k.get("enum", [])), *options]
+            node["anyOf"] = [
+                *(alternative for alternative in alternatives if "inf" not in alternative.get("enum", [])),
+                *options,
+            ]
         if node.get("type") == "number":
             node.update(bound)
     return copy
@@ -144,9 +153,13 @@ def add_parameter_bounds(properties: Schema, axis: Schema) -> None:
     """Adds the bounds of the parameters to the JSON schemas `properties` of a section's keys, in place."""
     for name, parameter in PARAMETERS.items():
         if name in properties:
-            kinds = [axis if "$ref" in kind else kind for kind in properties[name]["anyOf"]]
+            alternatives = [
+                axis if "$ref" in alternative else alternative for alternative in properties[name]["anyOf"]
+            ]
             bounds = parameter.allowed.schema_bounds, ("inf", "+inf") if parameter.rigid_adjective else ()
-            properties[name]["anyOf"] = [with_axis_bounds(kind, *bounds) for kind in kinds]
+            properties[name]["anyOf"] = [
+                with_axis_bounds(alternative, *bounds) for alternative in alternatives
+            ]
 
 
 def add_arm_conditions(section: Schema, axis: Schema) -> None:
@@ -155,8 +168,8 @@ def add_arm_conditions(section: Schema, axis: Schema) -> None:
     for name, key in section["properties"].items():
         bound = BOUNDS_OF_ARM.get(name, {})
         if "anyOf" in key:
-            kinds = [axis if "$ref" in kind else kind for kind in key["anyOf"]]
-            key["anyOf"] = [with_axis_bounds(kind, bound) for kind in kinds]
+            alternatives = [axis if "$ref" in alternative else alternative for alternative in key["anyOf"]]
+            key["anyOf"] = [with_axis_bounds(alternative, bound) for alternative in alternatives]
         if name not in QUANTITIES:
             continue
         sign = "[+]?" if bound else "[+-]?"

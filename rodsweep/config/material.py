@@ -94,7 +94,7 @@ class MaterialConfig(StrictConfigSection):
     @model_validator(mode="after")
     def _require_valid_material(self) -> "MaterialConfig":
         if not self.model_fields_set:
-            raise ValueError("the section is empty; give law, section or profile")
+            raise ValueError("no key is given; give law, section or profile")
         assert self.rod_material
         return self
 
@@ -121,25 +121,27 @@ def with_profile_read(document: Any, directory: Path) -> Any:
 
 def read_profile(path: Path) -> dict[str, list[float]]:
     """Columns of the CSV file of a profile, by name in the header; InputError for an invalid file."""
-    source = f"material.profile: {path}"
+    file_text = f"material.profile: {path}"
     try:
         if not path.is_file():
-            raise InputError(f"{source} {'is not a file' if path.exists() else 'does not exist'}")
+            raise InputError(f"{file_text} {'is not a file' if path.exists() else 'does not exist'}")
         with path.open(newline="", encoding="utf-8-sig") as file:
             text = file.read(MAX_PROFILE_CHARACTERS + 1)
         rows = [[cell.strip() for cell in row] for row in csv.reader(text.splitlines()) if row]
     except OSError as error:
-        raise InputError(f"{source} cannot be read: {error.strerror}") from error
+        raise InputError(f"{file_text} cannot be read: {error.strerror}") from error
     except (UnicodeDecodeError, csv.Error) as error:
-        raise InputError(f"{source} is not CSV text ({error})") from error
+        raise InputError(f"{file_text} is not CSV text ({error})") from error
     if len(text) > MAX_PROFILE_CHARACTERS or len(rows) > MAX_PROFILE_ROWS + 1:
-        raise InputError(f"{source} has more than {MAX_PROFILE_ROWS} rows")
+        raise InputError(f"{file_text} has more than {MAX_PROFILE_ROWS} rows")
     header = rows[0] if rows else []
     if "u" not in header or not set(header) <= {"u", *FACTOR_NAMES} or len(set(header)) < len(header):
-        raise InputError(f"{source}: the header must name u and any of {', '.join(FACTOR_NAMES)}, each once")
+        raise InputError(
+            f"{file_text}: the header must name u and any of {', '.join(FACTOR_NAMES)}, each once"
+        )
     columns: dict[str, list[float]] = {name: [] for name in header}
     for number, row in enumerate(rows[1:], 1):
-        row_name = f"{source}: row {number}"
+        row_name = f"{file_text}: row {number}"
         if len(row) != len(header):
             raise InputError(f"{row_name} has {len(row)} values, but the header names {len(header)}")
         for name, cell in zip(header, row, strict=True):

@@ -158,10 +158,10 @@ class ParametersSection(LinearAxes):
         arm.require_allowed_values()
         refuse_conflicting_keys(arm, needs_force, self.given_axes)
         varied_axes = {name: axis for name, axis in self.given_axes.items() if axis.size > 1}
-        count = math.prod(axis.size for axis in (*arm.quantity_axes.values(), *varied_axes.values()))
-        if self.arm_axes and count > MAX_ARM_GRID_POINTS:
+        point_count = math.prod(axis.size for axis in (*arm.quantity_axes.values(), *varied_axes.values()))
+        if self.arm_axes and point_count > MAX_ARM_GRID_POINTS:
             raise ValueError(
-                f"parameters.arm makes a grid of {count} points, more than the {MAX_ARM_GRID_POINTS} "
+                f"parameters.arm makes a grid of {point_count} points, more than the {MAX_ARM_GRID_POINTS} "
                 "allowed; use fewer values"
             )
         if not self.arm_axes:

@@ -173,9 +173,9 @@ class AnswersFromFile:
         point = self._data_at(numbers[:1]).isel({POINT_DIMENSION: 0})
         if flag_words(point["status"]) == "missing":
             return None
-        end = float(json.loads(self.data.attrs["config_resolved"])["branch"]["stop"])
+        largest_force = float(json.loads(self.data.attrs["config_resolved"])["branch"]["stop"])
         return (
-            drawn_branches(RodBranches(view_of_dataset(self.data, self.path), rod), end)
+            drawn_branches(RodBranches(view_of_dataset(self.data, self.path), rod), largest_force)
             | self._source_variables()
         )
 

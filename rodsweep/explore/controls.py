@@ -85,7 +85,9 @@ class Controls:
         panels = [
             TabPanel(
                 title={"rod": "Rod", "arm": "Arm, SI units"}[tab],
-                child=Column(*(f.root for f in fields.values()), sizing_mode="stretch_width", spacing=2),
+                child=Column(
+                    *(field.root for field in fields.values()), sizing_mode="stretch_width", spacing=2
+                ),
             )
             for tab, fields in self.fields.items()
         ]
@@ -120,8 +122,8 @@ class Controls:
     def show_largest_load(self, state: PageState, axis: PictureAxis) -> None:
         """Writes, for an arm, the pressure that corresponds to the largest force above the field of this
         force."""
-        pressure = f": {state.largest_force() * axis.factor:.4g} kPa" if state.tab == "arm" else ""
-        self.F_max.title = MAX_FORCE + pressure
+        pressure_clause = f": {state.largest_force() * axis.factor:.4g} kPa" if state.tab == "arm" else ""
+        self.F_max.title = MAX_FORCE + pressure_clause
 
     def _field_changed(self, name: str, text: str) -> None:
         self._changed(values={name: text})

@@ -100,26 +100,37 @@ def length_axis(state: PageState) -> PictureAxis:
 
 
 def _rod_scale(
-    name: str, low: float, high: float, logarithmic: bool = True, has_inf: bool = False
+    name: str, lowest_value: float, highest_value: float, logarithmic: bool = True, has_inf: bool = False
 ) -> ControlScale:
-    """Scale of a rod's parameter `name`. low, high: values at the ends of the slider. has_inf: whether the
-    upper end means inf."""
+    """Scale of a rod's parameter `name`. lowest_value, highest_value: values at the ends of the slider.
+    has_inf: whether the upper end means inf."""
     parameter = PARAMETERS[name]
     unit = "" if parameter.unit == "1" else f" ({parameter.unit})"
     label = f"{name}: {parameter.meaning}{unit}"
     return ControlScale(
-        name=name, label=label, low=low, high=high, is_logarithmic=logarithmic, has_inf=has_inf
+        name=name,
+        label=label,
+        low=lowest_value,
+        high=highest_value,
+        is_logarithmic=logarithmic,
+        has_inf=has_inf,
     )
 
 
 def _arm_scale(
-    name: str, low: float, high: float, unit: str, factor: float, logarithmic: bool = True
+    name: str, lowest_value: float, highest_value: float, unit: str, factor: float, logarithmic: bool = True
 ) -> ControlScale:
-    """Scale of an arm's quantity `name`. low, high: values at the ends of the slider, in `unit`. factor:
-    factor from SI units to `unit`."""
+    """Scale of an arm's quantity `name`. lowest_value, highest_value: values at the ends of the slider, in
+    `unit`. factor: factor from SI units to `unit`."""
     label = f"{quantity_words(name)} ({unit})"
     return ControlScale(
-        name=name, label=label, low=low, high=high, unit=unit, factor=factor, is_logarithmic=logarithmic
+        name=name,
+        label=label,
+        low=lowest_value,
+        high=highest_value,
+        unit=unit,
+        factor=factor,
+        is_logarithmic=logarithmic,
     )
 
 

@@ -124,9 +124,13 @@ class PageState:
     def yaml(self, task: str) -> str:
         """Config for `rodsweep run`, in YAML, with the rod or arm of the visible tab and the given task."""
         used_names = (*CONFIGS[task].rod_parameters_used({}), *OPTIONAL_PARAMETERS)
-        values: dict[str, Any] = {n: v for n, v in self.parameters().items() if n in used_names}
+        values: dict[str, Any] = {
+            name: value for name, value in self.parameters().items() if name in used_names
+        }
         if self.tab == "arm":
-            values = {n: text for n, text in self.arm.items() if n != "pressure" or "F" in used_names}
+            values = {
+                name: text for name, text in self.arm.items() if name != "pressure" or "F" in used_names
+            }
         document: dict[str, Any] = {
             "task": task,
             "parameters": values if self.tab == "rod" else {"arm": values},

@@ -67,7 +67,10 @@ def state_from_config(config: Config, path: Path, F_max: str = DEFAULT_F_MAX) ->
     material = _law_key(config, path)
     axes = {name: axis.array() for name, axis in config.parameters.axes.items()}
     if not axes:
-        raise InputError(f"{path}: a list of points has no diagram; open the result of a grid of parameters")
+        raise InputError(
+            f"{path}: a list of points has no diagram; open the result of a grid, or give axes instead of "
+            "parameters.points"
+        )
     if isinstance(config, BranchConfig) and config.branch.along != "F":
         ends = (config.branch.start, config.branch.stop)
         axes[config.branch.along] = np.array([sum(ends) / 2])
@@ -77,7 +80,12 @@ def state_from_config(config: Config, path: Path, F_max: str = DEFAULT_F_MAX) ->
     F = axes.get("F", np.zeros(1))
     if len(F) > 1:
         if material == "linear":
-            F_possible = F[crushing_force({n: float(rod[n]) for n in ("k1", "taper")}) > F]
+            F_possible = F[
+                crushing_force(
+                    {parameter_name: float(rod[parameter_name]) for parameter_name in ("k1", "taper")}
+                )
+                > F
+            ]
             state = state.with_values(F=_middle_value_text(F_possible if len(F_possible) else F))
         if F.max() > 0:
             state = replace(state, F_max=f"{F.max():g}")
@@ -150,15 +158,15 @@ def stored_diagram(data: Dataset, state: PageState) -> dict[str, Any] | None:
     dims = set(data["status"].dims)
     if second_name not in dims or data.sizes[second_name] < 2:
         return None
-    others = [name for name in state.values if name in dims and name not in (state.load, second_name)]
-    data = data.isel({name: data.sizes[name] // 2 for name in others})
-    rows = data[second_name].values
+    other_names = [name for name in state.values if name in dims and name not in (state.load, second_name)]
+    data = data.isel({name: data.sizes[name] // 2 for name in other_names})
+    row_values = data[second_name].values
     if state.tab == "arm":
         scale = SCALES["arm"]["pressure"]
         pressure = (scale.value(state.arm["pressure"]) or 0.0) / scale.factor
-        return diagram_from_arm_result(data, rows, pressure) if "crossing_pressure" in data else None
+        return diagram_from_arm_result(data, row_values, pressure) if "crossing_pressure" in data else None
     if "crossing_F" in data:
-        return diagram_from_row_result(data, rows, "crossing_F", float(data["F_end"].max()))
+        return diagram_from_row_result(data, row_values, "crossing_F", float(data["F_end"].max()))
     if "unstable_count" in data and data.sizes.get("F", 1) > 1:
         return diagram_from_phase_result(data, second_name)
     return None

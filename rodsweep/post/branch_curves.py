@@ -145,7 +145,9 @@ class RodBranches:
     def two_cycle_ranges(self) -> list[ParameterRange]:
         """Ranges of the parameter in which stable cycles exist on two branches."""
         pairs = combinations([curve.stable_ranges for curve in self.curves], 2)
-        return union_of_ranges(common for a, b in pairs for common in intersection_of_ranges(a, b))
+        return union_of_ranges(
+            common for first, second in pairs for common in intersection_of_ranges(first, second)
+        )
 
     @property
     def coexistence_ranges(self) -> list[ParameterRange]:
@@ -169,12 +171,12 @@ class RodBranches:
 
     def straight_pieces(self, span: ParameterRange) -> list[tuple[float, float, int]]:
         """(low, high, stability) between Hopf points within `span`: 1 stable, 0 unstable, -1 unknown."""
-        v = self._v
-        is_hopf = v["special_kind"] == HOPF
-        values, indices = np.unique(v["special_at"][is_hopf], return_index=True)
-        after_counts = v["special_unstable_after"][is_hopf][indices]
+        stored = self._v
+        is_hopf = stored["special_kind"] == HOPF
+        values, indices = np.unique(stored["special_at"][is_hopf], return_index=True)
+        after_counts = stored["special_unstable_after"][is_hopf][indices]
         edges = [span[0], *(float(a) for a in values), max(span[1], *values) if len(values) else span[1]]
-        counts = [int(v["unstable_at_start"]), *(int(count) for count in after_counts)]
+        counts = [int(stored["unstable_at_start"]), *(int(count) for count in after_counts)]
         return [
             (low, high, -1 if count < 0 else int(count == 0))
             for (low, high), count in zip(pairwise(edges), counts, strict=True)
@@ -184,7 +186,7 @@ class RodBranches:
 def stability_runs(stable: NDArray[np.integer]) -> Iterator[tuple[slice, int]]:
     """Yields (vertices, stability) of each run of equal values in `stable`, (n - 1,). vertices: a slice."""
     starts = [0, *(np.flatnonzero(np.diff(stable)) + 1), len(stable)]
-    yield from ((slice(a, b + 1), int(stable[a])) for a, b in pairwise(starts) if b > a)
+    yield from ((slice(start, end + 1), int(stable[start])) for start, end in pairwise(starts) if end > start)
 
 
 def _stored_branch(v: dict[str, Array], parameter_name: str, number: int) -> StoredBranch:

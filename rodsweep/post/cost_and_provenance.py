@@ -24,41 +24,42 @@ def time_lines(view: ResultView, is_computed: np.ndarray, noun: str) -> list[str
     ]
 
 
-def provenance_lines(a: dict[str, Any]) -> list[str]:
+def provenance_lines(attributes: dict[str, Any]) -> list[str]:
     """Lines about dates, versions of the software, and BLAS kernels."""
     return [
-        f"computed {_dates_clause(a)}; rodsweep {a.get('rodsweep_version')}, PETSc {a.get('petsc_version')}, "
-        f"SLEPc {a.get('slepc_version')}, commit {str(a.get('git_commit'))[:12]}",
-        f"BLAS: {'; '.join(blas_kernels_in(a))}",
+        f"computed {_dates_clause(attributes)}; rodsweep {attributes.get('rodsweep_version')}, PETSc "
+        f"{attributes.get('petsc_version')}, "
+        f"SLEPc {attributes.get('slepc_version')}, commit {str(attributes.get('git_commit'))[:12]}",
+        f"BLAS: {'; '.join(blas_kernels_in(attributes))}",
     ]
 
 
-def _dates_clause(a: dict[str, Any]) -> str:
+def _dates_clause(attributes: dict[str, Any]) -> str:
     """Clause with the dates of start and end of the computation. The file of a shard has no end; the clause
     then says whether all points of the shard are computed."""
-    if "started" not in a:
+    if "started" not in attributes:
         return "not finished yet"
-    if "finished" in a:
-        return f"{a['started']} to {a['finished']}"
-    if a.get("shard") and not a.get("stopped"):
-        return f"from {a['started']} on, all points of shard {a['shard']}"
+    if "finished" in attributes:
+        return f"{attributes['started']} to {attributes['finished']}"
+    if attributes.get("shard") and not attributes.get("stopped"):
+        return f"from {attributes['started']} on, all points of shard {attributes['shard']}"
     return "not finished yet"
 
 
-def rank_lines(a: dict[str, Any], noun: str) -> list[str]:
+def rank_lines(attributes: dict[str, Any], noun: str) -> list[str]:
     """Lines about the last run: ranks, hosts, points, shard, reason of a stop, and fraction of the time spent
     solving; empty if not stored."""
-    if RANK_STATISTICS[0] not in a:
+    if RANK_STATISTICS[0] not in attributes:
         return []
-    points, busy_seconds, idle_seconds = (np.atleast_1d(a[name]) for name in RANK_STATISTICS)
+    points, busy_seconds, idle_seconds = (np.atleast_1d(attributes[name]) for name in RANK_STATISTICS)
     percent = 100 * busy_seconds / np.maximum(busy_seconds + idle_seconds, 1e-9)
     worst = int(percent.argmin())
-    ranks = counted(int(a["ranks"]), "rank")
-    hosts = counted(len(str(a["hosts"]).split()), "host")
-    text = f"last run: {ranks} on {hosts}, {counted(int(points.sum()), noun)}"
-    text += f"; shard {a['shard']}" if a.get("shard") else ""
-    text += f"; stopped by {a['stopped']}" if a.get("stopped") else ""
-    if int(a["ranks"]) == 1:
+    ranks_text = counted(int(attributes["ranks"]), "rank")
+    hosts_text = counted(len(str(attributes["hosts"]).split()), "host")
+    text = f"last run: {ranks_text} on {hosts_text}, {counted(int(points.sum()), noun)}"
+    text += f"; shard {attributes['shard']}" if attributes.get("shard") else ""
+    text += f"; stopped by {attributes['stopped']}" if attributes.get("stopped") else ""
+    if int(attributes["ranks"]) == 1:
         return [text, f"the rank was busy {percent[0]:.1f} % of its time"]
     busy_text = f"{np.median(percent):.1f} % of the time (median; least {percent[worst]:.1f} %, rank {worst})"
     ends = dict.fromkeys(f"{number:.6g}" for number in (points.min(), points.max()))

@@ -27,12 +27,12 @@ def uncrushed_ranges(view: ResultView, rods: Iterable[int]) -> list[ParameterRan
     """(start, stop) of the followed range of branches without forces that crush the rod, for each of the
     rods; stop <= start if all forces of the range crush the rod. rods: indices among the points of the file.
     """
-    low, high = branch_ends(view)
+    range_start, range_end = branch_ends(view)
     parameter = followed_parameter(view)
     material = material_of_rods(view)
     columns = {name: values.ravel() for name, values in view.point_columns.items()}
     rods_values = ({name: float(column[index]) for name, column in columns.items()} for index in rods)
-    return [uncrushed_interval(material, rod, (parameter, low, high)) for rod in rods_values]
+    return [uncrushed_interval(material, rod, (parameter, range_start, range_end)) for rod in rods_values]
 
 
 def crushing_ratio(view: ResultView, line_parameter: str, row_parameter: str, x: Array, y: Array) -> Array:

@@ -37,8 +37,8 @@ def export(view: ResultView, output: Path, request: ExportRequest) -> str:
     InputError for an unknown table or column, for an invalid file name, and if the file exists and may not be
     replaced."""
     if output.is_dir() or output.suffix not in SEPARATORS:
-        endings = "; ".join((".csv separates columns by commas", ".tsv by tabs"))
-        raise InputError(f"--output {output}: the name must end in .csv or .tsv ({endings})")
+        endings_text = "; ".join((".csv separates columns by commas", ".tsv by tabs"))
+        raise InputError(f"--output {output}: the name must end in .csv or .tsv ({endings_text})")
     if output.exists() and not request.replace:
         raise InputError(f"{output} exists already; --replace overwrites it, -o names another file")
     table = Tables(view).table(request.table, request.columns)
@@ -47,13 +47,15 @@ def export(view: ResultView, output: Path, request: ExportRequest) -> str:
     return _written_table_sentence(table, view)
 
 
-def _write_csv(table: Table, separator: str, units: bool, stream: TextIO) -> None:
-    """Writes a table to `stream` as CSV. units: whether headings contain units."""
-    lines = csv.writer(stream, delimiter=separator, lineterminator="\n")
-    lines.writerow(column.heading_with_unit if units else column.name for column in table.columns)
+def _write_csv(table: Table, separator: str, includes_units: bool, stream: TextIO) -> None:
+    """Writes a table to `stream` as CSV. includes_units: whether headings contain units."""
+    csv_writer = csv.writer(stream, delimiter=separator, lineterminator="\n")
+    csv_writer.writerow(
+        column.heading_with_unit if includes_units else column.name for column in table.columns
+    )
     for start in range(0, table.rows, EXPORT_BATCH_ROWS):
         texts = [column.rows(slice(start, start + EXPORT_BATCH_ROWS)).texts() for column in table.columns]
-        lines.writerows(zip(*texts, strict=True))
+        csv_writer.writerows(zip(*texts, strict=True))
 
 
 def _written_table_sentence(table: Table, view: ResultView) -> str:

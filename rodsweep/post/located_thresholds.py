@@ -77,32 +77,44 @@ class StoredThresholds:
     """
 
     def __init__(self, view: ResultView, name: str):
-        v = view.variables
-        points = v["status"].size
-        growth = "linear_growth_rate" if "linear_growth_rate" in v else "growth_rate"
-        self.growth_rates = v[growth].reshape(points, -1)[:, 0]
-        missing = {o for o in OPTIONAL_PARAMETERS if not {f"hopf_{o}", f"change_{o}"} & v.keys()}
-        self.other_parameters = [other for other in TRANSVERSE_PARAMETERS if other not in {name, *missing}]
+        variables = view.variables
+        point_count = variables["status"].size
+        growth_rate_name = "linear_growth_rate" if "linear_growth_rate" in variables else "growth_rate"
+        self.growth_rates = variables[growth_rate_name].reshape(point_count, -1)[:, 0]
+        missing = {
+            optional_parameter
+            for optional_parameter in OPTIONAL_PARAMETERS
+            if not {f"hopf_{optional_parameter}", f"change_{optional_parameter}"} & variables.keys()
+        }
+        self.other_parameters = [
+            other_parameter
+            for other_parameter in TRANSVERSE_PARAMETERS
+            if other_parameter not in {name, *missing}
+        ]
         self.thresholds_by_rod: dict[tuple[float, ...], list[LocatedThreshold]] = {}
-        if "hopf_along" in v:  # a user may have dropped the variable from a Dataset
-            self._add_thresholds(v, name, "hopf", v["hopf_along"] == TRANSVERSE_PARAMETERS.index(name))
-        if "change_kind" in v and name == "F":
-            self._add_thresholds(v, name, "change", np.ones(len(v["change_kind"]), bool))
+        if "hopf_along" in variables:  # a user may have dropped the variable from a Dataset
+            self._add_thresholds(
+                variables, name, "hopf", variables["hopf_along"] == TRANSVERSE_PARAMETERS.index(name)
+            )
+        if "change_kind" in variables and name == "F":
+            self._add_thresholds(variables, name, "change", np.ones(len(variables["change_kind"]), bool))
 
     def _add_thresholds(
-        self, v: Mapping[str, np.ndarray], name: str, prefix: str, is_chosen: NDArray[np.bool_]
+        self, variables: Mapping[str, np.ndarray], name: str, prefix: str, is_chosen: NDArray[np.bool_]
     ) -> None:
         """Adds the onsets and changes of stability in the mask `is_chosen`, (changes,), of the variables
         whose names start with `prefix`. name: parameter along which the thresholds are located."""
-        rods = np.stack([v[f"{prefix}_{other}"] for other in self.other_parameters], axis=-1)
+        rods = np.stack(
+            [variables[f"{prefix}_{other_parameter}"] for other_parameter in self.other_parameters], axis=-1
+        )
         fields = (name, "error", "frequency", "kind")
-        positions, error, frequency, kind = (v[f"{prefix}_{field}"] for field in fields)
-        counts = v["hopf_unstable_after"] if prefix == "hopf" else None
+        positions, errors, frequency, kinds = (variables[f"{prefix}_{field}"] for field in fields)
+        counts = variables["hopf_unstable_after"] if prefix == "hopf" else None
         for i in np.flatnonzero(is_chosen):
             parameter = float(positions[i])
-            word = CROSSING_KINDS[int(kind[i])]
+            word = CROSSING_KINDS[int(kinds[i])]
             if word == "onset" or counts is None or (word, int(counts[i])) in STABILITY_CHANGES:
-                absolute_error = float(error[i]) * (abs(parameter) or 1.0)
+                absolute_error = float(errors[i]) * (abs(parameter) or 1.0)
                 rate = nan if word == "onset" else float(frequency[i])
                 point = LocatedThreshold(parameter, absolute_error, word, rate)
                 self.thresholds_by_rod.setdefault(tuple(rods[i].tolist()), []).append(point)
@@ -113,7 +125,7 @@ class StoredThresholds:
 
     def _stored_between(self, line: ParameterLine, low: float) -> list[LocatedThreshold]:
         """Located thresholds between the parameter value `low` and the largest parameter value of a line."""
-        rod = tuple(line.parameters[other] for other in self.other_parameters)
+        rod = tuple(line.parameters[other_parameter] for other_parameter in self.other_parameters)
         high = line.x.max(initial=-inf)
         return [point for point in self.thresholds_by_rod.get(rod, []) if _lies_between(point, low, high)]
 

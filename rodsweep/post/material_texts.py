@@ -35,8 +35,8 @@ def material_lines(view: ResultView) -> list[str]:
         lines.append(f"material: neo-Hookean rubber with a {section['section']} section")
     if "profile" in section:
         columns = {name: values for name, values in section["profile"].items() if isinstance(values, list)}
-        rows = counted(len(columns.pop("u")), "row")
-        lines.append(f"profile of {rows} along the arm: {', '.join(columns)}")
+        rows_text = counted(len(columns.pop("u")), "row")
+        lines.append(f"profile of {rows_text} along the arm: {', '.join(columns)}")
     if "segments" in section:
         lines += [f"segment {number}, {text}" for number, text in enumerate(section["segments"], 1)]
     return lines

@@ -1,5 +1,6 @@
 """Distinction between curves of Hopf points that bound the region of stable straight rods, and curves of Hopf
-points of further modes. line: parameter that varies along a row. row: parameter that is constant on a row."""
+points of further modes. line_parameter: parameter that varies along a row. row_parameter: parameter that is
+constant on a row."""
 
 import numpy as np
 
@@ -15,21 +16,23 @@ def curves_bounding_stability(view: ResultView, line_parameter: str, row_paramet
     A curve bounds the region if it is, for some change of stability on a row, the nearest curve along the
     row.
     """
-    v = view.variables
-    numbers = np.unique(v["curve_number"][v["curve_kind"] == 1]).astype(int).tolist()
+    variables = view.variables
+    numbers = np.unique(variables["curve_number"][variables["curve_kind"] == 1]).astype(int).tolist()
     is_bound = dict.fromkeys(numbers, False)
-    rows = view.point_columns[row_parameter]
+    row_values = view.point_columns[row_parameter]
     kinds, counts, positions = map(view.by_point, ("crossing_kind", "unstable_after", "crossing_at"))
-    masks = ((number, v["curve_number"] == number) for number in numbers)
+    masks = ((number, variables["curve_number"] == number) for number in numbers)
     paths = {
-        number: (v[f"curve_{line_parameter}"][mask], v[f"curve_{row_parameter}"][mask])
+        number: (variables[f"curve_{line_parameter}"][mask], variables[f"curve_{row_parameter}"][mask])
         for number, mask in masks
     }
     for index, i in zip(*np.nonzero(np.isfinite(positions)), strict=True):
         kind = CROSSING_KINDS[int(kinds[index, i])]
-        if numbers and (kind, int(counts[index, i])) in STABILITY_CHANGES and np.isfinite(rows[index]):
-            position = float(positions[index, i]), float(rows[index])
-            distances = {n: _distance_along_row(x, y, *position) for n, (x, y) in paths.items()}
+        if numbers and (kind, int(counts[index, i])) in STABILITY_CHANGES and np.isfinite(row_values[index]):
+            position = float(positions[index, i]), float(row_values[index])
+            distances = {
+                path_number: _distance_along_row(x, y, *position) for path_number, (x, y) in paths.items()
+            }
             is_bound[min(distances, key=distances.__getitem__)] = True
     return is_bound
 

@@ -44,8 +44,8 @@ def draw_work_precision(measurements: Table, xlabel: str, target: float | None, 
     column_count = ceil(sqrt(len(titles)))
     row_count = ceil(len(titles) / column_count)
     with matplotlib.rc_context(FIGURE_STYLE):
-        size = PANEL_SIZE * column_count + 3.0, PANEL_SIZE * row_count + 0.5
-        figure = Figure(figsize=size, layout="constrained")
+        figure_size = PANEL_SIZE * column_count + 3.0, PANEL_SIZE * row_count + 0.5
+        figure = Figure(figsize=figure_size, layout="constrained")
         grid = figure.subplots(row_count, column_count, sharex=True, sharey=True, squeeze=False)
         for axes, title in zip(grid.flat, titles, strict=False):
             axes.set(xscale="log", yscale="log")
@@ -53,8 +53,12 @@ def draw_work_precision(measurements: Table, xlabel: str, target: float | None, 
             if target is not None:
                 axes.axhline(target, color="0.75", lw=0.8, zorder=0)
             for method, curve_look in curve_looks.items():
-                mask = (cases == title) & (methods == method)
-                axes.plot(1e3 * seconds[mask], np.maximum(errors[mask], MIN_DRAWN_ERROR), **curve_look)
+                is_of_method = (cases == title) & (methods == method)
+                axes.plot(
+                    1e3 * seconds[is_of_method],
+                    np.maximum(errors[is_of_method], MIN_DRAWN_ERROR),
+                    **curve_look,
+                )
             axes.xaxis.set_major_locator(LogLocator(subs=(1,) if is_wide else (1, 2, 5)))
             axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
             axes.xaxis.set_minor_formatter(NullFormatter())

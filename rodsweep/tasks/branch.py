@@ -32,16 +32,16 @@ class BranchTask(HopfPointTask):
         options = self.config.branch
         parameter = options.along
         crushing_text = crushing_clause(self.config) * (options.along == "F")
-        ends = f"from {options.start:g} to {options.stop:g}"
-        return points_clause(self.points, f"followed in {parameter} {ends}{crushing_text}")
+        range_text = f"from {options.start:g} to {options.stop:g}"
+        return points_clause(self.points, f"followed in {parameter} {range_text}{crushing_text}")
 
     def option_rows(self) -> list[CheckRow]:
         options = self.config.branch
-        lengths = f"{options.cycles} cycles and {options.special} special points"
-        list_lengths = f"at most {lengths} of a rod are stored"
+        lengths_text = f"{options.cycles} cycles and {options.special} special points"
+        limit_sentence = f"at most {lengths_text} of a rod are stored"
         return [
             self.AXIAL_DRAG_ROW,
-            ("branches born at Hopf points", True, list_lengths),
+            ("branches born at Hopf points", True, limit_sentence),
             ("unstable cycles", True, "with all their Floquet multipliers"),
             ("branches without mirror symmetry", True, "from the symmetry breakings on those branches"),
             ("branches of twice the period, tori", False, "only the points where they begin are found"),
@@ -86,15 +86,18 @@ def branch_values(
     numbered = [(number, point) for number, curve in enumerate(result.curves, 1) for point in curve.points]
     cycles = [_cycle_values(point, parameter_name) | {"branch": number} for number, point in numbered]
     crossing_by_value = {crossing.value: crossing for crossing in result.crossings}
-    others = branches_at_breakings(result.curves)
+    second_branches = branches_at_breakings(result.curves)
     specials = []
-    start = 0  # index of the first cycle of the branch
+    first_cycle_index = 0  # index of the first cycle of the branch
     for number, curve in enumerate(result.curves, 1):
         for index, special_point in enumerate(curve.special_points):
             crossing = crossing_by_value.get(special_point.parameter_value)
-            others_here = {"special_branch": number, "special_meets": others.get((number, index), -1)}
-            specials.append(_special_point_values(special_point, start, crossing) | others_here)
-        start += len(curve.points)
+            others_here = {
+                "special_branch": number,
+                "special_meets": second_branches.get((number, index), -1),
+            }
+            specials.append(_special_point_values(special_point, first_cycle_index, crossing) | others_here)
+        first_cycle_index += len(curve.points)
     is_complete = result.status.name != "failed"
     counts = {"hopf": len(result.crossings), "branch": len(result.curves), "point": len(cycles)}
     counts["special"] = len(specials)
@@ -128,7 +131,7 @@ def _cycle_values(point: "BranchPoint", parameter_name: str) -> dict[str, Any]:
         f"branch_{parameter_name}_error": "parameter_value_error",
         "unstable_multipliers": "unstable_count",
     }
-    variables = [v for v in followed_variables(parameter_name) if v.name != "branch"]
+    variables = [variable for variable in followed_variables(parameter_name) if variable.name != "branch"]
     return outcome_values(variables, point, point.measures, point.errors, names=attribute_names)
 
 
@@ -152,5 +155,5 @@ def _special_point_values(
         "special_unstable_after": crossing.unstable_after if crossing else -1,
     }
     given_names = {*values, "special_branch", "special_meets"}
-    variables = [v for v in special_variables("F") if v.name not in given_names]
+    variables = [variable for variable in special_variables("F") if variable.name not in given_names]
     return values | outcome_values(variables, point, prefix="special_", names=SPECIAL_POINT_FIELDS)

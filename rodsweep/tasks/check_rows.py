@@ -26,10 +26,12 @@ def points_text(points: Points) -> str:
     """Text with the number of points and the shape of their grid: "50 points (a grid of 5 x 10)"."""
     if points.axes and points.count == 1:
         return "1 point"
-    shape = f"a grid of {' x '.join(str(n) for n in points.shape)}" if points.axes else "a list"
+    points_kind = (
+        f"a grid of {' x '.join(str(length) for length in points.shape)}" if points.axes else "a list"
+    )
     if points.arm_axes:
-        shape = f"{shape}: {' x '.join(points.arm_axes)}"
-    return f"{counted(points.count, 'point')} ({shape})"
+        points_kind = f"{points_kind}: {' x '.join(points.arm_axes)}"
+    return f"{counted(points.count, 'point')} ({points_kind})"
 
 
 def points_clause(points: Points, clause: str) -> str:
@@ -45,7 +47,11 @@ def rod_check_rows(columns: Mapping[str, np.ndarray]) -> list[CheckRow]:
     """
     has_axial_drag = bool((columns["gamma3"] > 0).any())
     return [
-        *(_deformation_row(p, columns[p.name]) for p in PARAMETERS.values() if p.rigid_adjective),
+        *(
+            _deformation_row(parameter, columns[parameter.name])
+            for parameter in PARAMETERS.values()
+            if parameter.rigid_adjective
+        ),
         ("rotational drag", has_axial_drag, "gamma3 > 0" if has_axial_drag else "gamma3 = 0"),
     ]
 
@@ -58,9 +64,9 @@ def material_check_rows(config: Config, columns: Mapping[str, np.ndarray]) -> li
     """
     if config.is_uniform_and_linear:
         return []
-    shapes = _shape_texts(config, columns)
+    shape_texts = _shape_texts(config, columns)
     return [
-        ("variation along the arm", bool(shapes), " with ".join(shapes) or "uniform"),
+        ("variation along the arm", bool(shape_texts), " with ".join(shape_texts) or "uniform"),
         ("law", True, _law_text(config)),
     ]
 
@@ -75,30 +81,30 @@ def arms_line(
     """
     if config.is_uniform_and_linear:
         return ""
-    shapes = _shape_texts(config, columns) or ["a uniform arm"]
-    if len(shapes) == 1 and shapes[0].startswith(("a profile", "a smooth profile")):
-        shapes = ["an arm", *shapes]
-    arms = f"{' with '.join(shapes)} of {_law_text(config)}"
+    shape_texts = _shape_texts(config, columns) or ["a uniform arm"]
+    if len(shape_texts) == 1 and shape_texts[0].startswith(("a profile", "a smooth profile")):
+        shape_texts = ["an arm", *shape_texts]
+    arms_text = f"{' with '.join(shape_texts)} of {_law_text(config)}"
     mesh = first_mesh()
     if mesh is None:
-        return arms
-    count = counted(mesh.element_count, "element")
+        return arms_text
+    elements_text = counted(mesh.element_count, "element")
     has_several_arms = any(len(np.unique(column)) > 1 for column in columns.values())
     mesh_text = f"the first mesh{' of the hardest arm' * has_several_arms}"
-    return f"{arms}; {mesh_text} has {count} of order {mesh.order}"
+    return f"{arms_text}; {mesh_text} has {elements_text} of order {mesh.order}"
 
 
 def _shape_texts(config: Config, columns: Mapping[str, np.ndarray]) -> list[str]:
     """Texts on the tapers and the profile of the arms; empty for uniform arms. columns: values of the rods'
     parameters by name, arrays of any shape."""
     tapers = columns.get("taper", np.ones(1))
-    ratios = "a cone of radius ratio" if len(np.unique(tapers)) == 1 else "cones of radius ratios"
-    ends = " to ".join(f"{end:g}" for end in np.unique([tapers.min(), tapers.max()]))
-    shapes = [] if (tapers == 1).all() else [f"{ratios} {ends}"]
+    cone_text = "a cone of radius ratio" if len(np.unique(tapers)) == 1 else "cones of radius ratios"
+    tapers_text = " to ".join(f"{end:g}" for end in np.unique([tapers.min(), tapers.max()]))
+    shape_texts = [] if (tapers == 1).all() else [f"{cone_text} {tapers_text}"]
     profile = config.rod_material.profile
     if profile is not None:
-        shapes.append(_profile_text(config, profile))
-    return shapes
+        shape_texts.append(_profile_text(config, profile))
+    return shape_texts
 
 
 def _profile_text(config: Config, profile: Profile) -> str:
@@ -108,8 +114,8 @@ def _profile_text(config: Config, profile: Profile) -> str:
     if config.stated_rod_material is None and arm is not None and arm.cone_parameters:
         return "the drag of each local radius"
     jumps = len(profile.u) - len(profile.breaks)
-    rows = f"a profile of {counted(len(profile.u), 'row')}"
-    return f"{rows} with {counted(jumps, 'jump')}" if jumps else rows
+    profile_text = f"a profile of {counted(len(profile.u), 'row')}"
+    return f"{profile_text} with {counted(jumps, 'jump')}" if jumps else profile_text
 
 
 def _law_text(config: Config) -> str:
@@ -119,10 +125,10 @@ def _law_text(config: Config) -> str:
 
 
 def _deformation_row(parameter: Parameter, values: np.ndarray) -> CheckRow:
-    name = parameter.name
+    parameter_name = parameter.name
     deformation = parameter.meaning.removesuffix(" stiffness")
     is_rigid = np.isinf(values)
     if is_rigid.all():
-        return deformation, False, f"{name} = inf: the rod is {parameter.rigid_adjective}"
+        return deformation, False, f"{parameter_name} = inf: the rod is {parameter.rigid_adjective}"
     exceptions_text = f" at all but {counted(int(is_rigid.sum()), 'value')}" if is_rigid.any() else ""
-    return deformation, True, f"{name} is finite{exceptions_text}"
+    return deformation, True, f"{parameter_name} is finite{exceptions_text}"

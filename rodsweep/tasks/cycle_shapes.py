@@ -75,9 +75,9 @@ def _job_of_point(view: ResultView, number: int) -> Job:
     of the point, from 1."""
     stored = view.config["limit_cycle"]
     is_from_hopf = stored["start"] == "hopf"
-    kept = ["harmonics"] if is_from_hopf else ["harmonics", "amplitude", "most_periods"]
+    kept_options = ["harmonics"] if is_from_hopf else ["harmonics", "amplitude", "most_periods"]
     options = {"shapes": SHAPE_COUNT, "samples": SAMPLE_COUNT, "start": "hopf" if is_from_hopf else "mode"}
-    options |= {name: stored[name] for name in kept}
+    options |= {name: stored[name] for name in kept_options}
     document = {
         "task": "limit_cycle",
         "parameters": _parameters_of_point(view.as_list, number),
@@ -105,5 +105,5 @@ def _parameters_of_point(view: ResultView, number: int) -> dict[str, Any]:
         arm[key] = value if values is None else float(values[number - 1 if values.size > 1 else 0])
     if "drag" in arm:
         arm["drag"] = DRAG_NAMES[int(arm["drag"])]
-    given = {name: value for name, value in point_values.items() if name == "F" or name in section}
-    return given | {"arm": arm}
+    given_values = {name: value for name, value in point_values.items() if name == "F" or name in section}
+    return given_values | {"arm": arm}

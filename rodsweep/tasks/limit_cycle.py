@@ -90,16 +90,16 @@ class LimitCycleTask(Task):
     def headline(self) -> str:
         options = self.config.limit_cycle
         chains = self.chains
-        start = f"the leading mode with tip deflection {options.amplitude:g} L"
+        start_text = f"the leading mode with tip deflection {options.amplitude:g} L"
         if options.start == "hopf":
-            start = "the nearest Hopf point below its force"
+            start_text = "the nearest Hopf point below its force"
         if chains is None:
-            return points_clause(self.points, f"started from {start}")
+            return points_clause(self.points, f"started from {start_text}")
         chains_text = f"{counted(chains.count, 'chain')} of {chains.length}"
         return (
             f"{points_text(self.points)} in {chains_text}, {options.direction} in "
             f"{self.config.chain_parameter}: each starts from its neighbour's cycle; the first point, and a "
-            f"point whose neighbour has no cycle, starts from {start}; at most "
+            f"point whose neighbour has no cycle, starts from {start_text}; at most "
             f"{counted(chains.count, 'rank')} can share the work"
         )
 
@@ -150,19 +150,25 @@ class LimitCycleTask(Task):
         """Row of `check` on variables that are stored only on request, with number and size of the stored
         values. option: name of the option of limit_cycle with the number of values per point."""
         options = self.config.limit_cycle
-        count: int = getattr(options, option)
-        if not count:
+        sample_count: int = getattr(options, option)
+        if not sample_count:
             return description, False, f"limit_cycle.{option} stores them"
-        values = self.points.count * count * len(variables) * (options.nodes if option == "shapes" else 1)
-        nodes = f" on {options.nodes} nodes" if option == "shapes" else ""
-        total = self.points.count * count
-        return description, True, f"{count} per point{nodes}, {total} in total: {8e-6 * values:.3g} MB"
+        value_count = (
+            self.points.count * sample_count * len(variables) * (options.nodes if option == "shapes" else 1)
+        )
+        nodes_text = f" on {options.nodes} nodes" if option == "shapes" else ""
+        total = self.points.count * sample_count
+        return (
+            description,
+            True,
+            f"{sample_count} per point{nodes_text}, {total} in total: {8e-6 * value_count:.3g} MB",
+        )
 
     def cost(self) -> CostEstimate:
         if self.config.limit_cycle.method == "integration":
             return marched_cycles_cost(self.points.count, self.config.accuracy)
-        count = self.chains.count if self.chains else self.points.count
-        return cycles_cost(self.points, count)
+        chain_or_point_count = self.chains.count if self.chains else self.points.count
+        return cycles_cost(self.points, chain_or_point_count)
 
     def solver(self) -> Solver:
         from ..solve.cycle.limit_cycle import CycleStart, CycleStatus, solve_cycle

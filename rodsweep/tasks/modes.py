@@ -58,22 +58,22 @@ class ModesTask(CertifiedTask):
 
     def first_mesh(self) -> Elements | None:
         accuracy = mesh_accuracy(self.config.accuracy, needs_vectors=False)
-        modes = self.config.modes.modes
-        return largest_first_mesh(self.points, lambda rod: spectrum_mesh(rod, modes, accuracy))
+        mode_count = self.config.modes.modes
+        return largest_first_mesh(self.points, lambda rod: spectrum_mesh(rod, mode_count, accuracy))
 
     def cost(self) -> CostEstimate:
         options = self.config.modes
         accuracy = mesh_accuracy(self.config.accuracy, needs_vectors=False)
-        spectra = spectra_cost(self.points, options.modes, accuracy, options.certify)
-        return modes_cost(spectra, self.points.count, options.modes, options.growth)
+        spectra_estimate = spectra_cost(self.points, options.modes, accuracy, options.certify)
+        return modes_cost(spectra_estimate, self.points.count, options.modes, options.growth)
 
     def solver(self) -> Solver:
         from ..solve.modes.leading_modes import ModesRequest, solve_modes
         from ..solve.spectrum.status import SpectrumStatus
 
         options = self.config.modes
-        numbers = options.modes, self.config.accuracy, options.nodes
-        request = ModesRequest(*numbers, options.growth, options.certify)
+        requested_numbers = options.modes, self.config.accuracy, options.nodes
+        request = ModesRequest(*requested_numbers, options.growth, options.certify)
         warm_up_request = ModesRequest(2, 1e-4, 9, options.growth, True)
         return Solver(
             statuses=tuple(SpectrumStatus),
@@ -86,15 +86,15 @@ class ModesTask(CertifiedTask):
 def mode_values(result: "Modes", growth: bool) -> dict[str, Any]:
     """Variables of the file for the modes of one rod; growth: whether transient growth was computed."""
     vectors = result.vectors
-    names = {"elements": "element_count"}
+    attribute_names = {"elements": "element_count"}
     sources = vectors.resolution, result, result.spectrum
-    values = outcome_values(MODE_VARIABLES + POINT_VARIABLES, *sources, names=names)
+    values = outcome_values(MODE_VARIABLES + POINT_VARIABLES, *sources, names=attribute_names)
     values |= outcome_values(MODE_SCALAR_VARIABLES, vectors)
     field_names = ("Y", "Theta", "h2", "Pi", "adjoint_Y", "adjoint_Theta")
     fields = (*vectors.right_modes, *vectors.mode_strains, *vectors.left_modes)
-    for name, field in zip(field_names, fields, strict=True):
-        values[f"{name}_real"] = field.real
-        values[f"{name}_imag"] = field.imag
+    for name, mode_field in zip(field_names, fields, strict=True):
+        values[f"{name}_real"] = mode_field.real
+        values[f"{name}_imag"] = mode_field.imag
     if growth:
         values |= outcome_values(GROWTH_VARIABLES, result.growth)
     return values

@@ -45,32 +45,33 @@ class PhaseDiagramTask(CertifiedTask):
         return {self.config.plane_parameters[0]: self.line_values}
 
     def headline(self) -> str:
-        line, row = self.config.plane_parameters
+        line_parameter, row_parameter = self.config.plane_parameters
         return (
-            f"{self.points.count} rows, one for each {row}, of {len(self.line_values)} values of {line} each"
+            f"{self.points.count} rows, one for each {row_parameter}, of {len(self.line_values)} "
+            f"values of {line_parameter} each"
         )
 
     def option_rows(self) -> list[CheckRow]:
         options = self.config.phase_diagram
-        curves = "followed from row to row" if options.curves else "phase_diagram.curves: false"
-        criticality = "phase_diagram.criticality adds it"
+        curves_text = "followed from row to row" if options.curves else "phase_diagram.curves: false"
+        criticality_text = "phase_diagram.criticality adds it"
         if options.criticality:
-            criticality = (
+            criticality_text = (
                 f"gamma1 = {self.config.gamma1:g}; some 10 ms per point of a Hopf curve, after the rows"
             )
-        cycles = "phase_diagram.cycles adds it"
+        cycles_text = "phase_diagram.cycles adds it"
         if options.cycles:
-            cycles = (
+            cycles_text = (
                 f"gamma1 = {self.config.gamma1:g}, accuracy {options.cycle_accuracy:g}; cycles on branches "
                 "from the Hopf points of each row"
             )
             if options.curves:
-                cycles += ", and on the detached branches that the fold and torus curves cross"
+                cycles_text += ", and on the detached branches that the fold and torus curves cross"
         return [
             ("monotone, oscillatory, flutter", True, "task: phase_diagram"),
             ("crossings along each row", True, f"at most {options.crossings} are stored for each row"),
-            ("boundaries as curves", options.curves, curves),
-            ("criticality of Hopf curves", options.criticality, criticality),
+            ("boundaries as curves", options.curves, curves_text),
+            ("criticality of Hopf curves", options.criticality, criticality_text),
             (
                 "curves of generalised Hopf points",
                 options.bautin_parameter is not None,
@@ -78,7 +79,7 @@ class PhaseDiagramTask(CertifiedTask):
                 if options.bautin_parameter
                 else "phase_diagram.bautin_along adds them",
             ),
-            ("stable states, with cycles", options.cycles, cycles),
+            ("stable states, with cycles", options.cycles, cycles_text),
         ]
 
     def searched_ranges(self) -> dict[str, np.ndarray]:
@@ -98,28 +99,28 @@ class PhaseDiagramTask(CertifiedTask):
         options = self.config.phase_diagram
         is_varying = not self.config.is_uniform_and_linear
         requested = options.certify, is_varying, options.curves, options.criticality
-        lines = diagram_cost(self.points.count, *requested)
+        rows_cost = diagram_cost(self.points.count, *requested)
         line_range = (float(self.line_values[0]), float(self.line_values[-1]))
         if self.config.plane_parameters[0] == "F":
-            lines = self._with_soft_and_pulled_rows(lines, is_varying)
+            rows_cost = self._with_soft_and_pulled_rows(rows_cost, is_varying)
         if not options.cycles:
-            return lines
+            return rows_cost
         branches = branches_cost(
             self.points, self.config.plane_parameters[0], line_range, options.cycle_accuracy
         )
         return replace(
             branches,
-            seconds=lines.seconds + branches.seconds,
-            underestimated_rods=branches.underestimated_rods or lines.underestimated_rods,
+            seconds=rows_cost.seconds + branches.seconds,
+            underestimated_rods=branches.underestimated_rods or rows_cost.underestimated_rods,
         )
 
-    def _with_soft_and_pulled_rows(self, lines: CostEstimate, is_varying: bool) -> CostEstimate:
-        """The cost `lines` of rows along F with the further time of soft and of pulled rows."""
+    def _with_soft_and_pulled_rows(self, rows_cost: CostEstimate, is_varying: bool) -> CostEstimate:
+        """The cost `rows_cost` of rows along F with the further time of soft and of pulled rows."""
         soft = soft_searches_seconds(self.points, float(self.line_values[-1]), is_varying)
-        rows = sampled_points(self.points, MAX_SAMPLED_ROWS)
-        rods = [rod for row in rows if (rod := self.rod_of_row(int(row)))]
+        sampled_rows = sampled_points(self.points, MAX_SAMPLED_ROWS)
+        rods = [rod for row in sampled_rows if (rod := self.rod_of_row(int(row)))]
         pulled, doubt = pulled_rows_seconds(rods, self.line_values, self.points.count)
-        return replace(lines, seconds=lines.seconds + soft + pulled, underestimated_rods=doubt)
+        return replace(rows_cost, seconds=rows_cost.seconds + soft + pulled, underestimated_rods=doubt)
 
     def solver(self) -> Solver:
         from ..solve.changes.status import ThresholdStatus

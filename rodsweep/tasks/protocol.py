@@ -55,8 +55,9 @@ class SweepWideSolver(Protocol):
     """Computes variables that depend on all points, for example curves. Every rank has its own object."""
 
     def work_items(self, view: ResultView, results: Mapping[int, NamedArrays]) -> WorkItems | None:
-        """The work items to be divided among the ranks now, with numbers that no other work items have; None
-        if there are no work items at all. Only the last work items may be unsolved, or solved.
+        """The work items of the current stage, to be divided among the ranks, or of the last stage, if all
+        its items are solved. The items of different stages have different numbers. None if the variables
+        need no work items.
 
         view: the file with all points. results: results of work items so far, by number.
         """

@@ -16,7 +16,7 @@ from .running.job import Job
 NODE_COUNT = 33
 """Number of Lobatto nodes of each shape."""
 FRAMES_PER_RETURN = 32
-"""Number of shapes per return of the tip to its section; an animation interpolates between the shapes."""
+"""Number of shapes per return of the tip to theta = 0; an animation interpolates between the shapes."""
 MOTION_ACCURACY = 1e-5
 """Relative accuracy of the mesh on which the bent shape is computed, equal to the accuracy of motions in the
 task limit_cycle."""

@@ -66,9 +66,11 @@ class PortraitRequest:
     ) -> Job:
         """Job of a task for this rod. F: force, None for tasks that vary the force. default_accuracy:
         relative accuracy if the request has none; None for the default of the task."""
-        given = self.rod.parameters
+        given_values = self.rod.parameters
         names = (*CONFIGS[task].rod_parameters_used(options), *OPTIONAL_PARAMETERS)
-        values: dict[str, Any] = {name: given[name] for name in names if name in given and name != "F"}
+        values: dict[str, Any] = {
+            name: given_values[name] for name in names if name in given_values and name != "F"
+        }
         values |= {"arm": dict(self.rod.arm)} if self.rod.arm else {}
         values |= {} if F is None else {"F": F}
         document: dict[str, Any] = {"task": task, "parameters": values, task: dict(options)}

@@ -75,19 +75,21 @@ class SpectrumTask(CertifiedTask):
         gamma1 = self.config.parameters.constant_parameters.get("gamma1")
         if gamma1 is None:
             return ()
-        dimensions, shape, columns = self._longitudinal_points()
-        modes = self.config.spectrum.modes
+        dimensions, points_shape, columns = self._longitudinal_points()
+        mode_count = self.config.spectrum.modes
         is_closed_form = self.config.is_uniform_and_linear
         variables = longitudinal_variables(gamma1, *dimensions, is_closed_form=is_closed_form)
         if is_closed_form:
-            rates = [longitudinal_eigenvalues(float(k1), gamma1, modes) for k1 in columns["k1"]]
-            return ((variables[0], np.reshape(rates, (*shape, modes))),)
+            rates = [longitudinal_eigenvalues(float(k1), gamma1, mode_count) for k1 in columns["k1"]]
+            return ((variables[0], np.reshape(rates, (*points_shape, mode_count))),)
         values = zip(*(column.tolist() for column in columns.values()), strict=True)
-        rods = [dict(zip(columns, each, strict=True)) | {"gamma1": gamma1} for each in values]
+        rods = [dict(zip(columns, rod_values, strict=True)) | {"gamma1": gamma1} for rod_values in values]
         table = np.array(
-            in_order(rods, lambda rod: longitudinal_rates_of_arm(rod, self.config.rod_material, modes))
+            in_order(rods, lambda rod: longitudinal_rates_of_arm(rod, self.config.rod_material, mode_count))
         )
-        return tuple((variable, table[:, i].reshape(*shape, modes)) for i, variable in enumerate(variables))
+        return tuple(
+            (variable, table[:, i].reshape(*points_shape, mode_count)) for i, variable in enumerate(variables)
+        )
 
     def _longitudinal_points(self) -> tuple[tuple[str, ...], tuple[int, ...], dict[str, np.ndarray]]:
         """Returns (dimensions, shape, columns) of the points at which longitudinal rates differ. dimensions:
@@ -102,7 +104,11 @@ class SpectrumTask(CertifiedTask):
             dimensions = tuple(points.arm_axes) or ("point",)
             return dimensions, points.shape, {name: column.ravel() for name, column in columns.items()}
         grid = np.meshgrid(*columns.values(), indexing="ij")
-        return tuple(names), grid[0].shape, dict(zip(names, (each.ravel() for each in grid), strict=True))
+        return (
+            tuple(names),
+            grid[0].shape,
+            dict(zip(names, (coordinate.ravel() for coordinate in grid), strict=True)),
+        )
 
     def variables_from_points(self, values: Mapping[str, Any]) -> tuple[FilledVariable, ...]:
         """Thresholds of the rods along F; empty if any arm is not uniform or not of linear material. values:
@@ -114,15 +120,15 @@ class SpectrumTask(CertifiedTask):
 
     def option_rows(self) -> list[CheckRow]:
         options = self.config.spectrum
-        vectors = f"on {options.nodes} nodes" if options.vectors else "spectrum.vectors adds them"
-        longitudinal = "they decouple; spectrum.longitudinal adds them"
+        vectors_text = f"on {options.nodes} nodes" if options.vectors else "spectrum.vectors adds them"
+        longitudinal_text = "they decouple; spectrum.longitudinal adds them"
         if options.longitudinal:
             is_closed_form = self.config.is_uniform_and_linear
-            longitudinal = "closed form, no mesh" if is_closed_form else "on elements of their own"
+            longitudinal_text = "closed form, no mesh" if is_closed_form else "on elements of their own"
         return [
             ("transverse modes", True, "task: spectrum"),
-            ("longitudinal modes", options.longitudinal, longitudinal),
-            ("eigenvectors", options.vectors, vectors),
+            ("longitudinal modes", options.longitudinal, longitudinal_text),
+            ("eigenvectors", options.vectors, vectors_text),
         ]
 
     def first_mesh(self) -> Elements | None:
@@ -194,7 +200,7 @@ def spectrum_values(result: "Spectrum") -> dict[str, Any]:
     """Variables of the file for the spectrum of a point, or for the spectra of the points of a group."""
     values = outcome_values(MODE_VARIABLES + FOLLOWED_POINT_VARIABLES, result)
     if result.vectors is not None:
-        for field, component in zip(("Y", "Theta"), result.vectors, strict=True):
-            values[f"{field}_real"] = component.real
-            values[f"{field}_imag"] = component.imag
+        for field_name, component in zip(("Y", "Theta"), result.vectors, strict=True):
+            values[f"{field_name}_real"] = component.real
+            values[f"{field_name}_imag"] = component.imag
     return values

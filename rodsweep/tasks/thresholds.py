@@ -71,11 +71,13 @@ class ThresholdsTask(CertifiedTask):
 def threshold_values(result: "Thresholds", max_crossings: int) -> dict[str, Any]:
     """Variables of the file for the thresholds of a rod; max_crossings: length of the list of crossings."""
     values = {"F_end": result.end, "unstable_at_end": result.search_result.unstable_at_end}
-    for kind, number in FIRST_CROSSINGS.items():
+    for kind, rate_name in FIRST_CROSSINGS.items():
         kind_index = CROSSING_KINDS.index(kind)
-        first = next((crossing for crossing in result.thresholds if crossing.kind == kind_index), None)
-        for name, field in ((f"F_{kind}", "value"), (f"{kind}_{number}", number)):
-            values[name] = getattr(first, field, np.nan)
+        first_crossing = next(
+            (crossing for crossing in result.thresholds if crossing.kind == kind_index), None
+        )
+        for name, attribute in ((f"F_{kind}", "value"), (f"{kind}_{rate_name}", rate_name)):
+            values[name] = getattr(first_crossing, attribute, np.nan)
     return values | crossing_values(result, max_crossings, "F", "crossing_F")
 
 
@@ -90,7 +92,7 @@ def crossing_values(
     variables = crossing_variables(line_parameter, position_name)
     thresholds = search_result.thresholds
     names = {position_name: "value"}
-    rows = [outcome_values(variables, each, prefix="crossing_", names=names) for each in thresholds]
+    rows = [outcome_values(variables, threshold, prefix="crossing_", names=names) for threshold in thresholds]
     is_failed = result.status == type(result.status).failed
     return value_lists(variables, rows, max_crossings) | {
         "crossing_count": -1 if is_failed else len(thresholds),

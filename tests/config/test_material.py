@@ -31,7 +31,7 @@ def test_profile_of_a_file_is_part_of_the_config(tmp_path):
     (tmp_path / "steps.csv").write_text(STEPPED)
     read = config(tmp_path, "material: {profile: steps.csv}")
     table = "material: {profile: {u: [0, 0.4, 0.4, 1], k3: [1, 1, 0.2, 0.2], gamma3: [1, 1, 0.5, 0.5]}}"
-    assert read.material == config(tmp_path, table).material
+    assert read.rod_material == config(tmp_path, table).rod_material
     assert read.settings_of_results == config(tmp_path, table).settings_of_results
     assert read.rod_material.profile.rows[2] == (1.0, 1.0, 0.2, 1.0, 1.0, 0.5)
     assert not read.is_uniform_and_linear
@@ -93,7 +93,7 @@ def test_profiles_that_are_none_are_refused_in_a_sentence(tmp_path, text, senten
         ("material: {mu: 2}", "", "unknown key material.mu"),
         ("material: {profile: {u: [0, 1], k3: []}}", "", "material.profile: k3 has 0 values and u has 2"),
         ("material: {profile: {u: [0, 1], k3: 2}}", "", "k3 = 2 is not allowed; it should be a list of"),
-        ("material: {}", "", "material: the section is empty; give law, section or profile"),
+        ("material: {}", "", "material: no key is given; give law, section or profile"),
         ("material: {profile: {u: [0, 1], k3: [1]}}", "", "material.profile: k3 has 1 values and u has 2"),
     ],
 )

@@ -32,7 +32,7 @@ def test_an_arm_that_varies_is_read_again_from_its_file_and_its_text(tmp_path, a
     again = config_from_resolved(resolved_config(read))
     (tmp_path / "text.yaml").write_text(config_yaml(read))
     for other in (again, read_config(tmp_path / "text.yaml")[0]):
-        assert other.material == read.material
+        assert other.rod_material == read.rod_material
         assert other.settings_of_results == read.settings_of_results
         assert other.parameter_names == read.parameter_names
     assert not read.is_uniform_and_linear
@@ -42,7 +42,7 @@ def test_segments_make_the_length_in_their_unit(tmp_path):
     arm = config(tmp_path, CAST).parameters.arm
     assert arm.length.array().tolist() == pytest.approx([0.12])
     assert arm.length.written == "12 cm"
-    assert config(tmp_path, f"{CAST}, length: 12 cm").material == config(tmp_path, CAST).material
+    assert config(tmp_path, f"{CAST}, length: 12 cm").rod_material == config(tmp_path, CAST).rod_material
 
 
 def test_an_arm_alike_all_along_is_standard(tmp_path):

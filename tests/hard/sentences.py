@@ -692,7 +692,7 @@ def _sizes(page, v, own):
     tips = [v[f"tip_{name}"] for name in ("x_min", "x_max", "theta_max")]
     found += ranges(page, "least x RANGE L, largest x RANGE L, largest .theta. RANGE rad", *tips)
     found += ranges(page, r"mean power of the force: RANGE k3", v["injection_mean"])
-    rest = r"^largest \|Floquet multiplier\|: RANGE; periods integrated in time: RANGE; "
+    rest = r"^largest \|Floquet multiplier\|: RANGE; returns of the tip in the integration: RANGE; "
     rest += "smallest stretch h1: RANGE"
     without = np.isnan(own["multiplier"])  # time integration computes none
     multiplier = np.where(without, np.nan, v["multiplier"])
@@ -775,8 +775,8 @@ def diagram_sentences(view, page, keywords, fine):
     table = np.array(table)
     found = _search_sentences(view, page, every, "row")
     found += counts(page, "^of NUMBER grid points on the rows", table.size)
-    found += ranges(page, "where the rows begin, of RANGE rows?:", [len(rows)])
-    found += ranges(page, "^at F = RANGE, where the rows begin", [values[0]])
+    found += ranges(page, "where the rows begin: .* of RANGE rows?", [len(rows)])
+    found += ranges(page, "^the straight rod at F = RANGE, where the rows begin", [values[0]])
     for word in ("monotone", "oscillatory", "flutter", "crushed"):
         there = table == word
         share = rf"^behaviour of the straight rod, in % of the grid points:.*?RANGE % {word}"

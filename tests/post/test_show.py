@@ -187,7 +187,7 @@ def test_rows_tell_first_changes_apart_from_later_ones_and_what_was_before_them(
     command.write("c.yaml", config.format(start=30))
     command("run", "c.yaml", "--fresh")
     told = command("show", "c.h5").stdout
-    assert "at F = 30, where the rows begin, of 2 rows: oscillatory on 2" in told
+    assert "the straight rod at F = 30, where the rows begin: oscillatory on 2 of 2 rows" in told
     assert "onset of oscillations: on 1 of 2 rows, F = 137.568, k1 = 140\n" in told
 
 

@@ -66,7 +66,7 @@ def test_longer_range_of_a_load_has_the_same_forces():
 
 def test_ratio_of_poisson_becomes_an_axis_of_k2_which_falls_as_it_rises():
     made = job("modes", arm=LOADED | {"poisson": [0.2, 0.4, 0.5]})
-    (poisson,) = (values for variable, values in made.quantities if variable.name == "poisson")
+    (poisson,) = (values for variable, values in made.quantity_variables if variable.name == "poisson")
     assert made.points.shape == (1, 1, 3, 1)
     assert made.points.columns_by_name["k2"] == pytest.approx(4800 / (7 + 6 * poisson), rel=1e-12)
     assert poisson.tolist() == [0.5, 0.4, 0.2]
@@ -83,7 +83,7 @@ def test_axes_that_move_several_parameters_become_a_grid_over_the_quantities():
     made = job("limit_cycle", arm=SILICONE | axes, gamma1=[0.5, 1])
     assert made.points.shape == (2, 2, 2, 2)
     assert made.layout.arm_axes == (*axes, "gamma1")
-    quantities = quantities_at_points(made.quantities, made.points)
+    quantities = quantities_at_points(made.quantity_variables, made.points)
     for index in range(16):
         at = {name: float(quantities[name][index]) for name in axes}
         arm = SlenderArm(radius=0.005, viscosity=1.4, **at)
@@ -264,7 +264,7 @@ def test_neighbours_follow_each_other_along_a_quantity_of_the_arm():
 def test_configs_without_an_arm_have_no_trace_of_it():
     made = job_of_tree(config_tree("spectrum", {"F": 3, "k1": 200, "k2": 100, "gamma3": 0}))
     assert "arm" not in made.resolved["parameters"]
-    assert made.quantities == ()
+    assert made.quantity_variables == ()
     assert not any(variable.name.endswith("_si") for variable in made.layout.variables)
 
 

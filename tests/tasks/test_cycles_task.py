@@ -384,7 +384,7 @@ def test_show_tells_ranges_and_worst_errors(tmp_path, capsys):
         "of 8 points: beats at 7 (",
         "period: 2 to 8 tau2; largest y of the tip: 7 L",
         "period: 40 to 300 tau1",
-        "largest |Floquet multiplier|: 0.2; periods integrated",
+        "largest |Floquet multiplier|: 0.2; returns of the tip",
         "worst errors: period 9e+00, largest y of the tip 1e+01, other extrema of the tip 2e+01",
         "energy balance 2e+01",
     ):

@@ -52,7 +52,7 @@ def whole(tmp_path_factory, loaded):
     command.write("c.yaml", DIAGRAM)
     run = command("run", "c.yaml", "-o", "whole.h5")
     assert run.returncode == 0, run.stderr
-    assert "1 row solved again with the branches that only these curves lead to" in run.stdout
+    assert "1 row solved again with branches found from curves of folds and torus points" in run.stdout
     yield command
     command.clear()
 
@@ -123,7 +123,7 @@ def narrow(whole):
     run = whole("run", "narrow.yaml", "-o", "narrow.h5")
     assert run.returncode == 0, run.stderr
     assert "1 row with branches that leave the range" in run.stdout
-    assert "1 row solved again with the branches that only these curves lead to" in run.stdout
+    assert "1 row solved again with branches found from curves of folds and torus points" in run.stdout
     return whole
 
 
@@ -358,7 +358,7 @@ def test_curves_are_followed_beyond_the_range_after_all_other_stages():
     ((variable, count),) = curves_lost_beyond_values(2)
     view = SimpleNamespace(variables={variable.name: count})
     (line,) = detached_branch_lines(view, "k1")
-    assert line.startswith("ends of curves of folds lost beyond the range: 2; rows that only these")
+    assert line.startswith("ends of curves of folds lost beyond the range: 2; on rows whose branches")
     assert curves_lost_beyond_values(0) == detached_branch_lines(SimpleNamespace(variables={}), "k1") == []
     assert [curve.points[0].parameter_value for curve in stages.curves(results).curves] == [0.2]
     # A row that could not be solved again has no folds.

@@ -178,12 +178,16 @@ class Answer:
         columns = sorted((c for c in columns if not c.is_input), key=_is_dimensionless)
         lists = {}
         for name in self.lists:
-            number, *others = tables.list_columns(name)
-            lists[name] = (number, *sorted(others, key=_is_dimensionless))
+            number, *value_columns = tables.list_columns(name)
+            lists[name] = (number, *sorted(value_columns, key=_is_dimensionless))
         row_counts = {name: len(number.values) for name, (number, *_) in lists.items()}
         unlisted = {name for name in lists if name not in LISTS_PRINTED_IN_FULL}
         hidden = unlisted | {name for name, rows in row_counts.items() if is_special and not rows}
-        totals = {name: int(self.data[n]) for name, n in TOTAL_VARIABLES.items() if n in self.data}
+        totals = {
+            name: int(self.data[name_of_total])
+            for name, name_of_total in TOTAL_VARIABLES.items()
+            if name_of_total in self.data
+        }
         totals |= {"modes": self.data.sizes["mode"]} if "mode" in self.data.sizes else {}
         return PrintedAnswer(
             rod=rod,
@@ -193,7 +197,11 @@ class Answer:
             absent_names=() if is_special else tuple(c.name for c in columns if c.absent[0]),
             totals=totals,
             lists={name: own_columns for name, own_columns in lists.items() if name not in hidden},
-            row_counts={n: rows for n, rows in row_counts.items() if n in unlisted and rows},
+            row_counts={
+                name_of_total: rows
+                for name_of_total, rows in row_counts.items()
+                if name_of_total in unlisted and rows
+            },
         )
 
 

@@ -76,13 +76,13 @@ def heading_lines(rod: OneRod, name: str, status: str, sentence: str, message: s
     meaning = "; ".join(filter(None, (sentence, message)))
     answer = HEADLINES[task].sentence(rod)
     certified = rod.count("certified")
-    proof = "" if certified is None else f", {PROOF_WORDS[certified]}"
+    proof_text = "" if certified is None else f", {PROOF_WORDS[certified]}"
     if not answer:
         return f"{task}: {meaning}", f"{name}, {task}: {status}"
     caveat = validity_caveat(rod.view.variables)
     if caveat and rod.count("model_applies") == Validity.does_not_apply:
         answer = f"if the model applied: {answer}"
-    return *filter(None, (caveat, answer)), f"{name}, {task}: {status}{proof}", meaning
+    return *filter(None, (caveat, answer)), f"{name}, {task}: {status}{proof_text}", meaning
 
 
 def brief_text(printed: PrintedAnswer) -> str:
@@ -108,16 +108,16 @@ def brief_html(printed: PrintedAnswer) -> str:
 def whole_text(printed: PrintedAnswer) -> str:
     """Long text of an answer: the heading, every number with its unit and meaning, the lists that are printed
     in full, and the numbers of rows of all other lists."""
-    numbers = "\n".join(["numbers", *rows_with_prose(_number_rows(printed))]) if printed.numbers else ""
-    blocks = ["\n".join(_folded_heading(printed)), numbers]
+    numbers_text = "\n".join(["numbers", *rows_with_prose(_number_rows(printed))]) if printed.numbers else ""
+    blocks = ["\n".join(_folded_heading(printed)), numbers_text]
     for name, columns in printed.lists.items():
         lines = [wrap_cell_text(_list_title(name, columns, printed.totals.get(name, 0)))]
         if len(columns[0].values):
             digits = printed.rod.list_texts[name]
             stored_columns = [column for column in columns if not column.absent.all()]
             cells = [column_cells((c.name, c.printed_unit), digits.texts(c.name)) for c in stored_columns]
-            for number, block in enumerate(table_blocks(cells)):
-                lines += ["", *block] if number else block
+            for block_index, block in enumerate(table_blocks(cells)):
+                lines += ["", *block] if block_index else block
         blocks.append("\n".join(lines))
     return "\n\n".join(filter(None, [*blocks, "\n".join(map(wrap_cell_text, printed.closing_lines))]))
 
@@ -149,20 +149,22 @@ def _folded_heading(printed: PrintedAnswer) -> list[str]:
 def _list_title(name: str, columns: Sequence[Column], total: int) -> str:
     """Title of a list: name and number of rows. total: number of items found, printed if larger than the
     number of rows."""
-    count = len(columns[0].values)
-    meaning = f", {columns[0].meaning}" if count > 1 else ""
-    return f"{name}: {count or 'none'}{f' of {total}' if total > count else ''}{meaning}"
+    row_count = len(columns[0].values)
+    meaning = f", {columns[0].meaning}" if row_count > 1 else ""
+    return f"{name}: {row_count or 'none'}{f' of {total}' if total > row_count else ''}{meaning}"
 
 
 def _main_number_texts(printed: PrintedAnswer) -> list[tuple[str, str, str, str]]:
     """(name, value, error with sign, unit), as texts, for each main number of the task that has a value."""
-    pairs = []
+    name_and_number_texts = []
     for name in printed.headline.numbers:
         column = printed.rod.column(name)
         if column is not None:
             ((value, error),) = printed.rod.point_texts.value_and_error_texts(column.name)
-            pairs.append((column.name, value, f"{ERROR_SIGN} {error}" if error else "", column.printed_unit))
-    return pairs
+            name_and_number_texts.append(
+                (column.name, value, f"{ERROR_SIGN} {error}" if error else "", column.printed_unit)
+            )
+    return name_and_number_texts
 
 
 def _number_lines(printed: PrintedAnswer) -> list[str]:
@@ -187,10 +189,10 @@ def _brief_cells(printed: PrintedAnswer, max_rows: int) -> tuple[list[list[str]]
     names = [printed.rod.preferred_name(digits, name) for name in printed.headline.columns]
     columns = [digits.columns[name] for name in names if name in digits.columns]
     columns = [column for column in columns if not column.absent.all()]
-    count = len(columns[0].values) if columns else 0
+    row_count = len(columns[0].values) if columns else 0
     columns_of_cells: list[list[str]] = []
     width = -len(COLUMN_GAP)
-    for column in columns if count else ():
+    for column in columns if row_count else ():
         values, errors = zip(*digits.value_and_error_texts(column.name)[:max_rows], strict=True)
         added = [column_cells((column.name, column.printed_unit), values)]
         added += [column_cells((ERROR_SIGN, ""), errors)] if any(errors) else []
@@ -198,34 +200,34 @@ def _brief_cells(printed: PrintedAnswer, max_rows: int) -> tuple[list[list[str]]
         if width > LINE_WIDTH:
             break
         columns_of_cells += added
-    return columns_of_cells, count
+    return columns_of_cells, row_count
 
 
 def _brief_list(printed: PrintedAnswer, max_lines: int) -> list[str]:
     """Lines of the main list, after an empty line; empty if the list has no rows. max_lines: desired maximum
     number of lines; at least MIN_ROWS rows are printed."""
     rows = max(max_lines - 3, MIN_ROWS)  # below an empty line, the names and the units
-    columns, count = _brief_cells(printed, rows)
-    if count == rows + 1:  # the line "and 1 more" has room for the row
-        columns, count = _brief_cells(printed, count)
+    columns, row_count = _brief_cells(printed, rows)
+    if row_count == rows + 1:  # the line "and 1 more" has room for the row
+        columns, row_count = _brief_cells(printed, row_count)
     if not columns:
         return []
     (block,) = table_blocks(columns)
-    return ["", *block] + ([f"and {count - rows} more"] if count > rows + 1 else [])
+    return ["", *block] + ([f"and {row_count - rows} more"] if row_count > rows + 1 else [])
 
 
 def _remaining_numbers_line(printed: PrintedAnswer) -> str:
     """Line that names `.table()` for all numbers, and the lists with their numbers of rows."""
-    rows = {name: len(columns[0].values) for name, columns in printed.lists.items()}
-    rows.update(printed.row_counts)
-    lists = [f".{name} ({counted(number, 'row')})" for name, number in rows.items() if number]
+    row_counts = {name: len(columns[0].values) for name, columns in printed.lists.items()}
+    row_counts.update(printed.row_counts)
+    lists = [f".{name} ({counted(number, 'row')})" for name, number in row_counts.items() if number]
     return wrap_cell_text(f"all numbers: .table(){'; lists: ' if lists else ''}{', '.join(lists)}")
 
 
 def _html_heading(printed: PrintedAnswer) -> str:
     """The heading as an HTML paragraph, its first line in bold letters."""
-    answer, *others = map(escape, filter(None, printed.heading))
-    return f"<p><b>{answer}</b>{''.join(f'<br>{line}' for line in others)}</p>"
+    answer, *other_lines = map(escape, filter(None, printed.heading))
+    return f"<p><b>{answer}</b>{''.join(f'<br>{line}' for line in other_lines)}</p>"
 
 
 def _html_table(headings: Sequence[RowCells], lines: Sequence[RowCells]) -> str:

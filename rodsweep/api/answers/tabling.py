@@ -37,7 +37,7 @@ def table(data: TableSource, name: str | None = None, *, columns: Sequence[str] 
             f"name = {short_repr(name)} is not the name of a table; write it as in {TABLE_EXAMPLE}"
         )
     names = [columns] if isinstance(columns, str) else columns
-    if not isinstance(names, list | tuple) or not all(isinstance(each, str) for each in names):
+    if not isinstance(names, list | tuple) or not all(isinstance(column_name, str) for column_name in names):
         text = short_repr(columns)
         raise InputError(f"columns = {text} is not a list of names, such as ['F', 'growth_rate']")
     return frame_of(Tables(view_of_result(data, TABLE_EXAMPLE)).table(name, tuple(names)).columns)

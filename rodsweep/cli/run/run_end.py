@@ -31,8 +31,12 @@ class RunContribution:
 
 def last_run_attributes(plan: FilePlan) -> dict[str, Any]:
     """Attributes of a plan that describe only the last run: versions, commit, options and shard."""
-    names = ("_version", "_commit", "_options")
-    return {k: v for k, v in plan.attributes.items() if k.endswith(names) or k == "shard"}
+    name_endings = ("_version", "_commit", "_options")
+    return {
+        name: value
+        for name, value in plan.attributes.items()
+        if name.endswith(name_endings) or name == "shard"
+    }
 
 
 def run_history(contributions: Sequence[RunContribution], mpi_library: str) -> dict[str, Any]:
@@ -72,24 +76,26 @@ class RunStatistics:
     interrupted_points: int
     """Number of points interrupted by a stop."""
     solved_items: dict[str, int] | None
-    """Numbers of work items for the curves solved in this run, by phrase, as in `WorkItems.outcome`; None if
-    no curves were to be computed."""
+    """Number of work items for the curves that this run solved, by kind of item: the phrase
+    `WorkItems.outcome`. None if no curves were to be computed."""
     stored_items: int | None
-    """Number of results of work items for the curves stored for the next run if the curves are incomplete,
-    else None."""
+    """Number of work items for the curves whose results are stored for the next run, because the curves are
+    incomplete; else None."""
 
     def time_sentences(self) -> list[str]:
         """Sentences on the times of points and curves; empty if there was nothing to do."""
         sentences = []
-        ranks = counted(self.ranks, "rank")
+        ranks_text = counted(self.ranks, "rank")
         if self.requested_points:
             points = self.requested_points - self.unsolved_points
             seconds_per_point = self.seconds * self.ranks / max(points, 1)
             per_point_text = f" ({duration(seconds_per_point)} per point on one rank)" if points else ""
-            sentences.append(f"{counted(points, 'point')} in {self.seconds:.2f} s on {ranks}{per_point_text}")
+            sentences.append(
+                f"{counted(points, 'point')} in {self.seconds:.2f} s on {ranks_text}{per_point_text}"
+            )
         if self.solved_items is not None:
             word = "curves in" if self.stored_items is None else "curves stopped after"
-            clauses = [f"{word} {self.curve_seconds:.2f} s on {ranks}"]
+            clauses = [f"{word} {self.curve_seconds:.2f} s on {ranks_text}"]
             for outcome, number in self.solved_items.items():
                 item, _, action = outcome.partition(" ")
                 clauses += [f"{counted(number, item)} {action}"] if number else []
@@ -98,10 +104,10 @@ class RunStatistics:
 
     def stored_points_clause(self) -> str:
         """Clause with the numbers of points, and of results for the curves, that a stopped run has stored."""
-        points = f"{counted(self.stored_points, 'point')} kept"
+        points_text = f"{counted(self.stored_points, 'point')} kept"
         if self.stored_items is not None:
-            results = counted(self.stored_items, "result")
-            return f"{points}, {results} for the curves kept, the other results are missing"
+            results_text = counted(self.stored_items, "result")
+            return f"{points_text}, {results_text} for the curves kept, the other results are missing"
         if self.interrupted_points:
-            return f"{points}, {self.interrupted_points} interrupted, to be solved again"
-        return points
+            return f"{points_text}, {self.interrupted_points} interrupted, to be solved again"
+        return points_text

@@ -86,38 +86,44 @@ class _RankRun:
                 return STOPPED_STATUS
             self.plan = plan
         missing = self.ranks.call_on_first_rank(self._open_store)
-        items, count = self.shard_solver.items_to_solve(missing)
+        items, requested_count = self.shard_solver.items_to_solve(missing)
         if self.ranks.is_first:
             points = self.job.points.count
-            shard = f"; shard {self.shard}" if self.shard.shard_count > 1 else ""
-            kept = f", {points - index_count(missing)} kept" if points > index_count(missing) else ""
-            if self.sweep_wide and self._lacks_sweep_wide_variables(index_count(missing) - count):
-                kept += ", then the curves"
-            self._print_message(f"{self.output}: {count} of {counted(points, 'point')} to do{kept}{shard}")
+            shard_clause = f"; shard {self.shard}" if self.shard.shard_count > 1 else ""
+            kept_clause = f", {points - index_count(missing)} kept" if points > index_count(missing) else ""
+            if self.sweep_wide and self._lacks_sweep_wide_variables(index_count(missing) - requested_count):
+                kept_clause += ", then the curves"
+            self._print_message(
+                f"{self.output}: {requested_count} of {counted(points, 'point')} to "
+                f"do{kept_clause}{shard_clause}"
+            )
         contributions: list[RunContribution] = []
-        if count:
+        if requested_count:
             self.ranks.call_on_first_rank(self._record_blas_kernels)
-            contribution = self.shard_solver.solve(items, missing, count, self.prepare)
+            contribution = self.shard_solver.solve(items, missing, requested_count, self.prepare)
             contributions = self.ranks.gather(contribution) or []
-        pending = self.ranks.call_on_first_rank(lambda: self._add_journals(count, contributions))
+        pending = self.ranks.call_on_first_rank(lambda: self._add_journals(requested_count, contributions))
         solved: dict[str, int] = {}
         if self.sweep_wide:
             title = None if self.request.quiet else self.job.title
             pending, solved = self.sweep_wide.solve_all(pending, self.prepare, title)
         exceptions = sum(self.ranks.gather(self.log.count) or [])
         return self.ranks.call_on_first_rank(
-            lambda: self._finish(count, contributions, pending, solved, exceptions)
+            lambda: self._finish(requested_count, contributions, pending, solved, exceptions)
         )
 
     def _lacks_sweep_wide_variables(self, missing: int) -> bool:
         """Whether the file lacks only the variables that depend on all points; called on the first rank."""
         return not missing and "finished" not in self.store.attributes()
 
-    def _add_journals(self, count: int, contributions: list[RunContribution]) -> PendingSweepWideVariables:
+    def _add_journals(
+        self, requested_count: int, contributions: list[RunContribution]
+    ) -> PendingSweepWideVariables:
         """Writes the points of all journals into the file; returns whether variables that depend on all
-        points are still missing, with their work items. count: number of points to be solved in this run."""
+        points are still missing, with their work items. requested_count: number of points to be solved in
+        this run."""
         self.seconds = time.monotonic() - self.clock_at_start
-        if count:
+        if requested_count:
             history = run_history(contributions, self.ranks.MPI.Get_library_version())
             attributes = {"started": self.date_at_start, "stopped": self.stop.name}
             self.store.add_journals(last_run_attributes(self.plan) | history | attributes)
@@ -125,7 +131,7 @@ class _RankRun:
             return PendingSweepWideVariables(False)
         if not self.sweep_wide:
             return PendingSweepWideVariables(True)
-        if not count:
+        if not requested_count:
             self._record_blas_kernels()
         return PendingSweepWideVariables(True, self.sweep_wide.solver.work_items(read_view(self.output), {}))
 
@@ -183,17 +189,19 @@ class _RankRun:
         for failure in failures[:MAX_FAILURES_PRINTED]:
             click.echo(f"  {provenance.failure_sentence(failure)}")
         if exceptions:
-            raised = counted(exceptions, "unforeseen exception")
-            click.echo(f"  {raised}, a bug: please report it with {self.log.path}, which has the traceback")
+            exceptions_text = counted(exceptions, "unforeseen exception")
+            click.echo(
+                f"  {exceptions_text}, a bug: please report it with {self.log.path}, which has the traceback"
+            )
 
     def _status_counts_text(self, counts: Mapping[str, int], unsolved: int) -> str:
         """Number of points of each status as text. counts: by status. unsolved: points left in this run."""
         missing_texts = {"missing": "of other shards"} if self.shard and not unsolved else {}
-        return ", ".join(f"{n} {missing_texts.get(name, name)}" for name, n in counts.items())
+        return ", ".join(f"{count} {missing_texts.get(name, name)}" for name, count in counts.items())
 
     def _finish(
         self,
-        count: int,
+        requested_count: int,
         contributions: list[RunContribution],
         pending: PendingSweepWideVariables,
         solved: dict[str, int],
@@ -211,7 +219,7 @@ class _RankRun:
         text = f"shard {self.shard} of {self.output}" if missing_points else f"{self.output}"
         run_end = RunStatistics(
             ranks=self.ranks.size,
-            requested_points=count,
+            requested_points=requested_count,
             unsolved_points=unsolved_count,
             stored_points=self.job.points.count - index_count(missing_points),
             seconds=self.seconds,

@@ -69,12 +69,16 @@ class ShardSolver:
         return items, int(sum(missing_counts))
 
     def solve(
-        self, items: list[IndexRange], missing: list[IndexRange], count: int, prepare: Callable[[], object]
+        self,
+        items: list[IndexRange],
+        missing: list[IndexRange],
+        missing_count: int,
+        prepare: Callable[[], object],
     ) -> RunContribution:
         """Solves work items together with all other ranks; writes this rank's results into its journal.
 
-        items, count: returned by `items_to_solve`. prepare: function called before the first solve. Raises
-        EnvironmentIncomplete if a journal cannot be written.
+        items, missing_count: returned by `items_to_solve`. prepare: function called before the first solve.
+        Raises EnvironmentIncomplete if a journal cannot be written.
         """
         reasons = FailureReasons(self.point_text)
         solver = self.solver
@@ -88,7 +92,7 @@ class ShardSolver:
                 journal.append(int(index), solver.record(int(index), result), is_new)
 
         is_shown = self.ranks.is_first and not self.quiet
-        reporter = ProgressReporter(count, self.job.title) if is_shown else SilentProgress()
+        reporter = ProgressReporter(missing_count, self.job.title) if is_shown else SilentProgress()
         directory = journal_directory(self.output)
         try:
             with closing(Journal(directory, self.ranks.rank, plan.layout, plan.fingerprint)) as journal:
@@ -121,6 +125,6 @@ class ShardSolver:
     def _item_name(self, item: int) -> str:
         """Name of a work item for the progress display. A group has the name of its first point."""
         if self.solver.chained:
-            return f"chain {item + 1} of {self.solver.chained.chains.count}"
+            return f"chain {item + 1} of {self.solver.chained.chains.count}, from neighbour to neighbour"
         first_index = int(self.solver.grouped[0].indices(item)[0]) if self.solver.grouped else item
         return f"point {first_index + 1} of {self.job.points.count}"

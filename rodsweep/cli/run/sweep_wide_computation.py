@@ -120,8 +120,8 @@ class SweepWideComputation:
             yield item, self.solver.empty_result(items)
 
     def _next_items(self, items: WorkItems) -> WorkItems | None:
-        """The work items after `items`; None if `items` are not complete, or if none are left. Called on the
-        first rank."""
+        """The work items of the stage after the stage of `items`; None if some of `items` are not solved, or
+        if no item is left. Called on the first rank."""
         if items.items_to_solve(self.results):
             return None
         next_items = self.solver.work_items(read_view(self.output), self.results)

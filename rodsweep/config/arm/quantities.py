@@ -125,13 +125,15 @@ def quantities_as_typed(quantities: Mapping[str, Axis]) -> str:
     typed = []
     unitless = []
     for name, axis in quantities.items():
-        ends = axis.array()[[0, -1]].tolist()
+        end_values = axis.array()[[0, -1]].tolist()
         if name == "drag":
-            names = drag_names(axis.array().tolist())
-            typed.append(f"drag {DRAG_RANGE_NAME if len(names) == len(DRAG_NAMES) else ' and '.join(names)}")
+            drag_list = drag_names(axis.array().tolist())
+            typed.append(
+                f"drag {DRAG_RANGE_NAME if len(drag_list) == len(DRAG_NAMES) else ' and '.join(drag_list)}"
+            )
             continue
         unit = typed_unit(name, axis) if name in UNITS else ""
-        texts = [f"{value_in_unit(end, unit, UNITS[name][0]) if unit else end:.6g}" for end in ends]
+        texts = [f"{value_in_unit(end, unit, UNITS[name][0]) if unit else end:.6g}" for end in end_values]
         typed.append(f"{name} {' to '.join(dict.fromkeys(texts))} {unit}".rstrip())
         written_values = _written_values(axis.written)
         if unit and not all(isinstance(written, str) or written == 0 for written in written_values):

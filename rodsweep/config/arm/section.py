@@ -137,16 +137,25 @@ class ArmConfig(StrictConfigSection):
     @property
     def varying_quantities(self) -> tuple[str, ...]:
         """Names of the quantities that have several values or are relative to flutter."""
-        return tuple(n for n, axis in self.quantity_axes.items() if axis.size > 1 or n in LOAD_OF_RATIO)
+        return tuple(
+            name for name, axis in self.quantity_axes.items() if axis.size > 1 or name in LOAD_OF_RATIO
+        )
 
     @property
     def settings_of_results(self) -> dict[str, Any]:
         """Data of the arm on which the results depend, except the points: quantities in SI units and material
         keys, by name; None for a quantity that varies between points."""
         grid_names = SINGLE_PARAMETER_OF if self.is_parameter_grid else self.varying_quantities
-        numbers = {n: None if n in grid_names else value for n, value in self.first_values.items()}
-        kind = {} if self.load_kind is None else {"load_kind": self.load_kind}
-        return numbers | {n: list(v) if n == "segments" else v for n, v in self.material.items()} | kind
+        si_values = {name: None if name in grid_names else value for name, value in self.first_values.items()}
+        load_kind_setting = {} if self.load_kind is None else {"load_kind": self.load_kind}
+        return (
+            si_values
+            | {
+                name: list(key_value) if name == "segments" else key_value
+                for name, key_value in self.material.items()
+            }
+            | load_kind_setting
+        )
 
     @property
     def is_parameter_grid(self) -> bool:
@@ -162,12 +171,16 @@ class ArmConfig(StrictConfigSection):
     def require_allowed_values(self) -> None:
         """Raises ValueError for a value out of range, or if the model does not cover a grid's first arm."""
         for name, axis in self.quantity_axes.items():
-            low = float(axis.array()[0])
-            if name in LOAD_OF_RATIO and low < 0:
-                raise ValueError(f"parameters.arm.{name} = {low:.6g} is below 0")
-            if name in UNITS and not (QUANTITIES[name].may_be_nonpositive or low > 0):
-                hint = "; leave it out for a solid arm" if name == "inner_radius" and low == 0 else ""
-                raise ValueError(f"parameters.arm.{name} = {low:.6g} {UNITS[name][0]} is not above 0{hint}")
+            smallest_value = float(axis.array()[0])
+            if name in LOAD_OF_RATIO and smallest_value < 0:
+                raise ValueError(f"parameters.arm.{name} = {smallest_value:.6g} is below 0")
+            if name in UNITS and not (QUANTITIES[name].may_be_nonpositive or smallest_value > 0):
+                hint = (
+                    "; leave it out for a solid arm" if name == "inner_radius" and smallest_value == 0 else ""
+                )
+                raise ValueError(
+                    f"parameters.arm.{name} = {smallest_value:.6g} {UNITS[name][0]} is not above 0{hint}"
+                )
         if self.is_parameter_grid:
             self.arm_of(self.first_values, with_load=True)
 
@@ -188,7 +201,8 @@ class ArmConfig(StrictConfigSection):
         return axes
 
     def grid_quantities(self) -> dict[str, Array]:
-        """Values of the arm's quantities and units by name: (), or (n,) along the parameter they change."""
+        """Values of the arm's quantities and units by name: a number, (), or the values, (n,), along the axis
+        of the parameter that the quantity determines."""
         values = {name: axis.array() for name, axis in self.quantity_axes.items()}
         if self.poisson is not None:  # k2 decreases with Poisson's ratio, and axes must increase
             values["poisson"] = values["poisson"][::-1]

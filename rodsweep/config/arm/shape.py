@@ -41,9 +41,9 @@ def with_length(section: dict[str, Any]) -> dict[str, Any]:
     added."""
     if section.get("segments") is None or section.get("length") is not None:
         return section
-    texts = as_segments(section["segments"]) or ()
-    unit = unit_of(texts[0].partition(":")[0], "m")
-    total = sum(segment.length for segment in segments_of(texts))
+    segment_texts = as_segments(section["segments"]) or ()
+    unit = unit_of(segment_texts[0].partition(":")[0], "m")
+    total = sum(segment.length for segment in segments_of(segment_texts))
     return section | {"length": f"{value_in_unit(total, unit, 'm'):.15g} {unit}"}
 
 
@@ -82,8 +82,8 @@ def tapers_of(arm: "ArmConfig") -> set[float]:
     base radius is given."""
     if arm.tip_radius is None or arm.radius is None:
         return {1.0}
-    pairs = product(arm.tip_radius.array().tolist(), arm.radius.array().tolist())
-    return {tip_value / base_value for tip_value, base_value in pairs}
+    radius_pairs = product(arm.tip_radius.array().tolist(), arm.radius.array().tolist())
+    return {tip_value / base_value for tip_value, base_value in radius_pairs}
 
 
 def refuse_misused_shape(arm: "ArmConfig", given_parameters: dict[str, Any]) -> None:

@@ -52,23 +52,35 @@ def require_arguments_of_signature(
     values, named: positional and keyword arguments of the call. hint: as in `refusing_wrong_arguments`.
     """
     parameters = list(allowed.parameters.values())
-    positional = [p.name for p in parameters if p.kind is Parameter.POSITIONAL_OR_KEYWORD]
+    positional = [
+        parameter.name for parameter in parameters if parameter.kind is Parameter.POSITIONAL_OR_KEYWORD
+    ]
     if len(values) > len(positional):
         extra_text = short_repr(values[len(positional)])
         raise InputError(f"the argument {extra_text} has no name; write it as in {example}")
-    names = [p.name for p in parameters if p.kind not in (Parameter.VAR_KEYWORD, Parameter.VAR_POSITIONAL)]
-    takes_any_keyword = any(p.kind is Parameter.VAR_KEYWORD for p in parameters)
+    parameter_names = [
+        parameter.name
+        for parameter in parameters
+        if parameter.kind not in (Parameter.VAR_KEYWORD, Parameter.VAR_POSITIONAL)
+    ]
+    takes_any_keyword = any(parameter.kind is Parameter.VAR_KEYWORD for parameter in parameters)
     for name in named:
         if name in positional[: len(values)]:
             raise InputError(f"{name} is given twice; write it as in {example}")
-        if not takes_any_keyword and name not in names:
+        if not takes_any_keyword and name not in parameter_names:
             if hint(name):
                 raise InputError(f"unknown key {name}; {hint(name)}")
-            raise unknown_argument_error(name, [word for word in names if word != "self"])
+            raise unknown_argument_error(
+                name, [argument_name for argument_name in parameter_names if argument_name != "self"]
+            )
     given_names = {*positional[: len(values)], *named}
-    for p in parameters:
-        if p.default is Parameter.empty and p.name in names and p.name not in given_names:
-            raise InputError(f"{p.name} is missing; write it as in {example}")
+    for parameter in parameters:
+        if (
+            parameter.default is Parameter.empty
+            and parameter.name in parameter_names
+            and parameter.name not in given_names
+        ):
+            raise InputError(f"{parameter.name} is missing; write it as in {example}")
 
 
 def unknown_argument_error(name: str, names: list[str]) -> InputError:

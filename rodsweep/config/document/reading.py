@@ -86,8 +86,14 @@ def config_from_resolved(config_dict: dict[str, Any]) -> Config:
             values = parameters | {"arm": _with_axes(parameters["arm"])}
             parameters = _without_arm_axes(values, makes_diagram(task))
         # An option that is not used must not be given, but every resolved config has its default.
-        given = {n: v for n, v in config_dict[task].items() if n not in fields or v != fields[n].default}
-        options = {name: _with_axes(v) if isinstance(v, dict) else v for name, v in given.items()}
+        given = {
+            option: value
+            for option, value in config_dict[task].items()
+            if option not in fields or value != fields[option].default
+        }
+        options = {
+            name: _with_axes(value) if isinstance(value, dict) else value for name, value in given.items()
+        }
         return validated_config(config_dict | {"parameters": parameters, task: options})
     except (InputError, LookupError, TypeError, AttributeError) as error:
         raise ValueError(f"its config is not valid in this version of rodsweep: {error}") from None
@@ -151,33 +157,33 @@ def _config_notation(axis: Any) -> Any:
 def _apply_override(tree: dict, override: str) -> None:
     """Sets a key of the parsed config `tree`, in place. override: text "a.b=value" of one --set, with a YAML
     value. Raises InputError if the override is invalid."""
-    where = printable_name(f"--set {override}", MAX_KEY_LENGTH)
+    override_text = printable_name(f"--set {override}", MAX_KEY_LENGTH)
     if not override.isprintable():
-        raise InputError(f"{where} has characters that cannot be printed")
+        raise InputError(f"{override_text} has characters that cannot be printed")
     key, separator, value = override.partition("=")
     path = key.strip().split(".")
     if not separator or not all(path):
-        raise InputError(f"{where}: write it as key=value, for example parameters.F.num=50")
+        raise InputError(f"{override_text}: write it as key=value, for example parameters.F.num=50")
     if len(path) > MAX_DEPTH:
         raise InputError(
-            f"{where}: keys are nested more than {MAX_DEPTH} levels deep, the limit for a config"
+            f"{override_text}: keys are nested more than {MAX_DEPTH} levels deep, the limit for a config"
         )
     node = tree
-    for i, name in enumerate(path[:-1]):
+    for depth, name in enumerate(path[:-1]):
         node = node.setdefault(name, {})
         if not isinstance(node, dict):
-            parent = dotted_key(path[: i + 1])
-            inner_key = dotted_key(path[i + 1 :])
-            raise InputError(f"{where}: {parent} is {short_repr(node)}, which has no key {inner_key}")
-    node[path[-1]] = parsed_yaml(value, where)
+            parent = dotted_key(path[: depth + 1])
+            inner_key = dotted_key(path[depth + 1 :])
+            raise InputError(f"{override_text}: {parent} is {short_repr(node)}, which has no key {inner_key}")
+    node[path[-1]] = parsed_yaml(value, override_text)
 
 
 def _task_name(tree: dict) -> str:
     """Name of the task of a parsed config; InputError for an unknown task or a section of another task."""
     tasks_text = enumeration(tuple(CONFIGS), "or")
     if "task" not in tree:
-        others = [name for name in tree if isinstance(name, str) and name not in Config.model_fields]
-        if similar := similar_keys("task", others):
+        other_names = [name for name in tree if isinstance(name, str) and name not in Config.model_fields]
+        if similar := similar_keys("task", other_names):
             key = dotted_key(similar)
             raise InputError(f"unknown key {key}; did you mean task? Its value should be {tasks_text}")
         raise InputError(f"task is missing; it should be {tasks_text}")

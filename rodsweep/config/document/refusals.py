@@ -30,13 +30,16 @@ def message_of_problem(config: type[Config], problem: Any) -> str:
     """Message for an error of pydantic: a sentence with key, value and allowed values. problem: one item of
     `ValidationError.errors()`."""
     location = tuple(part for part in problem["loc"] if isinstance(part, str))
-    numbers = [f", number {part + 1}" for part in problem["loc"] if isinstance(part, int)]
-    key = dotted_key(location) + "".join(numbers)
+    number_texts = [f", number {part + 1}" for part in problem["loc"] if isinstance(part, int)]
+    key = dotted_key(location) + "".join(number_texts)
     kind = problem["type"]
     value = problem["input"]
     if kind == "extra_forbidden":
         fields = _section_class(config, location[:-1]).model_fields
-        names = [*(n for n in PARAMETERS if n in fields), *(n for n in fields if n not in PARAMETERS)]
+        names = [
+            *(name for name in PARAMETERS if name in fields),
+            *(name for name in fields if name not in PARAMETERS),
+        ]
         sections = keys_in_other_sections(config, location)
         hint = f"did you mean {sections[0]}?" if sections else unknown_key_hint(location[-1], names)
         return f"unknown key {key}; {hint}"
@@ -48,7 +51,7 @@ def message_of_problem(config: type[Config], problem: Any) -> str:
     if kind == "invalid_key":
         return f"{short_repr(value)} is not a key; keys are words"
     key_alone = location[-1] if location else ""
-    field = None if numbers else _section_class(config, location[:-1]).model_fields.get(key_alone)
+    field = None if number_texts else _section_class(config, location[:-1]).model_fields.get(key_alone)
     allowed = allowed_values_text(field) if field else problem["msg"].removeprefix("Input should be ")
     return f"{key} = {short_repr(value)} is not allowed; it should be {allowed}"
 
@@ -99,16 +102,24 @@ def _typing_error_count(key: str, name: str) -> float | None:
 def _edit_distance(first: str, second: str) -> int:
     """Edit distance of the words `first` and `second`: number of inserted, deleted, changed and exchanged
     neighbouring letters."""
-    rows = [list(range(len(second) + 1))]
-    for i, letter in enumerate(first, 1):
-        row = [i]
+    distance_rows = [list(range(len(second) + 1))]
+    for first_length, letter in enumerate(first, 1):
+        distance_row = [first_length]
         for column, second_letter in enumerate(second, 1):
-            cost = min(rows[-1][column] + 1, row[-1] + 1, rows[-1][column - 1] + (letter != second_letter))
-            if i > 1 and column > 1 and (letter, first[i - 2]) == (second[column - 2], second_letter):
-                cost = min(cost, rows[-2][column - 2] + 1)
-            row.append(cost)
-        rows.append(row)
-    return rows[-1][-1]
+            cost = min(
+                distance_rows[-1][column] + 1,
+                distance_row[-1] + 1,
+                distance_rows[-1][column - 1] + (letter != second_letter),
+            )
+            if (
+                first_length > 1
+                and column > 1
+                and (letter, first[first_length - 2]) == (second[column - 2], second_letter)
+            ):
+                cost = min(cost, distance_rows[-2][column - 2] + 1)
+            distance_row.append(cost)
+        distance_rows.append(distance_row)
+    return distance_rows[-1][-1]
 
 
 def keys_in_other_sections(config: type[Config], location: Sequence[str]) -> list[str]:
@@ -133,27 +144,29 @@ def _section_class(config: type[Config], location: tuple[str, ...]) -> type[Base
     way if a key is not a section."""
     section: type[BaseModel] = config
     for name in location:
-        kind = value_type_of_key(section.model_fields[name])
-        if not (isinstance(kind, type) and issubclass(kind, BaseModel)):
+        value_type = value_type_of_key(section.model_fields[name])
+        if not (isinstance(value_type, type) and issubclass(value_type, BaseModel)):
             break
-        section = kind
+        section = value_type
     return section
 
 
 def value_type_of_key(field: FieldInfo) -> Any:
     """Type of the values of a config key; for an optional key, the type without None."""
-    kinds = [kind for kind in get_args(field.annotation) if kind is not NoneType]
-    return kinds[0] if get_origin(field.annotation) is UnionType and len(kinds) == 1 else field.annotation
+    types = [value_type for value_type in get_args(field.annotation) if value_type is not NoneType]
+    return types[0] if get_origin(field.annotation) is UnionType and len(types) == 1 else field.annotation
 
 
-def allowed_values_text(field: FieldInfo) -> str:
+def allowed_values_text(key_field: FieldInfo) -> str:
     """Phrase that describes the allowed values of a config key: its description, otherwise made from its type
     and bounds."""
-    kind = field.annotation
+    kind = key_field.annotation
     bounds = ("ge", "gt", "le", "lt", "max_length")
-    bound = {name: getattr(rule, name) for rule in field.metadata for name in bounds if hasattr(rule, name)}
-    if field.description:
-        return field.description
+    bound = {
+        name: getattr(rule, name) for rule in key_field.metadata for name in bounds if hasattr(rule, name)
+    }
+    if key_field.description:
+        return key_field.description
     if get_origin(kind) is Literal:
         return enumeration(get_args(kind), "or")
     if kind is bool:
@@ -161,7 +174,7 @@ def allowed_values_text(field: FieldInfo) -> str:
     if kind is str:
         return f"text of at most {bound['max_length']} characters"
     if kind is int or kind is float:
-        number = "a whole number" if kind is int else "a number"
-        span = f"{number} from {bound['ge']:g} to {bound['le']:g}" if "ge" in bound else ""
+        number_noun = "a whole number" if kind is int else "a number"
+        span = f"{number_noun} from {bound['ge']:g} to {bound['le']:g}" if "ge" in bound else ""
         return span or ("a finite number" if isinf(bound["gt"]) else f"a finite number above {bound['gt']:g}")
     return "a mapping of keys to values"

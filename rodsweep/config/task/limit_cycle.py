@@ -67,10 +67,10 @@ class LimitCycleConfig(Config):
         By default the parameter with the most values; the first parameter if several have equally many
         values.
         """
-        sizes = self.parameters.single_parameter_sizes
+        value_counts = self.parameters.single_parameter_sizes
         parameter = self.limit_cycle.along
         if parameter == LONGEST_AXIS:
-            return max(sizes, key=lambda name: sizes[name], default=parameter)
+            return max(value_counts, key=lambda name: value_counts[name], default=parameter)
         return SINGLE_PARAMETER_OF.get(parameter, parameter)
 
     @property

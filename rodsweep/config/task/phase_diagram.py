@@ -116,8 +116,8 @@ class PhaseDiagramConfig(LinearConfig):
         names of the logarithmic axes."""
         settings = super().settings_of_results
         axes = self.parameters.axes
-        line = self.plane_parameters[0]
-        requested: dict[str, Any] = {line: {"values": axes[line].array().tolist()}}
+        line_parameter = self.plane_parameters[0]
+        requested: dict[str, Any] = {line_parameter: {"values": axes[line_parameter].array().tolist()}}
         settings |= {"parameters": settings["parameters"] | requested}
         # Criticality changes only the curves, not the rows. Rows depend on gamma1 through their cycles only.
         criticality_requested = settings["phase_diagram"].pop("criticality")
@@ -168,28 +168,31 @@ class PhaseDiagramConfig(LinearConfig):
             varied = next(
                 name for name in self.parameters.arm_axes if name not in (*SINGLE_PARAMETER_OF, "drag")
             )
-            changes = "no parameter" if varied in FLUID_QUANTITIES else "several parameters at once"
+            changed_parameters_text = (
+                "no parameter" if varied in FLUID_QUANTITIES else "several parameters at once"
+            )
             reason = (
                 "is relative to flutter"
                 if varied in LOAD_OF_RATIO
-                else f"has several values, which change {changes}"
+                else f"has several values, which change {changed_parameters_text}"
             )
             raise ValueError(
                 f"parameters.arm.{LOAD_OF_RATIO.get(varied, varied)} {reason}; the axes of a phase "
                 f"diagram are {enumeration((*SINGLE_PARAMETER_OF, 'drag'), 'or')}, or parameters given in "
                 "addition to the arm"
             )
-        long = self.plane_parameters
-        if len(long) != 2:
-            raise ValueError(_axis_count_refusal(long))
-        line = self.parameters.axes[long[0]]
-        if inf in (line.values or ()):
-            stiffnesses = enumeration(
+        varied_names = self.plane_parameters
+        if len(varied_names) != 2:
+            raise ValueError(_axis_count_refusal(varied_names))
+        line_axis = self.parameters.axes[varied_names[0]]
+        if inf in (line_axis.values or ()):
+            stiffnesses_text = enumeration(
                 tuple(name for name in LINEAR_PARAMETERS if PARAMETERS[name].rigid_adjective), "and"
             )
             raise ValueError(
-                f"parameters.{long[0]} contains inf, which is not allowed on the axis along which a phase "
-                f"diagram is searched; remove it (on the other axis, {long[1]}, {stiffnesses} may be inf)"
+                f"parameters.{varied_names[0]} contains inf, which is not allowed on the axis along which a "
+                f"phase diagram is searched; remove it (on the other axis, {varied_names[1]}, "
+                f"{stiffnesses_text} may be inf)"
             )
         return self
 
@@ -198,14 +201,14 @@ class PhaseDiagramConfig(LinearConfig):
         if self.phase_diagram.bautin_parameter is None:
             return self
         name, axis = self.phase_diagram.bautin_parameter
-        low, high = axis.array()[[0, -1]]
+        first_value, last_value = axis.array()[[0, -1]]
         given_axis = self.parameters.axes.get(name)
-        value = np.array([PARAMETERS[name].default]) if given_axis is None else given_axis.array()
-        if name in self.plane_parameters or not low <= value[0] <= high:
+        given_values = np.array([PARAMETERS[name].default]) if given_axis is None else given_axis.array()
+        if name in self.plane_parameters or not first_value <= given_values[0] <= last_value:
             raise ValueError(
-                f"phase_diagram.bautin_along.{name} is from {low:g} to {high:g}; parameters.{name} must "
-                f"have a single value in this range, but the number of values is {len(value)}, and the "
-                f"first value is {value[0]:g}"
+                f"phase_diagram.bautin_along.{name} is from {first_value:g} to {last_value:g}; "
+                f"parameters.{name} must have a single value in this range, but the number of values is "
+                f"{len(given_values)}, and the first value is {given_values[0]:g}"
             )
         return self
 
@@ -214,20 +217,22 @@ def _require_finite_values(name: str, values: Sequence[float]) -> None:
     """Raises ValueError for the first of the `values` of the parameter `name` in bautin_along that is
     infinite or outside the range of the parameter."""
     allowed = PARAMETERS[name].allowed
-    invalid = next((value for value in values if not allowed.contains(value) or not isfinite(value)), None)
-    if invalid is not None:
+    invalid_value = next(
+        (value for value in values if not allowed.contains(value) or not isfinite(value)), None
+    )
+    if invalid_value is not None:
         raise ValueError(
-            f"bautin_along.{name} = {invalid:g} is not allowed; it must be "
-            f"{allowed.finite_description_for(invalid)}"
+            f"bautin_along.{name} = {invalid_value:g} is not allowed; it must be "
+            f"{allowed.finite_description_for(invalid_value)}"
         )
 
 
-def _axis_count_refusal(long: Sequence[str]) -> str:
-    """Message that refuses a config unless two parameters have several values. long: names of the parameters
-    with several values."""
-    number = f"{len(long)} {'axis' if len(long) == 1 else 'axes'}"
-    names_text = f" ({', '.join(long)})" if long else ""
+def _axis_count_refusal(varied_names: Sequence[str]) -> str:
+    """Message that refuses a config unless two parameters have several values. varied_names: names of
+    the parameters with several values."""
+    axis_count_text = f"{len(varied_names)} {'axis' if len(varied_names) == 1 else 'axes'}"
+    names_text = f" ({', '.join(varied_names)})" if varied_names else ""
     return (
-        f"parameters has {number} with more than one value{names_text}; a phase diagram needs exactly two of "
-        f"{enumeration(TRANSVERSE_PARAMETERS, 'and')}"
+        f"parameters has {axis_count_text} with more than one value{names_text}; a phase diagram needs "
+        f"exactly two of {enumeration(TRANSVERSE_PARAMETERS, 'and')}"
     )

@@ -40,8 +40,12 @@ class BranchPicture:
         tooltips = [("", "@kind"), ("load", "@F{0.0000000}"), ("period", "@period{0.00000000}")]
         figure.add_tools(HoverTool(renderers=[special_glyphs], tooltips=tooltips))
         legend_items = []
-        for text, k in (("stable", 1), ("unstable", 0)):
-            look = {"color": STABILITY_COLOURS[k], "line_dash": STABILITY_DASHES[k], "line_width": 2.5}
+        for text, stability in (("stable", 1), ("unstable", 0)):
+            look = {
+                "color": STABILITY_COLOURS[stability],
+                "line_dash": STABILITY_DASHES[stability],
+                "line_width": 2.5,
+            }
             legend_items.append(LegendItem(label=text, renderers=[figure.line([nan], [nan], **look)]))
         figure.add_layout(Legend(items=legend_items, location="top_left"))
         self.load_line = card.vertical_line(0, card.POINT_COLOUR)

@@ -67,19 +67,19 @@ def joined_cells(edges: Array, row_edges: Array, counts: Array) -> list[DiagramC
     return cells
 
 
-def stability_colour(count: int) -> tuple[str, float]:
+def stability_colour(unstable_count: int) -> tuple[str, float]:
     """(colour, opacity) for a number of unstable modes, or for CRUSHED_COUNT or UNKNOWN_COUNT."""
-    if count in (CRUSHED_COUNT, UNKNOWN_COUNT):
-        return card.NEUTRAL_COLOUR, 0.55 if count == CRUSHED_COUNT else 0.25
-    if count == 0:
+    if unstable_count in (CRUSHED_COUNT, UNKNOWN_COUNT):
+        return card.NEUTRAL_COLOUR, 0.55 if unstable_count == CRUSHED_COUNT else 0.25
+    if unstable_count == 0:
         return card.STABLE_COLOUR, 0.18
-    return card.UNSTABLE_COLOUR, 0.2 + 0.5 * min(count, DARKEST_COUNT) / DARKEST_COUNT
+    return card.UNSTABLE_COLOUR, 0.2 + 0.5 * min(unstable_count, DARKEST_COUNT) / DARKEST_COUNT
 
 
-def unstable_count_words(count: int) -> str:
+def unstable_count_words(unstable_count: int) -> str:
     """Phrase for a number of unstable modes, or for CRUSHED_COUNT or UNKNOWN_COUNT."""
     texts = {0: "stable", CRUSHED_COUNT: "crushed by the load", UNKNOWN_COUNT: "not searched, or not known"}
-    return texts.get(count, counted(count, "unstable mode"))
+    return texts.get(unstable_count, counted(unstable_count, "unstable mode"))
 
 
 class DiagramPicture:
@@ -103,11 +103,13 @@ class DiagramPicture:
         figure.multi_line("x", "y", color="colour", line_width=2, source=self.curve_source)
         look = {"color": "colour", "line_dash": "dash", "line_width": 3}
         figure.multi_line("x", "y", **look, source=self.cycle_curve_source)
-        keys = [
-            LegendItem(label=text, renderers=[figure.line([nan], [nan], color=c, line_dash=d, line_width=3)])
-            for text, c, d in CYCLE_CURVE_LOOKS.values()
+        legend_items = [
+            LegendItem(
+                label=text, renderers=[figure.line([nan], [nan], color=colour, line_dash=dash, line_width=3)]
+            )
+            for text, colour, dash in CYCLE_CURVE_LOOKS.values()
         ]
-        self.legend = Legend(items=keys, location="top_left", visible=False)
+        self.legend = Legend(items=legend_items, location="top_left", visible=False)
         figure.add_layout(self.legend)
         figure.scatter("x", "y", size=6, color="colour", source=self.crossing_source)
         look = {"marker": "cross", "size": 22, "line_width": 3, "color": card.POINT_COLOUR}
@@ -148,7 +150,7 @@ class DiagramPicture:
     def _show_curves(self, answer: dict[str, Any]) -> None:
         self.curve_source.data = _boundary_columns(*_curves_of_answer(answer, "curve"))
         x, y, kinds = _curves_of_answer(answer, "cycle_curve")
-        colours, dashes = ([CYCLE_CURVE_LOOKS[kind][i] for kind in kinds] for i in (1, 2))
+        colours, dashes = ([CYCLE_CURVE_LOOKS[kind][side] for kind in kinds] for side in (1, 2))
         self.cycle_curve_source.data = {"x": x, "y": y, "colour": colours, "dash": dashes}
         self.legend.visible = len(kinds) > 0
 

@@ -11,7 +11,8 @@ from ...post.figures.stability.regions import PIXEL_COUNT, ClassifiedPoints, Dra
 from ..solving.diagrams import CRUSHED_COUNT, UNKNOWN_COUNT
 
 PIXELS_PER_ROW = 2
-"""Rows of pixels that are drawn as one. A picture of the page is about as high as the remaining rows."""
+"""Number of rows of pixels that are drawn as one row. The number of rows is then about the height of a
+picture of the page, in pixels."""
 
 
 class RegionTable(NamedTuple):

@@ -50,10 +50,12 @@ class GrowthPicture:
 
     def show_rates(self, answer: dict[str, Any], load: PictureAxis) -> None:
         """Draws the growth rates of the answer `answer`."""
-        first, second, third = answer["growth_rate"][:, :3].T
+        first_rate, second_rate, third_rate = answer["growth_rate"][:, :3].T
         F = answer["F"] * load.factor
-        self.rate_source.data = card.source_columns(F=F, first=first, second=second, third=third)
-        limits = card.axis_limits(np.append(first[np.isfinite(first)], 0.0))
+        self.rate_source.data = card.source_columns(
+            F=F, first=first_rate, second=second_rate, third=third_rate
+        )
+        limits = card.axis_limits(np.append(first_rate[np.isfinite(first_rate)], 0.0))
         card.set_axis_range(self.card.figure.y_range, *limits)
         card.set_axis_range(self.card.figure.x_range, F[0], F[-1])
         self.card.figure.xaxis.axis_label = load.label
@@ -82,10 +84,10 @@ def threshold_title(answer: dict[str, Any], load: PictureAxis) -> str:
     """Title with the first threshold of each kind in the answer `answer`, in the unit of the axis `load`."""
     formats = ARM_THRESHOLD_FORMATS if SI_NAMES["F_hopf"] in answer else ROD_THRESHOLD_FORMATS
     texts = [
-        word.format(load.factor * float(answer[name]))
-        for word, name in zip(formats, NAMED_THRESHOLDS, strict=True)
+        value_format.format(load.factor * float(answer[name]))
+        for value_format, name in zip(formats, NAMED_THRESHOLDS, strict=True)
         if np.isfinite(answer[name])
     ]
-    proved = "certified" if answer["certified"] else "not certified"
-    text = f"{', '.join(texts) or 'no threshold'} ({proved})"
+    proof_text = "certified" if answer["certified"] else "not certified"
+    text = f"{', '.join(texts) or 'no threshold'} ({proof_text})"
     return text[0].upper() + text[1:]

@@ -98,11 +98,11 @@ class MovingArmPicture:
         has_cycle = bool(np.isfinite(x).all())
         if not has_cycle:
             x, y = (answer[name][None] * length.factor for name in "xy")
-        self.shapes_source.data = source_of(x, y)
+        self.shapes_source.data = shape_columns(x, y)
         self._draw_path(x[: len(x) * has_cycle], y[: len(y) * has_cycle], is_closed=True)
         self._fit_axes(x, y)
         self.card.figure.xaxis.axis_label, self.card.figure.yaxis.axis_label = (
-            f"{n} ({length.label})" for n in "xy"
+            f"{coordinate} ({length.label})" for coordinate in "xy"
         )
         is_stable = answer["status"] == "cycle"
         self.card.set_title("" if is_stable or not has_cycle else answer["sentence"])
@@ -127,13 +127,13 @@ class MovingArmPicture:
         shape_y = answer["shape_y"] * factor
         cycle_frames = answer["period"] if len(shape_x) else step * answer["frames"]
         self.motion_source.tags = [PERIOD_SECONDS * step / cycle_frames, PERIOD_SECONDS]
-        self.reached_source.data = source_of(shape_x, shape_y)
-        self.motion_source.data = source_of(x, y)
+        self.reached_source.data = shape_columns(shape_x, shape_y)
+        self.motion_source.data = shape_columns(x, y)
         self._draw_path(x, y, is_closed=False)
         self._fit_axes(np.concatenate([x, shape_x]), np.concatenate([y, shape_y]))
         position = ", ".join(f"{coordinate * factor:.3g}" for coordinate in answer["tip"])
         end = END_WORDS.get(answer["status"], answer["sentence"])
-        beginning_text = "" if answer["is_whole"] else "; this is the beginning"
+        beginning_text = "" if answer["is_whole"] else "; only the beginning of the motion is shown"
         self.card.set_title(f"Let go at ({position}) {self.length.label}: {end}{beginning_text}")
 
     def remove_dragged_shape(self) -> None:
@@ -162,8 +162,8 @@ class MovingArmPicture:
         card.set_axis_range(self.card.figure.x_range, min(0.0, float(x.min())) - 0.1 * factor, 1.1 * factor)
 
 
-def source_of(x: Array, y: Array) -> dict[str, Any]:
+def shape_columns(x: Array, y: Array) -> dict[str, Any]:
     """Columns of a Bokeh source, see `SHAPE_COLUMNS`, in single precision. x, y: coordinates of the shapes,
     (shapes, nodes)."""
-    number = np.full(x.size, x.shape[1], dtype=np.float32)
-    return {"x": x.ravel().astype(np.float32), "y": y.ravel().astype(np.float32), "number": number}
+    point_counts = np.full(x.size, x.shape[1], dtype=np.float32)
+    return {"x": x.ravel().astype(np.float32), "y": y.ravel().astype(np.float32), "number": point_counts}

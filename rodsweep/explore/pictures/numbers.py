@@ -29,7 +29,7 @@ ROW_LABELS_BY_KIND = {
     },
 }  # fmt: skip
 """Rows of the table for each kind of request: label of each variable."""
-HEADINGS_BY_KIND = {"spectrum": "Leading mode", "cycle": "CycleOutcome", "thresholds": "Thresholds"}
+HEADINGS_BY_KIND = {"spectrum": "Leading mode", "cycle": "Cycle", "thresholds": "Thresholds"}
 """Heading above the rows of each kind of request."""
 TABLE_DIGITS = 8
 """Number of significant digits in the table."""
@@ -83,18 +83,17 @@ def number_text(value: Any, factor: float = 1.0) -> str:
 
 
 def _table_rows(kind: str, answer: dict[str, Any]) -> str:
-    rows = []
+    row_texts = []
     for name, meaning in ROW_LABELS_BY_KIND[kind].items():
         if name not in answer or SI_NAMES.get(name, f"{name}_si") in answer:
             continue
         unit, factor = TABLE_UNITS.get(answer["units"][name], (answer["units"][name], 1.0))
         if text := number_text(answer[name], factor):
             unit_text = "" if unit == "1" else escape(unit)
-            rows.append(
+            row_texts.append(
                 f'<tr data-name="{name}"><td>{escape(meaning)}</td><td>{text}</td><td>{unit_text}</td></tr>'
             )
-    if not rows:
+    if not row_texts:
         return ""
-    return (
-        f'<tbody class="{kind}"><tr><th colspan="3">{HEADINGS_BY_KIND[kind]}</th></tr>{"".join(rows)}</tbody>'
-    )
+    heading = HEADINGS_BY_KIND[kind]
+    return f'<tbody class="{kind}"><tr><th colspan="3">{heading}</th></tr>{"".join(row_texts)}</tbody>'

@@ -51,11 +51,13 @@ class SpectrumPicture:
 def unstable_count_sentence(answer: dict[str, Any]) -> str:
     """Sentence that states the number of unstable modes of the answer `answer`, and whether this number is
     certified; the meaning of the status if the number is unknown."""
-    count = int(answer["unstable_count"])
-    if count < 0:
+    unstable_count = int(answer["unstable_count"])
+    if unstable_count < 0:
         return answer["sentence"]
-    modes = {0: "No unstable mode", 1: "1 unstable mode"}.get(count, f"{count} unstable modes")
-    return f"{modes}, {'certified' if answer['certified'] else 'not certified'}"
+    modes_text = {0: "No unstable mode", 1: "1 unstable mode"}.get(
+        unstable_count, f"{unstable_count} unstable modes"
+    )
+    return f"{modes_text}, {'certified' if answer['certified'] else 'not certified'}"
 
 
 class ModePicture:

@@ -78,8 +78,8 @@ def cycle_diagram_answer(state: PageState) -> dict[str, Any]:
         )
     cycles = {"cycles": True, "cycle_accuracy": CYCLE_ACCURACY, "gamma1": state.parameters()["gamma1"]}
     diagram = _diagram_of_rods(state, SLOW_ROW_COUNT, cycles)
-    curves = {name: values for name, values in diagram.items() if name.startswith("cycle_")}
-    return _diagram_of_rods(state) | curves
+    curve_variables = {name: values for name, values in diagram.items() if name.startswith("cycle_")}
+    return _diagram_of_rods(state) | curve_variables
 
 
 def can_follow_cycle_curves(state: PageState) -> bool:
@@ -104,7 +104,9 @@ def second_parameter_values(state: PageState, row_count: int = ROW_COUNT) -> np.
 
 
 def _fixed_parameters(state: PageState) -> dict[str, Any]:
-    return {n: v for n, v in state.parameters().items() if n not in ("F", "gamma1", state.second)}
+    return {
+        name: value for name, value in state.parameters().items() if name not in ("F", "gamma1", state.second)
+    }
 
 
 def _diagram_of_rods(
@@ -119,13 +121,13 @@ def _diagram_of_rods(
 
 @lru_cache(maxsize=CACHED_DIAGRAM_COUNT)
 def _cached_rod_diagram(
-    second_parameter: str, rows: tuple[float, ...], F_max: float, keywords: tuple[tuple[str, Any], ...]
+    second_parameter: str, row_values: tuple[float, ...], F_max: float, keywords: tuple[tuple[str, Any], ...]
 ) -> dict[str, Any]:
-    """Diagram up to the load `F_max` on the values `rows` of the parameter `second_parameter`; callers must
-    not change it."""
-    axes: dict[str, Any] = {"F": np.linspace(0, F_max, LOAD_COUNT), second_parameter: list(rows)}
+    """Diagram up to the load `F_max` on the values `row_values` of the parameter `second_parameter`;
+    callers must not change it."""
+    axes: dict[str, Any] = {"F": np.linspace(0, F_max, LOAD_COUNT), second_parameter: list(row_values)}
     data = sweep("phase_diagram", progress=False, **axes, **dict(keywords))
-    data = data.squeeze([n for n in ("k1", "k2", "gamma3") if n != second_parameter])
+    data = data.squeeze([name for name in ("k1", "k2", "gamma3") if name != second_parameter])
     return diagram_from_phase_result(data, second_parameter)
 
 
@@ -151,12 +153,14 @@ def diagram_from_phase_result(data: Dataset, second_parameter: str) -> dict[str,
 def _diagram_from_thresholds(state: PageState) -> dict[str, Any]:
     """Diagram of rods that are not uniform or not of linear material, with the variables of `diagram_answer`,
     from the task `thresholds`."""
-    values = second_parameter_values(state, SLOW_ROW_COUNT)
-    keywords: dict[str, Any] = _fixed_parameters(state) | {state.second: values}
+    row_values = second_parameter_values(state, SLOW_ROW_COUNT)
+    keywords: dict[str, Any] = _fixed_parameters(state) | {state.second: row_values}
     keywords |= {"material": MATERIAL_CHOICES[state.law]} if MATERIAL_CHOICES[state.law] else {}
     data = sweep("thresholds", **keywords, F_max=state.largest_force(), progress=False)
-    data = data.squeeze([n for n in ("k1", "k2", "gamma3", "taper") if n in data.dims and n != state.second])
-    return diagram_from_row_result(data, values, "crossing_F", state.largest_force())
+    data = data.squeeze(
+        [name for name in ("k1", "k2", "gamma3", "taper") if name in data.dims and name != state.second]
+    )
+    return diagram_from_row_result(data, row_values, "crossing_F", state.largest_force())
 
 
 def _diagram_of_arms(state: PageState) -> dict[str, Any]:
@@ -165,18 +169,18 @@ def _diagram_of_arms(state: PageState) -> dict[str, Any]:
     quantities = {name: text for name, text in state.arm.items() if name != "pressure"}
     quantity = QUANTITIES[state.second]
     typed_value = quantity_in_si(state.second, state.arm[state.second], quantity.unit, quantity.example)
-    values = np.geomspace(typed_value / ARM_SPAN_RATIO, typed_value * ARM_SPAN_RATIO, ARM_ROW_COUNT)
+    row_values = np.geomspace(typed_value / ARM_SPAN_RATIO, typed_value * ARM_SPAN_RATIO, ARM_ROW_COUNT)
     arm = state.subject()
     assert isinstance(arm, Arm)
-    arms = quantities | MATERIAL_CHOICES[state.law] | {state.second: list(map(float, values))}
+    arms = quantities | MATERIAL_CHOICES[state.law] | {state.second: list(map(float, row_values))}
     data = sweep("thresholds", arm=arms, F_max=state.largest_force(), progress=False)
-    data = data.squeeze([n for n in data.dims if data.sizes[n] == 1])
-    return diagram_from_arm_result(data, values, arm.si.pressure)
+    data = data.squeeze([dimension for dimension in data.dims if data.sizes[dimension] == 1])
+    return diagram_from_arm_result(data, row_values, arm.si.pressure)
 
 
-def diagram_from_arm_result(data: Dataset, values: np.ndarray, pressure: float) -> dict[str, Any]:
+def diagram_from_arm_result(data: Dataset, row_values: np.ndarray, pressure: float) -> dict[str, Any]:
     """Diagram, with the variables of `diagram_answer`, from a result of the task `thresholds` for arms.
-    values: values of the second quantity, (rows,).
+    row_values: values of the second quantity, (rows,).
 
     The load extends to twice the larger of `pressure`, in Pa, and the smallest flutter pressure. If there is
     neither a pressure nor flutter, the load extends to the largest searched pressure.
@@ -185,31 +189,33 @@ def diagram_from_arm_result(data: Dataset, values: np.ndarray, pressure: float) 
     known_loads = flutter[np.isfinite(flutter)]
     largest_load = 2 * max(pressure or 0.0, known_loads.min() if len(known_loads) else 0.0)
     largest_load = largest_load or float(data["pressure_end"].max())
-    return diagram_from_row_result(data, values, "crossing_pressure", largest_load)
+    return diagram_from_row_result(data, row_values, "crossing_pressure", largest_load)
 
 
-def diagram_from_row_result(data: Dataset, values: np.ndarray, name: str, largest: float) -> dict[str, Any]:
+def diagram_from_row_result(
+    data: Dataset, row_values: np.ndarray, name: str, largest: float
+) -> dict[str, Any]:
     """Diagram, with the variables of `diagram_answer`, from a result of the task `thresholds` over a second
     parameter. Beyond the end of a row's search, and on rows without a search, the count is UNKNOWN_COUNT.
 
-    values: second parameter, (rows,). name: name of the variable with the loads at the thresholds. largest:
-    largest load of the diagram.
+    row_values: second parameter, (rows,). name: name of the variable with the loads at the thresholds.
+    largest: largest load of the diagram.
     """
     loads = data[name].values
     counts_after = data["unstable_after"].values
     kind = flag_words(data["crossing_kind"])
-    x = np.linspace(0, largest, LOAD_COUNT)
-    counts = np.zeros((len(values), LOAD_COUNT), dtype=int)
+    loads_of_grid = np.linspace(0, largest, LOAD_COUNT)
+    counts = np.zeros((len(row_values), LOAD_COUNT), dtype=int)
     ends = data[name.replace("crossing_", "") + "_end"].values
-    for row in range(len(values)):
+    for row in range(len(row_values)):
         for load, count in zip(loads[row], counts_after[row], strict=True):
             if np.isfinite(load):
-                counts[row, x > load] = count
-        counts[row, ~(x <= ends[row])] = UNKNOWN_COUNT
+                counts[row, loads_of_grid > load] = count
+        counts[row, ~(loads_of_grid <= ends[row])] = UNKNOWN_COUNT
     listed = np.isfinite(loads) & (loads <= largest)
-    rows = np.broadcast_to(values[:, None], loads.shape)
+    rows = np.broadcast_to(row_values[:, None], loads.shape)
     crossings = {"crossing_x": loads[listed], "crossing_y": rows[listed], "crossing_kind": list(kind[listed])}
-    return {"x": x, "y": values, "unstable_count": counts} | _empty_curves() | crossings
+    return {"x": loads_of_grid, "y": row_values, "unstable_count": counts} | _empty_curves() | crossings
 
 
 def _empty_curves() -> dict[str, Any]:

@@ -16,7 +16,7 @@ def region_bounds(data: Dataset, row_parameter: str) -> dict[str, Any]:
     """Variables between_x, between_y, between_count and crushing_load of `diagram_answer`, from a result of
     the task `phase_diagram` over F and the parameter `row_parameter`. Raises ValueError for a config that
     this version of rodsweep does not accept."""
-    y = data[row_parameter].values
+    row_values = data[row_parameter].values
     positions, unstable_counts = (
         data[name].transpose(row_parameter, "crossing").values for name in ("crossing_at", "unstable_after")
     )
@@ -24,8 +24,8 @@ def region_bounds(data: Dataset, row_parameter: str) -> dict[str, Any]:
     crushing_forces = material.relative_crushing_forces(
         data["taper"].values if "taper" in data else np.ones(())
     )
-    crushing = np.broadcast_to(data["k1"].values * crushing_forces, y.shape)
-    return {"crushing_load": crushing, **_points_between_crossings(y, positions, unstable_counts)}
+    crushing = np.broadcast_to(data["k1"].values * crushing_forces, row_values.shape)
+    return {"crushing_load": crushing, **_points_between_crossings(row_values, positions, unstable_counts)}
 
 
 def _points_between_crossings(

@@ -92,7 +92,7 @@ def growth_answer(state: PageState) -> AnswerVariables:
     rod_or_arm = state.subject()
     tau2, unit = (rod_or_arm.tau2, "1/s") if isinstance(rod_or_arm, Arm) else (1.0, "1/tau2")
     rod = rod_of(rod_or_arm)
-    keywords: dict[str, Any] = {n: rod[n] for n in ("k1", "k2", "gamma3", "taper") if n in rod}
+    keywords: dict[str, Any] = {name: rod[name] for name in ("k1", "k2", "gamma3", "taper") if name in rod}
     keywords |= {"material": MATERIAL_CHOICES[state.law]} if MATERIAL_CHOICES[state.law] else {}
     F_max = min(state.largest_force(), MAX_CRUSHING_FRACTION * crushing_force(rod))
     F = np.linspace(0, F_max, GROWTH_FORCE_COUNT)
@@ -187,5 +187,9 @@ def drawn_branches(rod: RodBranches, end: float) -> dict[str, Any]:
     ]
     straight = rod.straight_pieces((0.0, end))
     pieces += [(np.array([low, high]), np.zeros(2), stable) for low, high, stable in straight]
-    special_points = [(p.at, p.tip_y_max, p.kind, p.period) for curve in rod.curves for p in curve.special]
+    special_points = [
+        (special_point.at, special_point.tip_y_max, special_point.kind, special_point.period)
+        for curve in rod.curves
+        for special_point in curve.special
+    ]
     return {"pieces": pieces, "special": [point for point in special_points if point[2] != "end"]}

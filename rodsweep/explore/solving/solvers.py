@@ -18,7 +18,8 @@ from .fork_server import FORK_SERVER, start_fork_server
 from .requests import Reply, SolveRequest
 
 RequestKey = tuple[str, str]
-"""(session, kind) of a request. A new request replaces an older request with an equal key."""
+"""(session, kind) of a request; a session is a page in a browser tab. A new request replaces an older request
+with an equal key."""
 OnReply = Callable[[Reply], None]
 """Function that is called with the reply to a request, or with a progress message."""
 

@@ -142,5 +142,5 @@ def _omitted_points_clause(views: Sequence[ResultView]) -> str:
         for word, text in OMITTED_STATUSES.items()
         if word in statuses
     )
-    omitted = " and ".join(counts)
-    return f"; of {statuses.size} points {omitted}" if omitted else ""
+    omitted_text = " and ".join(counts)
+    return f"; of {statuses.size} points {omitted_text}" if omitted_text else ""

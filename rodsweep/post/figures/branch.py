@@ -63,7 +63,9 @@ def draw_branch(request: FigureRequest) -> str:
     drawn_rods = rods_with_cycles[: len(BRANCH_COLOURS)]
     curves = [curve for rod in drawn_rods for curve in rod.curves]
     is_single = len(rods) == 1
-    colours_of_rods = [BRANCH_COLOURS[k] for k, rod in enumerate(drawn_rods) for _ in rod.curves]
+    colours_of_rods = [
+        BRANCH_COLOURS[rod_index] for rod_index, rod in enumerate(drawn_rods) for _ in rod.curves
+    ]
     colours: Sequence[str] = BRANCH_COLOURS if is_single else colours_of_rods
     parameter = followed_parameter(view)
     has_hopf_panel = any(curve.near_hopf_points() for curve in curves)
@@ -136,10 +138,10 @@ def _omissions_clause(rods: Sequence[RodBranches], cycling: int, drawn_count: in
 def _drawn_parameter_range(rod: RodBranches) -> ParameterRange:
     """Range of the parameter in which the straight rod is drawn: the followed range, without crushed rods,
     and up to 1.1 times the largest parameter of the branches."""
-    [(low, high)] = uncrushed_ranges(rod.view, [rod.index])
+    [(range_start, range_end)] = uncrushed_ranges(rod.view, [rod.index])
     if rod.curves:
-        high = min(high, 1.1 * max(float(np.nanmax(curve.parameter)) for curve in rod.curves))
-    return low, high
+        range_end = min(range_end, 1.1 * max(float(np.nanmax(curve.parameter)) for curve in rod.curves))
+    return range_start, range_end
 
 
 def _draw_pieces(
@@ -157,13 +159,13 @@ def _mark_special_points(
     """Marks the special points of a branch in two panels, as in `draw_branch_curves`; adds legend entries to
     `marker_handles`."""
     for special in curve.special:
-        kind = special.reason if special.kind == "end" else special.kind
-        if kind not in SPECIAL_POINT_MARKS:
+        kind_or_reason = special.reason if special.kind == "end" else special.kind
+        if kind_or_reason not in SPECIAL_POINT_MARKS:
             continue
-        marker, word = SPECIAL_POINT_MARKS[kind]
+        marker, word = SPECIAL_POINT_MARKS[kind_or_reason]
         (artist,) = upper.plot(special.at, special.tip_y_max, marker, color="k", ms=5, ls="", label=word)
         lower.plot(special.at, special.period, marker, color="k", ms=5, ls="")
-        marker_handles.setdefault(kind, artist)
+        marker_handles.setdefault(kind_or_reason, artist)
 
 
 def _compare_prediction(
@@ -185,8 +187,8 @@ def _compare_prediction(
     symbol = style.SYMBOLS[parameter_name]
     axes.set(xscale="log", yscale="log", ylabel="largest $y/|a|$")
     symbol = f"({symbol})" if "/" in symbol else symbol
-    ratio = rf"{symbol}/{symbol}^\mathrm{{H}}"
-    axes.set_xlabel(rf"$|{ratio} - 1|$, distance from the Hopf point")
+    ratio_symbol = rf"{symbol}/{symbol}^\mathrm{{H}}"
+    axes.set_xlabel(rf"$|{ratio_symbol} - 1|$, distance from the Hopf point")
     style.label_few_decades(axes.xaxis, *axes.get_xlim())
     style.label_few_decades(axes.yaxis, *axes.get_ylim())
     for axis in (axes.xaxis, axes.yaxis):

@@ -60,8 +60,8 @@ def draw_criticality(request: FigureRequest) -> str:
     style.require_content(view, has_normal_form, "Hopf point with a normal form")
     names = list(varied_parameters_at_points(view))
     if len(names) == 1 and np.isfinite(np.unique(view.point_columns[names[0]])).sum() > 1:
-        omissions = left_out_clause(view.point_columns, names)
-        caption = f"the normal forms of Hopf points along {names[0]}{omissions}"
+        omissions_clause = left_out_clause(view.point_columns, names)
+        caption = f"the normal forms of Hopf points along {names[0]}{omissions_clause}"
         return request.write(_curves_figure(view, names[0]), caption)
     if not varies_two_parameters_on_grid(view):
         return request.write(*draw_predictions(view))
@@ -78,11 +78,11 @@ def _curves_figure(view: ResultView, name: str) -> Figure:
     figure = Figure(figsize=(5.6, 5.4), layout="constrained")
     upper, lower = figure.subplots(2, 1, sharex=True)
     keys = ("criticality", "amplitude_coefficient", "landau_real")
-    criticality, a, landau_real = (view.by_point(key)[is_finite] for key in keys)
+    criticality, amplitude_coefficient, landau_real = (view.by_point(key)[is_finite] for key in keys)
     style.require_content(view, np.isfinite(landau_real).any(), f"Hopf point with a finite {name}")
     linear_limit = float(np.nanquantile(np.abs(landau_real), LINEAR_FRACTION))
     lower.set_yscale("symlog", linthresh=10.0 ** floor(log10(linear_limit)))
-    for axes, values in ((upper, a), (lower, landau_real)):
+    for axes, values in ((upper, amplitude_coefficient), (lower, landau_real)):
         handles = _draw_hopf_markers(axes, x[is_finite], values, criticality)
         axes.axhline(0, color="0.6", lw=0.8, zorder=0)
         style.scale_axis(axes, "x", np.sort(x[is_finite]))
@@ -110,20 +110,22 @@ def _maps_figure(view: ResultView, points: PointMap, is_narrow: bool) -> Figure:
     """Figure with two maps: criticality of the first Hopf points, and amplitude coefficient |a|. Raises
     InputError if nothing can be drawn."""
     criticality = view.by_point("criticality")[points.point_indices]
-    a = np.abs(view.by_point("amplitude_coefficient")[:, 0][points.point_indices])
-    style.require_content(view, np.isfinite(a).any(), "first Hopf point with a normal form")
+    amplitude_coefficient = np.abs(view.by_point("amplitude_coefficient")[:, 0][points.point_indices])
+    style.require_content(
+        view, np.isfinite(amplitude_coefficient).any(), "first Hopf point with a normal form"
+    )
     figure, panels = map_panels(2, is_narrow)
     edges = cell_edges(points.x), cell_edges(points.y)
     classes = _class_indices(criticality)
     norm = BoundaryNorm(np.arange(len(CRITICALITY_CLASSES) + 1) - 0.5, len(CRITICALITY_CLASSES))
     colours = ListedColormap([colour for _, colour in CRITICALITY_CLASSES])
     panels[0].pcolormesh(*edges, classes, cmap=colours, norm=norm, rasterized=True)
-    style.draw_coloured_cells(panels[1], edges, a, "amplitude coefficient $|a|/L$")
+    style.draw_coloured_cells(panels[1], edges, amplitude_coefficient, "amplitude coefficient $|a|/L$")
     panels[1].set_facecolor(CRITICALITY_CLASSES[0][1])
     label_maps(panels, points)
     drawn = (look for i, look in enumerate(CRITICALITY_CLASSES) if (classes == i).any())
-    entries = [Patch(facecolor=colour, label=word) for word, colour in drawn]
-    style.legend_below(figure, entries, column_count=3)
+    legend_entries = [Patch(facecolor=colour, label=word) for word, colour in drawn]
+    style.legend_below(figure, legend_entries, column_count=3)
     set_heading(figure, view, style.parameter_text(points.common_parameters))
     return figure
 
@@ -141,8 +143,12 @@ def _class_indices(criticality: Array) -> Array:
 def draw_predictions(view: ResultView) -> tuple[Figure, str]:
     """Returns (figure, description). The figure shows predicted amplitudes near all Hopf points of the first
     rods. Raises InputError if nothing can be drawn."""
-    kinds, F, a = map(view.by_point, ("criticality", "crossing_F", "amplitude_coefficient"))
-    rods_with_prediction = np.flatnonzero((np.isfinite(kinds) & np.isfinite(a)).any(axis=1))
+    kinds, F, amplitude_coefficient = map(
+        view.by_point, ("criticality", "crossing_F", "amplitude_coefficient")
+    )
+    rods_with_prediction = np.flatnonzero(
+        (np.isfinite(kinds) & np.isfinite(amplitude_coefficient)).any(axis=1)
+    )
     style.require_content(view, rods_with_prediction.size, "Hopf point with a normal form")
     drawn_rods = rods_with_prediction[: len(style.LINE_COLOURS)]
     figure = Figure(figsize=(5.6, 3.8), layout="constrained")
@@ -150,7 +156,7 @@ def draw_predictions(view: ResultView) -> tuple[Figure, str]:
     common_text, rod_texts = shared_and_own_of_points(view, [int(rod) + 1 for rod in drawn_rods])
     distance = MAX_DRAWN_DISTANCE * np.linspace(0, 1, PREDICTION_POINT_COUNT) ** 2
     for rod, colour in zip(drawn_rods, style.LINE_COLOURS, strict=False):
-        for kind, hopf_force, size in zip(kinds[rod], F[rod], a[rod], strict=True):
+        for kind, hopf_force, size in zip(kinds[rod], F[rod], amplitude_coefficient[rod], strict=True):
             if np.isfinite(kind) and np.isfinite(size):
                 # For a > 0 the cycles have a larger F than the Hopf point, for a < 0 a smaller F.
                 forces = hopf_force * (1 + np.sign(size) * distance)
@@ -161,7 +167,7 @@ def draw_predictions(view: ResultView) -> tuple[Figure, str]:
     axes.set(xlabel=style.LABELS["F"], ylabel="predicted largest $y/L$ of the tip")
     axes.set_ylim(bottom=0)
     drawn_looks = (look for kind, look in CRITICALITY_LINES.items() if (kinds[drawn_rods] == kind).any())
-    handles = [Line2D([], [], color="0.3", ls=ls, label=word) for ls, word in drawn_looks]
+    handles = [Line2D([], [], color="0.3", ls=line_style, label=word) for line_style, word in drawn_looks]
     handles.append(Line2D([], [], color="0.3", marker="o", ms=4, ls="", label="Hopf point"))
     pairs = zip(style.LINE_COLOURS, rod_texts, strict=False)
     handles += [Line2D([], [], color=colour, lw=2, label=text) for colour, text in pairs if text]

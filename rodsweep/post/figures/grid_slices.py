@@ -54,9 +54,17 @@ def _number_in_si(name: str, value: float | str) -> float:
 
 def _slice_at_value(view: ResultView, name: str, value: float) -> ResultView:
     """View of the points at which `name` has the given value. Raises InputError if there is no such point."""
-    quantity_names = [n for n, v in view.quantities.items() if np.ndim(v) and n not in UNITS_OF_ARM]
+    quantity_names = [
+        quantity_name
+        for quantity_name, quantity_values in view.quantities.items()
+        if np.ndim(quantity_values) and quantity_name not in UNITS_OF_ARM
+    ]
     if view.is_grid:  # quantities that are stored along an axis of a parameter
-        quantity_names = [n for n in quantity_names if PARAMETER_STORED_ALONG.get(n) in view.parameters]
+        quantity_names = [
+            quantity_name
+            for quantity_name in quantity_names
+            if PARAMETER_STORED_ALONG.get(quantity_name) in view.parameters
+        ]
     axes = view.arm_axes or (*view.parameters, *quantity_names)
     if name not in axes:
         raise InputError(f"--at {name}={value:.15g}: {view.path} {_axes_sentence(view, name, axes)}")
@@ -85,8 +93,10 @@ def _axes_sentence(view: ResultView, name: str, axes: Sequence[str]) -> str:
     hint = (
         f"did you mean {similar[0]}?" if similar else f"the points differ in {', '.join(varied_axes or axes)}"
     )
-    followed = f"; {name} is not an axis of points in this file" if name in NONLINEAR_PARAMETERS else ""
-    return f"has no such axis{followed}; {hint}"
+    followed_clause = (
+        f"; {name} is not an axis of points in this file" if name in NONLINEAR_PARAMETERS else ""
+    )
+    return f"has no such axis{followed_clause}; {hint}"
 
 
 def _values_text(values: np.ndarray, requested: float) -> str:
@@ -140,7 +150,8 @@ def checked_slice_values(section_values: Mapping[str, float | str]) -> dict[str,
     that is neither a number nor a text."""
     try:
         return {
-            str(n): value if isinstance(value, str) else float(value) for n, value in section_values.items()
+            str(name): value if isinstance(value, str) else float(value)
+            for name, value in section_values.items()
         }
     except (AttributeError, TypeError, ValueError):
         given_text = short_repr(section_values)

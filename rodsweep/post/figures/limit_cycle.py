@@ -93,7 +93,11 @@ def _default_figure_kind(request: FigureRequest) -> str:
     few_cycles = len(indices) > 0 or is_cycle.sum() <= MAX_CYCLES
     few_points = len(indices) > 0 or is_cycle.size <= MAX_CYCLES
     shaped = SHAPE_VARIABLES[0] in first_view.variables
-    drawable = shaped and is_cycle.any() and is_cycle[[n for n in indices if 0 <= n < is_cycle.size]].all()
+    drawable = (
+        shaped
+        and is_cycle.any()
+        and is_cycle[[index for index in indices if 0 <= index < is_cycle.size]].all()
+    )
     if few_points and TRANSIENT_VARIABLE_NAMES[0] in first_view.variables and not drawable:
         return "transient"
     if indices or (few_cycles and shaped):

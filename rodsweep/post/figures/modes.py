@@ -27,30 +27,32 @@ def draw_modes(request: FigureRequest) -> str:
     drawn."""
     view = request.only_view()
     growth = view.variables["growth_rate"][..., 0].ravel()
-    points = np.flatnonzero(np.isfinite(growth))
-    require_content(view, points.size, "computed point")
+    point_indices = np.flatnonzero(np.isfinite(growth))
+    require_content(view, point_indices.size, "computed point")
     is_narrow = request.look.is_narrow
-    drawn_points = points[: 1 if is_narrow else MAX_RODS]
-    count = len(drawn_points)
-    rows, columns = (count * len(MODE_PANELS), 1) if is_narrow else (count, len(MODE_PANELS))
-    size = (4.6, 2.4 * rows + 0.4) if is_narrow else (10.0, 2.8 * rows + 0.4)
-    figure = Figure(figsize=size, layout="constrained")
-    panels = figure.subplots(rows, columns, squeeze=False)
-    for row, point in zip(panels.reshape(count, len(MODE_PANELS)), drawn_points, strict=True):
+    drawn_points = point_indices[: 1 if is_narrow else MAX_RODS]
+    point_count = len(drawn_points)
+    row_count, column_count = (
+        (point_count * len(MODE_PANELS), 1) if is_narrow else (point_count, len(MODE_PANELS))
+    )
+    figure_size = (4.6, 2.4 * row_count + 0.4) if is_narrow else (10.0, 2.8 * row_count + 0.4)
+    figure = Figure(figsize=figure_size, layout="constrained")
+    panels = figure.subplots(row_count, column_count, squeeze=False)
+    for row, point in zip(panels.reshape(point_count, len(MODE_PANELS)), drawn_points, strict=True):
         for panel, (word, fields) in zip(row, MODE_PANELS, strict=True):
             _draw_mode_fields(panel, view, int(point), fields)
             panel.set_title(word)
-        if count > 1:
+        if point_count > 1:
             row[1].set_title(f"{': '.join(_point_texts(view, int(point)))}\n{MODE_PANELS[1][0]}")
     for panel in panels[-1]:
         panel.set_xlabel("material coordinate $u/L$")
-    texts = _point_texts(view, int(drawn_points[0])) if count == 1 else ()
+    texts = _point_texts(view, int(drawn_points[0])) if point_count == 1 else ()
     set_heading(figure, view, *texts)
     legend_below(figure, _part_entries(view, drawn_points), column_count=2)
     omission_clause = ""
-    if points.size > count:
-        first_words = f"first {count}" if count > 1 else "first"
-        omission_clause = f" of the {first_words} of {points.size} points (--at chooses others)"
+    if point_indices.size > point_count:
+        first_words = f"first {point_count}" if point_count > 1 else "first"
+        omission_clause = f" of the {first_words} of {point_indices.size} points (--at chooses others)"
     return request.write(figure, f"the leading mode{omission_clause}: real part solid, imaginary part dotted")
 
 
@@ -90,6 +92,6 @@ def _point_texts(view: ResultView, point: int) -> tuple[str, str]:
     """Returns (parameters, leading eigenvalue), as TeX, of the point with the index `point`."""
     parameters = {name: values[point] for name, values in view.point_columns.items()}
     eigenvalue = [float(view.by_point(name)[point, 0]) for name in ("growth_rate", "frequency")]
-    imaginary = rf" + {number_in_tex(eigenvalue[1])}\,\mathrm{{i}}" if eigenvalue[1] else ""
-    eigenvalue_text = rf"$\omega_1\tau_2 = {number_in_tex(eigenvalue[0])}{imaginary}$"
+    imaginary_text = rf" + {number_in_tex(eigenvalue[1])}\,\mathrm{{i}}" if eigenvalue[1] else ""
+    eigenvalue_text = rf"$\omega_1\tau_2 = {number_in_tex(eigenvalue[0])}{imaginary_text}$"
     return parameter_text(parameters, digits=4), eigenvalue_text

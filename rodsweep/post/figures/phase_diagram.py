@@ -1,5 +1,5 @@
 """Phase diagrams, as in the paper's Fig. 4: stability class of the rod over two parameters, and boundary
-curves. line, row: parameters along a row, and constant on a row."""
+curves. line_parameter, row_parameter: parameters along a row, and constant on a row."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -88,9 +88,11 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     style.legend_below(figure, handles, column_count=2 if "bautin_curve" in view.variables else 3)
     set_heading(figure, view, _constant_parameters_text(view, line, row), stored_crossings_text(view))
     lacks_curves = lacks_sweep_wide_variables(view.attributes)
-    missing = "; curves are missing, the file is not finished" if lacks_curves else ""
-    infinite = left_out_clause(view.parameter_values, [row])
-    return request.write(figure, f"behaviour of the rod over {line} and {row}{missing}{infinite}", MAP_ASPECT)
+    missing_clause = "; curves are missing, the file is not finished" if lacks_curves else ""
+    infinite_clause = left_out_clause(view.parameter_values, [row])
+    return request.write(
+        figure, f"behaviour of the rod over {line} and {row}{missing_clause}{infinite_clause}", MAP_ASPECT
+    )
 
 
 def _draw_stored_curves(
@@ -141,8 +143,8 @@ def _draw_rows(view: ResultView, palette: Palette, line_parameter: str, row_para
     axes = figure.subplots()
     edges = DrawnPlane.positions(x, np.linspace(0, 1, PIXEL_COUNT + 1))
     rows = [
-        pixel_classes_of_row(view, palette.variable, line_parameter, row_parameter, n, edges)
-        for n in range(len(y))
+        pixel_classes_of_row(view, palette.variable, line_parameter, row_parameter, row_index, edges)
+        for row_index in range(len(y))
     ]
     table: Array = np.array(rows)
     keywords: dict[str, Any] = {"rasterized": True} | palette.colour_keywords
@@ -176,15 +178,15 @@ def _class_of_pixels(
         x, row_values, row_classes = classes_between_crossings(view, line_parameter, row_parameter)
         row_points = ClassifiedPoints(plane.fractions_of_axes(x, row_values), row_classes)
     curves = []
-    v = view.variables
-    for kind in (kind for kind in ("curve", "cycle_curve") if f"{kind}_number" in v):
-        number = v[f"{kind}_number"]
+    variables = view.variables
+    for kind in (kind for kind in ("curve", "cycle_curve") if f"{kind}_number" in variables):
+        number = variables[f"{kind}_number"]
         if kind == "curve" and palette is not CLASS_PALETTE:  # double eigenvalues bound no stable state
-            number = np.where(v["curve_kind"] == 1, number, 0)
+            number = np.where(variables["curve_kind"] == 1, number, 0)
         for mask in (number == curve for curve in np.unique(number[number > 0])):
             curves.append(
                 plane.fractions_of_axes(
-                    v[f"{kind}_{line_parameter}"][mask], v[f"{kind}_{row_parameter}"][mask]
+                    variables[f"{kind}_{line_parameter}"][mask], variables[f"{kind}_{row_parameter}"][mask]
                 )
             )
     undecided = flag_number("undecided", palette.words)

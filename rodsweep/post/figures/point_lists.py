@@ -49,18 +49,20 @@ def shared_parameters(view: ResultView) -> dict[str, float]:
     return {name: float(column[0]) for name, column in columns.items() if len(np.unique(column)) == 1}
 
 
-def label_point_numbers(axes: Axes, view: ResultView, count: int) -> None:
+def label_point_numbers(axes: Axes, view: ResultView, point_count: int) -> None:
     """Labels the horizontal axis with the numbers of the points of a list, from 1.
 
     For an arm, the label names the varied quantities, in SI units; the tick labels of a short list are the
     values of these quantities.
     """
-    axes.set_xlim(0.5, count + 0.5)
-    axes.xaxis.set_major_locator(MaxNLocator(min(count, MAX_LABELLED_POINTS), integer=True, min_n_ticks=1))
+    axes.set_xlim(0.5, point_count + 0.5)
+    axes.xaxis.set_major_locator(
+        MaxNLocator(min(point_count, MAX_LABELLED_POINTS), integer=True, min_n_ticks=1)
+    )
     varied_values = _varied_quantities(view)
-    if varied_values and count <= MAX_LABELLED_POINTS:
+    if varied_values and point_count <= MAX_LABELLED_POINTS:
         columns = zip(*(numbers for _, numbers in varied_values), strict=True)
-        axes.set_xticks(np.arange(1, count + 1), ["\n".join(numbers) for numbers in columns])
+        axes.set_xticks(np.arange(1, point_count + 1), ["\n".join(numbers) for numbers in columns])
         axes.set_xlabel("\n".join(name for name, _ in varied_values))
     else:
         range_texts = (f"{name}: {numbers[0]} to {numbers[-1]}" for name, numbers in varied_values)
@@ -71,7 +73,11 @@ def _varied_quantities(view: ResultView) -> list[tuple[str, list[str]]]:
     """Pairs (name with unit, values at the points as text), one pair for each quantity of an arm that
     varies."""
     quantities = view.quantities.items()
-    varied = ((n, v) for n, v in quantities if n not in ARM_SCALES and len(np.unique(v)) > 1)
+    varied = (
+        (quantity_name, quantity_values)
+        for quantity_name, quantity_values in quantities
+        if quantity_name not in ARM_SCALES and len(np.unique(quantity_values)) > 1
+    )
     return [_name_and_value_texts(name, values) for name, values in varied]
 
 

@@ -78,14 +78,14 @@ def _smooth_vertices(cycles: Array, extent: Array) -> Array:
     curve a square-root shape."""
     cycles_before = cycles[MIRRORED_CYCLE_COUNT:0:-1] * MIRROR_FACTORS
     cycles_after = cycles[-2 : -MIRRORED_CYCLE_COUNT - 2 : -1] * MIRROR_FACTORS
-    first = len(cycles_before) if cycles[0, 1] == 0 else 0
+    first_index = len(cycles_before) if cycles[0, 1] == 0 else 0
     last_count = len(cycles_after) if cycles[-1, 1] == 0 else 0
-    extended = np.concatenate([cycles_before[:first], cycles, cycles_after[:last_count]])
+    extended = np.concatenate([cycles_before[:first_index], cycles, cycles_after[:last_count]])
     variables = [_cumulative_chord_lengths(extended, extent, *choice) for choice in CHORD_VARIABLES]
-    s = min(variables, key=lambda variable: _largest_cubic_deviation(variable, extended / extent))
-    ends = s[first : first + len(cycles)]
+    abscissa = min(variables, key=lambda variable: _largest_cubic_deviation(variable, extended / extent))
+    ends = abscissa[first_index : first_index + len(cycles)]
     drawn = np.linspace(ends[:-1], ends[1:], SEGMENT_COUNT, endpoint=False, axis=1).ravel()
-    spline = scipy.interpolate.CubicHermiteSpline(s, extended, slopes_at_cycles(s, extended))
+    spline = scipy.interpolate.CubicHermiteSpline(abscissa, extended, slopes_at_cycles(abscissa, extended))
     return np.asarray(spline(np.append(drawn, ends[-1])))
 
 
@@ -122,7 +122,12 @@ def branch_corners(cycles: Array, extent: Array) -> dict[int, Array]:
     return {
         i: corner
         for i, (slope_jump, corner) in candidates.items()
-        if slope_jump == max(candidates[k][0] for k in candidates if abs(k - i) < CORNER_CYCLE_COUNT)
+        if slope_jump
+        == max(
+            candidates[corner_index][0]
+            for corner_index in candidates
+            if abs(corner_index - i) < CORNER_CYCLE_COUNT
+        )
     }
 
 
@@ -161,7 +166,7 @@ def slopes_at_cycles(s: Array, points: Array) -> Array:
     slopes = np.empty_like(points)
     for i, start in enumerate(np.clip(np.arange(len(s)) - count // 2, 0, len(s) - count)):
         distances = s[start : start + count] - s[i]
-        size = np.abs(distances).max()
-        vandermonde = np.vander(distances / size, increasing=True)
-        slopes[i] = np.linalg.solve(vandermonde, points[start : start + count])[1] / size
+        largest_distance = np.abs(distances).max()
+        vandermonde = np.vander(distances / largest_distance, increasing=True)
+        slopes[i] = np.linalg.solve(vandermonde, points[start : start + count])[1] / largest_distance
     return slopes

@@ -70,23 +70,27 @@ def draw_spectrum(request: FigureRequest) -> str:
         return request.write(draw_eigenvalues(view), "the stored eigenvalues in the complex plane")
     if not view.is_grid:
         return request.write(draw_list_of_spectra(view), "the stored eigenvalues of every point")
-    long = style.varied_axes(view)
-    shortest = min(long, key=lambda name: len(view.parameter_values[name]))
-    if len(long) > 1 and len(view.parameter_values[shortest]) <= MAX_LINE_PANELS:
+    varied_names = style.varied_axes(view)
+    shortest = min(varied_names, key=lambda name: len(view.parameter_values[name]))
+    if len(varied_names) > 1 and len(view.parameter_values[shortest]) <= MAX_LINE_PANELS:
         return _draw_line_per_value(view, shortest, request)
-    omissions = left_out_clause(view.parameter_values, long)
+    omissions_clause = left_out_clause(view.parameter_values, varied_names)
     view = without_infinite_values(view)
-    long = style.varied_axes(view)
-    if len(long) == 1:
+    varied_names = style.varied_axes(view)
+    if len(varied_names) == 1:
         roots = roots_to_follow([view], request.roots)
-        return request.write(draw_line(view, long[0], roots), ROOT_CHOICE_TEXTS[roots] + omissions)
+        return request.write(
+            draw_line(view, varied_names[0], roots), ROOT_CHOICE_TEXTS[roots] + omissions_clause
+        )
     _refuse_roots(view, request.roots, "a map of the leading growth rate; --at draws one of its lines")
-    return request.write(_growth_map(view, long), f"the leading growth rate{omissions}", MAP_ASPECT)
+    return request.write(
+        _growth_map(view, varied_names), f"the leading growth rate{omissions_clause}", MAP_ASPECT
+    )
 
 
 def _refuse_roots(view: ResultView, roots: str | None, figure: str, allowed: Sequence[str] = ()) -> None:
-    """Raises InputError if the user's choice of roots is neither None nor in `allowed`. figure: noun for the
-    figure of `view`, which does not follow roots."""
+    """Raises InputError if `--roots` is given for a figure that ignores it, because it does not follow roots
+    along a line. allowed: choices that are accepted. figure: noun for the figure of `view`."""
     if roots not in (None, *allowed):
         raise InputError(
             f"{view.path}: --roots {roots} is for spectra along a line of points, and this is {figure}"
@@ -100,9 +104,9 @@ def _draw_line_per_value(view: ResultView, curve_parameter: str, request: Figure
     slices = (slice_at_values(view, {curve_parameter: value}) for value in values)
     lines = map(without_infinite_values, slices)
     views = [line for line in lines if np.isfinite(line.variables["growth_rate"]).any()]
-    others = [name for name in style.varied_axes(view) if name != curve_parameter]
-    omissions = left_out_clause(view.parameter_values, others)
-    return _draw_line_panels(views, request, f"{curve_parameter}{omissions}")
+    other_names = [name for name in style.varied_axes(view) if name != curve_parameter]
+    omissions_clause = left_out_clause(view.parameter_values, other_names)
+    return _draw_line_panels(views, request, f"{curve_parameter}{omissions_clause}")
 
 
 def _draw_line_panels(views: Sequence[ResultView], request: FigureRequest, panel_noun: str) -> str:
@@ -119,8 +123,8 @@ def _draw_files(request: FigureRequest) -> str:
     request.refuse_points(request.views[0])
     request.require_output()
     if len(request.views) > MAX_PANELS:
-        room = f"but a figure has room for {MAX_PANELS}; give fewer files"
-        raise InputError(f"{len(request.views)} files are given, {room}")
+        room_clause = f"but a figure has room for {MAX_PANELS}; give fewer files"
+        raise InputError(f"{len(request.views)} files are given, {room_clause}")
     views = [_line_of_spectra(view, request) for view in request.views]
     grids = map(as_grid_if_possible, request.views)
     omissions = [left_out_clause(grid.parameter_values, style.varied_axes(grid)) for grid in grids]
@@ -187,11 +191,11 @@ def _note_points(axes: Axes, x: np.ndarray, y: np.ndarray, growth: np.ndarray) -
 
 def draw_panels(views: Sequence[ResultView], roots: str, is_narrow: bool) -> Figure:
     """Figure with a panel of roots for each view, and one legend."""
-    columns = 1 if is_narrow else 2
-    rows = -(-len(views) // columns)
-    size = FIGURE_WIDTH[columns], PANEL_HEIGHT[columns] * rows + 0.8
-    figure = Figure(figsize=size, layout="constrained")
-    panels = figure.subplots(rows, columns, squeeze=False).ravel()
+    column_count = 1 if is_narrow else 2
+    row_count = -(-len(views) // column_count)
+    figure_size = FIGURE_WIDTH[column_count], PANEL_HEIGHT[column_count] * row_count + 0.8
+    figure = Figure(figsize=figure_size, layout="constrained")
+    panels = figure.subplots(row_count, column_count, squeeze=False).ravel()
     handles: dict[str, Artist] = {}
     for letter, panel, view in zip(ascii_lowercase, panels, views, strict=False):
         (name,) = style.varied_axes(view)

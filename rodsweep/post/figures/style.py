@@ -131,18 +131,19 @@ def constant_parameters_text(view: ResultView, *axis_names: str) -> str:
 def varied_axes(view: ResultView) -> list[str]:
     """Names of the one or two parameters of a grid that have several values. Raises InputError if no
     parameter, or more than two, have several values."""
-    long = [name for name, values in view.parameter_values.items() if len(values) > 1]
-    if not long:
+    varied_names = [name for name, values in view.parameter_values.items() if len(values) > 1]
+    if not varied_names:
         raise InputError(
             f"{view.path}: every parameter has one value only; the figure needs one or two parameters with "
             "several values"
         )
-    if len(long) > 2:
+    if len(varied_names) > 2:
         raise InputError(
-            f"{view.path} has {len(long)} axes with more than one value ({', '.join(long)}); a figure has "
+            f"{view.path} has {len(varied_names)} axes with more than one value "
+            f"({', '.join(varied_names)}); a figure has "
             "one or two; --at, such as --at k1=150, selects one value of an axis"
         )
-    return long
+    return varied_names
 
 
 def require_content(view: ResultView, available: object, noun: str) -> None:

@@ -48,17 +48,19 @@ def draw_thresholds(request: FigureRequest) -> str:
             raise InputError(f"{view.path}: --what {request.what} {reason}")
         min_aspect = BAR_ASPECT if view.variables["status"].size == 1 else MIN_ASPECT
         return request.write(draw_class_bars(view), "behaviour of each rod over F", min_aspect)
-    long = style.varied_axes(view)
+    varied_names = style.varied_axes(view)
     drawable_names = [name for name, *_ in CRITICAL_FORCES if np.isfinite(view.variables[name]).any()]
     style.require_content(view, drawable_names, "threshold")
-    has_few_lines = min(len(view.parameter_values[name]) for name in long) <= MAX_LINES
-    if request.what == "map" or (len(long) == 2 and not has_few_lines and request.what != "lines"):
+    has_few_lines = min(len(view.parameter_values[name]) for name in varied_names) <= MAX_LINES
+    if request.what == "map" or (len(varied_names) == 2 and not has_few_lines and request.what != "lines"):
         figure, omissions = _threshold_maps(view, drawable_names, request.look.is_narrow)
-        return request.write(figure, f"critical forces over {' and '.join(long)}{omissions}", MAP_ASPECT)
-    search = searched_range_clause(view)
-    if len(long) == 1 or has_few_lines:
-        return request.write(*draw_lines_of_grid(view, long, search))
-    return request.write(*draw_selected_lines(view, long, request.look.is_narrow, search))
+        return request.write(
+            figure, f"critical forces over {' and '.join(varied_names)}{omissions}", MAP_ASPECT
+        )
+    search_clause = searched_range_clause(view)
+    if len(varied_names) == 1 or has_few_lines:
+        return request.write(*draw_lines_of_grid(view, varied_names, search_clause))
+    return request.write(*draw_selected_lines(view, varied_names, request.look.is_narrow, search_clause))
 
 
 def _draw_files(request: FigureRequest) -> str:
@@ -114,6 +116,6 @@ def _threshold_maps(view: ResultView, names: list[str], is_narrow: bool) -> tupl
     label_maps(panels, points)
     if lacking:
         style.legend_below(figure, [Patch(facecolor=NO_THRESHOLD, label="none found")], column_count=1)
-    constants = style.parameter_text(points.common_parameters)
-    set_heading(figure, view, constants, searched_range_clause(view))
+    constants_text = style.parameter_text(points.common_parameters)
+    set_heading(figure, view, constants_text, searched_range_clause(view))
     return figure, points.omissions

@@ -69,7 +69,9 @@ class ColumnTexts:
             texts = (error_text(float(value)) if value else "0" for value in stated_error)
             return [("" if no_text else text, "") for text, no_text in zip(texts, column.absent, strict=True)]
         rows = zip(self._values[name], self.absolute_error(name), column.absent, strict=True)
-        return [("", "") if no_text else number_and_error(float(x), float(dx)) for x, dx, no_text in rows]
+        return [
+            ("", "") if no_text else number_and_error(float(x), float(error)) for x, error, no_text in rows
+        ]
 
     def _rounding(self, error: str) -> Array:
         """Rounding errors, (rows,), of the printed values to which the error variable `error` belongs;
@@ -77,7 +79,11 @@ class ColumnTexts:
         """
         largest_rounding = np.zeros_like(self._values[error])
         for table, relative in ((ABSOLUTE_ERRORS, False), (RELATIVE_ERRORS, True)):
-            for name in (n for n, own_error in table.items() if own_error == error and n in self.columns):
+            for name in (
+                name_with_error
+                for name_with_error, own_error in table.items()
+                if own_error == error and name_with_error in self.columns
+            ):
                 values = self._values[name]
                 printed_values = np.array([float(text) if text else np.nan for text in self.texts(name)])
                 with np.errstate(divide="ignore", invalid="ignore"):

@@ -31,15 +31,20 @@ class Headline:
 def eigenvalue_sentence(rod: OneRod) -> str:
     """Sentence on the number of unstable modes and the leading eigenvalue; empty if no eigenvalue is
     stored."""
-    count = rod.count("unstable_count")
-    stability = "the straight rod is stable" if count == 0 else f"{counted(count or 0, 'unstable mode')}"
-    stability = "number of unstable modes not known" if count is None else stability
-    modes = rod.list_texts["modes"]
-    rate, frequency = (rod.preferred_name(modes, name) for name in ("growth_rate", "frequency"))
-    if not len(modes.columns[rate].values):
+    unstable_count = rod.count("unstable_count")
+    stability_text = (
+        "the straight rod is stable"
+        if unstable_count == 0
+        else f"{counted(unstable_count or 0, 'unstable mode')}"
+    )
+    stability_text = "number of unstable modes not known" if unstable_count is None else stability_text
+    mode_texts = rod.list_texts["modes"]
+    rate, frequency = (rod.preferred_name(mode_texts, name) for name in ("growth_rate", "frequency"))
+    if not len(mode_texts.columns[rate].values):
         return ""
     return (
-        f"{stability}: leading growth rate {modes.short_text(rate)}, frequency {modes.short_text(frequency)}"
+        f"{stability_text}: leading growth rate {mode_texts.short_text(rate)}, frequency "
+        f"{mode_texts.short_text(frequency)}"
     )
 
 
@@ -59,8 +64,8 @@ def threshold_sentence(rod: OneRod) -> str:
             name = column.name.removesuffix(f"_{event}")
             clauses.append(f"{verb} {name} = {rod.text(f'F_{event}')}")
     clauses += _later_flutter(rod)
-    none = "" if rod.count("crossing_count") else f"no threshold up to {_search_end_text(rod)}"
-    return (", ".join(clauses) or none) + _early_end_clause(rod)
+    none_text = "" if rod.count("crossing_count") else f"no threshold up to {_search_end_text(rod)}"
+    return (", ".join(clauses) or none_text) + _early_end_clause(rod)
 
 
 def _later_flutter(rod: OneRod) -> list[str]:
@@ -78,16 +83,16 @@ def _later_flutter(rod: OneRod) -> list[str]:
 def hopf_sentence(rod: OneRod) -> str:
     """Sentence on the numbers of supercritical, subcritical and undecided Hopf points; empty if the count is
     unknown."""
-    count = rod.count("crossing_count")
-    if count is None:
+    hopf_count = rod.count("crossing_count")
+    if hopf_count is None:
         return ""
-    if count == 0:
+    if hopf_count == 0:
         return f"no Hopf point up to {_search_end_text(rod)}{_early_end_clause(rod)}"
     criticality_counts = Counter(
         word or "of unknown criticality" for word in rod.words("crossings", "criticality")
     )
-    kinds = ", ".join(f"{number} {word}" for word, number in criticality_counts.items())
-    return f"{counted(count, 'Hopf point')}: {kinds}{_early_end_clause(rod)}"
+    kinds_text = ", ".join(f"{number} {word}" for word, number in criticality_counts.items())
+    return f"{counted(hopf_count, 'Hopf point')}: {kinds_text}{_early_end_clause(rod)}"
 
 
 def branch_sentence(rod: OneRod) -> str:
@@ -105,10 +110,10 @@ def branch_sentence(rod: OneRod) -> str:
     if any(curve.enters_range for curve in RodBranches(rod.view).curves):
         start_texts.append("from beyond the range" if hopfs else "beyond the range")
     text = f"{counted(branches, 'branch')} of cycles from {' and '.join(start_texts)}"
-    y = rod.preferred_name(cycles, "tip_y_max")
-    if not len(cycles.columns[y].values):
+    y_name = rod.preferred_name(cycles, "tip_y_max")
+    if not len(cycles.columns[y_name].values):
         return f"{text}, no cycle is stored"
-    largest_y_text = cycles.short_text(y, int(np.nanargmax(cycles.columns[y].values)))
+    largest_y_text = cycles.short_text(y_name, int(np.nanargmax(cycles.columns[y_name].values)))
     return f"{text}: {counted(rod.count('point_count') or 0, 'cycle')}, largest tip y {largest_y_text}"
 
 
@@ -129,8 +134,8 @@ def _search_end_text(rod: OneRod) -> str:
 
 def _early_end_clause(rod: OneRod) -> str:
     """Clause that says at which load a search ended early; empty for a complete search."""
-    early = "; not known beyond {}, where the search ended early"
-    return early.format(_search_end_text(rod)) if rod.view.has_status("ended_early").all() else ""
+    clause_format = "; not known beyond {}, where the search ended early"
+    return clause_format.format(_search_end_text(rod)) if rod.view.has_status("ended_early").all() else ""
 
 
 EIGENVALUE_COLUMNS = ("mode", "growth_rate", "frequency")

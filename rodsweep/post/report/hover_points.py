@@ -60,8 +60,10 @@ def hover_points(figure: Figure) -> list[HoverPoint]:
     values are thinned, to about MAX_POINTS values together. The layout of the figure must be final."""
     meanings = _legend_words(figure)
     series_list = [series for axes in figure.axes for series in _panel_series(axes, meanings)]
-    long = sum(len(series.texts) for series in series_list if len(series.texts) > MAX_UNTHINNED_POINTS)
-    step = max(1, ceil(long / MAX_POINTS))
+    long_text_count = sum(
+        len(series.texts) for series in series_list if len(series.texts) > MAX_UNTHINNED_POINTS
+    )
+    step = max(1, ceil(long_text_count / MAX_POINTS))
     height = figure.get_size_inches()[1] * POINTS_PER_INCH
     scale = POINTS_PER_INCH / figure.dpi
     points = []
@@ -113,7 +115,10 @@ def _scatter_series(dots: PathCollection, names: tuple[str, str]) -> HoverSeries
     name = "" if dots.colorbar is None else label_text(dots.colorbar.ax.get_ylabel())
     if name := name or _series_name(dots.get_label()):
         rows = zip(np.ma.filled(values, np.nan), data, strict=True)
-        texts = [f"{name}: {_coordinate_text(value)}\n{_coordinates_text(names, p)}" for value, p in rows]
+        texts = [
+            f"{name}: {_coordinate_text(value)}\n{_coordinates_text(names, position)}"
+            for value, position in rows
+        ]
     return HoverSeries(pixels, texts)
 
 
@@ -147,11 +152,13 @@ def _bar_series(axes: Axes, names: tuple[str, str], meanings: dict[str, str]) ->
             continue
         long_axis = 0 if bars.orientation == "horizontal" else 1
         for bar in bars.patches:
-            low, high = bar.get_bbox().get_points()[:, long_axis]
+            low_corner, high_corner = bar.get_bbox().get_points()[:, long_axis]
             word = meanings.get(to_hex(bar.get_facecolor()), "")
-            ends = f"{names[long_axis]} from {_coordinate_text(low)} to {_coordinate_text(high)}"
+            extent_text = (
+                f"{names[long_axis]} from {_coordinate_text(low_corner)} to {_coordinate_text(high_corner)}"
+            )
             middle = axes.transData.transform(bar.get_bbox().get_points().mean(axis=0))
-            yield HoverSeries(middle[None], ["\n".join(filter(None, (word, ends)))])
+            yield HoverSeries(middle[None], ["\n".join(filter(None, (word, extent_text)))])
 
 
 def axis_name(axes: Axes, letter: Literal["x", "y"]) -> str:
@@ -178,7 +185,9 @@ def _panels_with_same_axis(axes: Axes, letter: Literal["x", "y"]) -> list[Axes]:
 
     figure = axes.get_figure()
     panels = [] if figure is None else figure.axes
-    return [other for other in panels if other is not axes and place(other) == place(axes)]
+    return [
+        other_panel for other_panel in panels if other_panel is not axes and place(other_panel) == place(axes)
+    ]
 
 
 def _legend_words(figure: Figure) -> dict[str, str]:

@@ -54,9 +54,9 @@ def _unicode_of_tex_command(command: str) -> str:
     """Unicode text of a TeX command: a Greek letter, a sign, or the name of the command, such as "max"."""
     if command in TEX_SIGNS:
         return TEX_SIGNS[command]
-    size = "CAPITAL" if command[0].isupper() else "SMALL"
+    letter_case = "CAPITAL" if command[0].isupper() else "SMALL"
     name = "lamda" if command == "lambda" else command  # Unicode's spelling
     try:
-        return unicodedata.lookup(f"GREEK {size} LETTER {name.upper()}")
+        return unicodedata.lookup(f"GREEK {letter_case} LETTER {name.upper()}")
     except KeyError:
         return command

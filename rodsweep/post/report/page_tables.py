@@ -61,10 +61,12 @@ def _table_for_page(table: Table) -> PageTable:
     firsts = ((column, _cells(column.rows(slice(0, 1)))[0]) for column in constant_columns)
     return PageTable(
         name=table.name,
-        column_heads=tuple((c.name, c.printed_unit, c.meaning) for c in varied_columns),
+        column_heads=tuple((column.name, column.printed_unit, column.meaning) for column in varied_columns),
         rows=tuple(zip(*cells, strict=True)),
         total_rows=table.rows,
-        constant_columns=tuple((c.name, first, c.printed_unit, c.meaning) for c, first in firsts),
+        constant_columns=tuple(
+            (column.name, first, column.printed_unit, column.meaning) for column, first in firsts
+        ),
     )
 
 
@@ -85,5 +87,5 @@ def _cell(column: Column, text: str, value: float) -> Cell:
     is_number = column.values.dtype.kind == "f" and not column.flag_meanings and not column.is_estimate
     if not text or not is_number:
         return Cell(text)
-    rounded = f"{value:.{CELL_DIGITS}g}"
-    return Cell(rounded, text) if len(rounded) < len(text) else Cell(text)
+    rounded_text = f"{value:.{CELL_DIGITS}g}"
+    return Cell(rounded_text, text) if len(rounded_text) < len(text) else Cell(text)

@@ -45,10 +45,10 @@ def pictures_of(views: Sequence[ResultView], shapes: ShapeFunction | None, numbe
     """
     # Remove the folders from the paths, so that no sentence on the page names a folder.
     views = [replace(view, path=Path(view.path.name)) for view in views]
-    kinds = [kind for kind in FIGURE_KINDS_BY_TASK.get(views[0].task, ()) if kind != ANIMATION_KIND]
+    figure_kinds = [kind for kind in FIGURE_KINDS_BY_TASK.get(views[0].task, ()) if kind != ANIMATION_KIND]
     by_kind: dict[str, CaptionedPicture] = {}
-    first_refusal = ""
-    for kind in (None, *kinds):
+    first_refusal_text = ""
+    for kind in (None, *figure_kinds):
         figures: list[Figure] = []
         drawn_shapes = shapes if kind is None else None
 
@@ -58,9 +58,9 @@ def pictures_of(views: Sequence[ResultView], shapes: ShapeFunction | None, numbe
         try:
             sentence = draw(views, SVG_REQUEST_NAME, what=kind, shapes=drawn_shapes, figure_callback=keep)
         except InputError as error:
-            first_refusal = first_refusal or str(error)
+            first_refusal_text = first_refusal_text or str(error)
             continue
         caption = sentence.removeprefix(f"wrote {SVG_REQUEST_NAME}: ")
         if caption not in by_kind:
             by_kind[caption] = CaptionedPicture(caption, vector_picture(figures[0], next(numbers), caption))
-    return Pictures(tuple(by_kind.values()), "" if by_kind else first_refusal)
+    return Pictures(tuple(by_kind.values()), "" if by_kind else first_refusal_text)

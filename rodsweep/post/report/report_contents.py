@@ -58,20 +58,24 @@ class ReportContents:
 
 def report_contents(view: ResultView, pictures: Pictures) -> ReportContents:
     """Contents of the page about the result `view`."""
-    a = view.attributes
+    attributes = view.attributes
     summary = summary_of(view)
     name = printable(view.path.name)
     return ReportContents(
         name=name,
-        title=str(a.get("title", "")) or name,
+        title=str(attributes.get("title", "")) or name,
         task=view.task,
         summary=summary,
         statuses=_with_parameter_ranges(view, summary.statuses),
         pictures=pictures,
         tables=list(page_tables(view)),
-        config=str(a.get("config", "")).strip("\n"),
+        config=str(attributes.get("config", "")).strip("\n"),
         complete_config=tree_yaml(view.config).strip("\n"),
-        versions=[(word, str(a[key])) for key, word in VERSION_WORDS.items() if str(a.get(key, ""))],
+        versions=[
+            (word, str(attributes[key]))
+            for key, word in VERSION_WORDS.items()
+            if str(attributes.get(key, ""))
+        ],
     )
 
 
@@ -83,7 +87,9 @@ def _with_parameter_ranges(view: ResultView, statuses: TextTable) -> TextTable:
     list_view = view.as_list
     rows = []
     for word, count, meaning in statuses.rows:
-        region = region_text(list_view, list_view.has_status(word)) if word in view.flags.values() else ""
-        rows.append((word, count, region, meaning))
-    first, second, last = statuses.headings
-    return TextTable((first, second, "where", last), tuple(rows))
+        ranges_text = (
+            region_text(list_view, list_view.has_status(word)) if word in view.flags.values() else ""
+        )
+        rows.append((word, count, ranges_text, meaning))
+    status_heading, count_heading, meaning_heading = statuses.headings
+    return TextTable((status_heading, count_heading, "where", meaning_heading), tuple(rows))

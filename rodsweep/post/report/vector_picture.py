@@ -110,7 +110,10 @@ def dark_page_colour(colour: str) -> str:
     else:
         fractions = (step / LIGHTENING_STEP_COUNT for step in range(LIGHTENING_STEP_COUNT + 1))
         lighter = ([value + (255 - value) * fraction for value in rgb] for fraction in fractions)
-        rgb = [round(value) for value in next(c for c in lighter if _contrast(c) >= MIN_CONTRAST)]
+        rgb = [
+            round(value)
+            for value in next(candidate for candidate in lighter if _contrast(candidate) >= MIN_CONTRAST)
+        ]
     return "".join(f"{value:02x}" for value in rgb)
 
 
@@ -123,5 +126,7 @@ def _contrast(channels: list[float]) -> float:
 def _luminance(channels: list[float]) -> float:
     """Relative luminance, from 0 to 1, as defined by WCAG 2. channels: red, green and blue, from 0 to 255."""
     shares = [channel / 255 for channel in channels]
-    red, green, blue = (x / 12.92 if x <= 0.04045 else ((x + 0.055) / 1.055) ** 2.4 for x in shares)
+    red, green, blue = (
+        share / 12.92 if share <= 0.04045 else ((share + 0.055) / 1.055) ** 2.4 for share in shares
+    )
     return 0.2126 * red + 0.7152 * green + 0.0722 * blue

@@ -17,13 +17,13 @@ def arm_sentences(results: RodResults) -> Iterator[str]:
     view = results.views["thresholds"]
     quantities = {name: float(values.ravel()[0]) for name, values in view.quantities.items()}
     force, pressure, time = (quantities[name] for name in ("force_scale", "pressure_scale", "tau2"))
-    face = f"a pressure of {pressure:.6g} Pa on the face of its tip"
-    yield f"F = 1 stands for {force:.6g} N, or {face}, and tau2 for {time:.6g} s."
+    pressure_text = f"a pressure of {pressure:.6g} Pa on the face of its tip"
+    yield f"F = 1 stands for {force:.6g} N, or {pressure_text}, and tau2 for {time:.6g} s."
     validity = {variable.name: view.by_point(variable.name) for variable in VALIDITY_VARIABLES}
     flutter_clause = " at flutter" if np.isfinite(view.variables["F_hopf"]).all() else ""
     branch = results.views.get("branch")
-    caveat = validity_caveat(branch.variables) if branch else ""
-    on_branches = [f"somewhere on its branches of cycles {caveat}"] if caveat else []
+    caveat_text = validity_caveat(branch.variables) if branch else ""
+    on_branches = [f"somewhere on its branches of cycles {caveat_text}"] if caveat_text else []
     sentences = [validity_sentence(validity, flutter_clause), *on_branches, *plane_lines(view.quantities)]
     yield from (f"{sentence[0].upper()}{sentence[1:]}." for sentence in sentences)
 

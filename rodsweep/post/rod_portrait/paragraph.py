@@ -45,19 +45,19 @@ def paragraph(results: RodResults) -> str:
 def _rod_sentence(results: RodResults) -> Iterator[str]:
     """Yields a sentence on the parameters of the rod and the searched range of the load, and for an arm
     further sentences."""
-    end = float(results.views["thresholds"].point_values(0)["F_end"])
+    end_force = float(results.views["thresholds"].point_values(0)["F_end"])
     units = results.units
-    end_text = units.load_text(end)
-    requested_force = units.load_text(results.F_max)
+    end_text = units.load_text(end_force)
+    requested_force_text = units.load_text(results.F_max)
     kind = results.rod.kind
     search_text = f"was searched up to {end_text}"
-    if not isfinite(end):
+    if not isfinite(end_force):
         search_text = "could not be searched"
-    elif end_text != requested_force:
+    elif end_text != requested_force_text:
         reason = f"just above {end_text} the {kind} is crushed"
         if results.views["thresholds"].has_status(ENDED_EARLY).all():
             reason = "the search ended early: the list was full, or modes could not be counted"
-        search_text += f", not to {requested_force}: {reason}"
+        search_text += f", not to {requested_force_text}: {reason}"
     yield f"The {kind} with {results.rod.description} {search_text}."
     if results.rod.arm:
         yield from arm_sentences(results)
@@ -66,26 +66,28 @@ def _rod_sentence(results: RodResults) -> Iterator[str]:
 def _threshold_sentences(results: RodResults) -> Iterator[str]:
     """Yields sentences on the thresholds of the straight rod, with the criticality of the Hopf points."""
     view = results.views["thresholds"]
-    v = view.point_values(0)
-    crossing_indices = np.flatnonzero(v["crossing_kind"] > 0)
+    variables = view.point_values(0)
+    crossing_indices = np.flatnonzero(variables["crossing_kind"] > 0)
     units = results.units
-    end = units.load_text(float(v["F_end"]))
+    end_text = units.load_text(float(variables["F_end"]))
     clauses = []
     for i in crossing_indices:
-        kind = CROSSING_KINDS[int(v["crossing_kind"][i])]
-        clause = THRESHOLD_CLAUSES[kind].format(F=units.load_text(v["crossing_F"][i], v["crossing_error"][i]))
-        if frequency := float(v["crossing_frequency"][i]):
+        kind = CROSSING_KINDS[int(variables["crossing_kind"][i])]
+        clause = THRESHOLD_CLAUSES[kind].format(
+            F=units.load_text(variables["crossing_F"][i], variables["crossing_error"][i])
+        )
+        if frequency := float(variables["crossing_frequency"][i]):
             clause += f" (frequency {units.frequency_text(frequency)}"
-            clause += f"{_criticality_clause(results, float(v['crossing_F'][i]))})"
+            clause += f"{_criticality_clause(results, float(variables['crossing_F'][i]))})"
         clauses.append(clause)
     if clauses:
         yield f"In the straight state, {'; '.join(clauses)}."
-    elif v["crossing_count"] == 0:
-        yield f"The straight {results.rod.kind} has no threshold up to {end}."
-    if v["crossing_count"] >= 0:
-        range_ = f" up to {end}" if view.has_status(ENDED_EARLY).all() else ""
-        proof = "proved complete" if v["certified"] else "not proved complete"
-        yield f"This list of thresholds{range_} is {proof}."
+    elif variables["crossing_count"] == 0:
+        yield f"The straight {results.rod.kind} has no threshold up to {end_text}."
+    if variables["crossing_count"] >= 0:
+        range_clause = f" up to {end_text}" if view.has_status(ENDED_EARLY).all() else ""
+        proof_text = "proved complete" if variables["certified"] else "not proved complete"
+        yield f"This list of thresholds{range_clause} is {proof_text}."
 
 
 def _criticality_clause(results: RodResults, F: float) -> str:
@@ -93,13 +95,13 @@ def _criticality_clause(results: RodResults, F: float) -> str:
     view = results.views.get("criticality")
     if view is None:
         return ""
-    v = view.point_values(0)
-    is_same_crossing = np.abs(v["crossing_F"] - F) <= SAME_FORCE_TOLERANCE * abs(F)
-    criticalities = v["criticality"][is_same_crossing & np.isfinite(v["criticality"])]
+    variables = view.point_values(0)
+    is_same_crossing = np.abs(variables["crossing_F"] - F) <= SAME_FORCE_TOLERANCE * abs(F)
+    criticalities = variables["criticality"][is_same_crossing & np.isfinite(variables["criticality"])]
     if not criticalities.size:
         return ""
-    side = "above" if v["amplitude_coefficient"][is_same_crossing][0] > 0 else "below"
-    return f"; {CRITICALITY_WORDS[int(criticalities[0])]}, with cycles {side} this load"
+    side_word = "above" if variables["amplitude_coefficient"][is_same_crossing][0] > 0 else "below"
+    return f"; {CRITICALITY_WORDS[int(criticalities[0])]}, with cycles {side_word} this load"
 
 
 def _branch_sentences(results: RodResults) -> Iterator[str]:
@@ -125,18 +127,23 @@ def _branch_sentences(results: RodResults) -> Iterator[str]:
         if (loads := _special_point_loads(curves, kind, units.force.factor))
     ]
     accuracy = results.views["branch"].config["accuracy"]
-    number = f"{counted(len(curves), 'branch')} of cycles ({cycles} solved to {accuracy:g})"
-    end = f"with {' and '.join(texts)}" if texts else "without a fold or another change of stability"
-    yield f"{number} {_beginnings_phrase(curves)}, {end}."
+    branches_phrase = f"{counted(len(curves), 'branch')} of cycles ({cycles} solved to {accuracy:g})"
+    special_points_phrase = (
+        f"with {' and '.join(texts)}" if texts else "without a fold or another change of stability"
+    )
+    yield f"{branches_phrase} {_beginnings_phrase(curves)}, {special_points_phrase}."
     yield from _work_limit_sentence(curves, units)
     stable = [stable_range for curve in curves for stable_range in curve.stable_ranges]
     is_decided = all(curve.is_decided for curve in curves)
-    no_cycle = "none" if is_decided and not rod.hidden_count else "none is known"
-    yield f"Stable cycles: {units.load_ranges_text(stable, rod.parameter_errors) if stable else no_cycle}."
+    no_cycle_text = "none" if is_decided and not rod.hidden_count else "none is known"
+    stable_text = units.load_ranges_text(stable, rod.parameter_errors) if stable else no_cycle_text
+    yield f"Stable cycles: {stable_text}."
     if not rod.hidden_count:
-        both = rod.coexistence_ranges
-        ranges = units.load_ranges_text(both, rod.parameter_errors) if both else ""
-        yield _coexistence_sentence(ranges, rod.coexistence_is_decided, results.rod.kind)
+        coexistence_ranges = rod.coexistence_ranges
+        ranges_text = (
+            units.load_ranges_text(coexistence_ranges, rod.parameter_errors) if coexistence_ranges else ""
+        )
+        yield _coexistence_sentence(ranges_text, rod.coexistence_is_decided, results.rod.kind)
         if pairs := rod.two_cycle_ranges:
             yield f"Two different cycles are stable at {units.load_ranges_text(pairs, rod.parameter_errors)}."
 
@@ -145,15 +152,15 @@ def _beginnings_phrase(curves: Sequence[StoredBranch]) -> str:
     """Phrase for the places where branches begin, such as "begin at its Hopf points"."""
     kinds = [curve.special[0].kind for curve in curves]
     is_single_curve = len(curves) == 1
-    places = []
+    place_texts = []
     if "hopf" in kinds:
-        places.append("at a Hopf point" if is_single_curve else "at its Hopf points")
+        place_texts.append("at a Hopf point" if is_single_curve else "at its Hopf points")
     if breakings := kinds.count("symmetry_breaking"):
-        places.append(f"at {counted(breakings, 'symmetry breaking')}")
+        place_texts.append(f"at {counted(breakings, 'symmetry breaking')}")
     if any(curve.enters_range for curve in curves):
-        places.append("beyond the range")
-    begin = "begins" if is_single_curve else "begin"
-    return f"{begin} {' and '.join(places)}".replace(" and at ", " and ")
+        place_texts.append("beyond the range")
+    verb = "begins" if is_single_curve else "begin"
+    return f"{verb} {' and '.join(place_texts)}".replace(" and at ", " and ")
 
 
 def _work_limit_sentence(curves: Sequence[StoredBranch], units: PortraitUnits) -> Iterator[str]:
@@ -162,9 +169,13 @@ def _work_limit_sentence(curves: Sequence[StoredBranch], units: PortraitUnits) -
     limited_curves = [curve for curve in curves if curve.special[-1].reason == "list_full"]
     if not limited_curves:
         return
-    ends = [units.load_text(curve.special[-1].at) for curve in limited_curves if curve.cycles.any()]
-    clauses = [f"{len(ends)} of them {is_or_are(len(ends))} drawn only to {', '.join(ends)}"] if ends else []
-    if missing_count := len(limited_curves) - len(ends):
+    end_texts = [units.load_text(curve.special[-1].at) for curve in limited_curves if curve.cycles.any()]
+    clauses = (
+        [f"{len(end_texts)} of them {is_or_are(len(end_texts))} drawn only to {', '.join(end_texts)}"]
+        if end_texts
+        else []
+    )
+    if missing_count := len(limited_curves) - len(end_texts):
         clauses.append(f"{missing_count} {is_or_are(missing_count)} not drawn")
     yield (
         f"{' and '.join(clauses)}, because the work or the number of cycles of a portrait is used up; "
@@ -194,16 +205,24 @@ def _cycle_sentences(results: RodResults) -> Iterator[str]:
     units = results.units
     clauses = []
     for F, view in results.cycles:
-        v = view.point_values(0)
+        variables = view.point_values(0)
         word = str(view.status_names[0])
         if word not in CYCLE_STATUSES:
-            no_cycle = f"no cycle that is drawn ({word.replace('_', ' ')})"
-            clauses.append(f"at {units.load_text(F)} a motion from a small deflection leads to {no_cycle}")
+            no_cycle_text = f"no cycle that is drawn ({word.replace('_', ' ')})"
+            clauses.append(
+                f"at {units.load_text(F)} a motion from a small deflection leads to {no_cycle_text}"
+            )
             continue
-        period = units.time.text(float(v["period"]), float(v["period"] * v["period_error"]))
-        y = units.length.text(float(v["tip_y_max"]), float(v["tip_y_max"] * v["amplitude_error"]))
-        place = f"at {units.load_text(F)}{', unstable,' if word == 'unstable' else ''}"
-        clauses.append(f"{place} the period is {period} and the largest y of the tip {y}{cycle_caveat(view)}")
+        period = units.time.text(
+            float(variables["period"]), float(variables["period"] * variables["period_error"])
+        )
+        y_text = units.length.text(
+            float(variables["tip_y_max"]), float(variables["tip_y_max"] * variables["amplitude_error"])
+        )
+        place_text = f"at {units.load_text(F)}{', unstable,' if word == 'unstable' else ''}"
+        clauses.append(
+            f"{place_text} the period is {period} and the largest y of the tip {y_text}{cycle_caveat(view)}"
+        )
     if clauses:
         yield f"Cycles: {'; '.join(clauses)}."
 

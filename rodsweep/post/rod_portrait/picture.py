@@ -56,8 +56,8 @@ def portrait_figure(results: RodResults, with_words: bool = True) -> Figure:
     """
     with matplotlib.rc_context(style.FIGURE_STYLE):
         heights = ROW_HEIGHTS if _has_branches(results) else ROW_HEIGHTS_WITHOUT_BRANCHES
-        size = (PORTRAIT_SIZE[0], PORTRAIT_SIZE[1] * sum(heights) / sum(ROW_HEIGHTS))
-        figure = Figure(figsize=size, layout="constrained")
+        figure_size = (PORTRAIT_SIZE[0], PORTRAIT_SIZE[1] * sum(heights) / sum(ROW_HEIGHTS))
+        figure = Figure(figsize=figure_size, layout="constrained")
         modes = list(results.modes) or [""]
         widths = [MODE_WIDTH] * len(modes) + [1.0] * CYCLE_COUNT
         grid = figure.add_gridspec(4, len(widths), height_ratios=heights, width_ratios=widths)
@@ -72,12 +72,12 @@ def portrait_figure(results: RodResults, with_words: bool = True) -> Figure:
             bar_panel.set_xlabel(results.units.labels[0])
         for column, kind in enumerate(modes):
             _draw_mode(figure.add_subplot(grid[3, column]), results, kind)
-        panels = [figure.add_subplot(grid[3, len(modes) + number]) for number in range(CYCLE_COUNT)]
+        panels = [figure.add_subplot(grid[3, len(modes) + cycle_index]) for cycle_index in range(CYCLE_COUNT)]
         _draw_cycles(panels, results)
         style.legend_below(figure, handles, column_count=4)
         if with_words:
-            text = textwrap.fill(paragraph(results), PARAGRAPH_WIDTH)
-            figure.suptitle(style.escape_dollar_signs(text), x=0.01, ha="left", fontsize=8)
+            paragraph_text = textwrap.fill(paragraph(results), PARAGRAPH_WIDTH)
+            figure.suptitle(style.escape_dollar_signs(paragraph_text), x=0.01, ha="left", fontsize=8)
         return figure
 
 
@@ -90,9 +90,9 @@ def _show_units(panels: Sequence[Axes], results: RodResults) -> None:
     """Converts the panels of the thresholds, the largest y and the period to the units of the portrait."""
     units = results.units
     end = panels[0].get_xlim()[1]
-    for axes, y in zip(panels, (1.0, units.length.factor, units.time.factor), strict=True):
+    for axes, y_factor in zip(panels, (1.0, units.length.factor, units.time.factor), strict=True):
         if units.load and axes.axison:
-            rescale_panel(axes, units.force.factor, y)
+            rescale_panel(axes, units.force.factor, y_factor)
     panels[0].set_xlim(0, units.force.factor * end)
 
 
@@ -100,14 +100,14 @@ def _draw_thresholds(axes: Axes, results: RodResults) -> list[Artist]:
     """Draws the stability of the straight rod along F, with the thresholds; returns legend entries. If the
     thresholds are unknown, the panel states the reason, and the list is empty."""
     view = results.views["thresholds"]
-    v = view.point_values(0)
+    variables = view.point_values(0)
     axes.set(ylim=(-0.6, 0.6), yticks=[])
     axes.spines["left"].set_visible(False)
     axes.tick_params(labelbottom=False)
-    if not np.isfinite(v["F_end"]):
+    if not np.isfinite(variables["F_end"]):
         _write_sentence(axes, f"thresholds: {_status_meaning(view)}", PARAGRAPH_WIDTH)
         return []
-    axes.set_xlim(0, float(v["F_end"]))
+    axes.set_xlim(0, float(variables["F_end"]))
     drawn_classes = draw_class_bar(axes, view, 0, is_vertical=False)
     force = results.units.force
     marks = mark_thresholds_on_bars(axes, view, is_vertical=False, unit=force.name, factor=force.factor)
@@ -148,7 +148,9 @@ def _mark_cycles(upper: Axes, lower: Axes, results: RodResults) -> list[Line2D]:
     handles: list[Line2D] = []
     look: dict[str, Any] = {"color": "k", "ms": 9, "mec": "white", "mew": 0.6, "label": CYCLE_LEGEND_ENTRY}
     for axes, name in ((upper, "tip_y_max"), (lower, "period")):
-        handles = axes.plot([F for F, _ in cycles], [float(v[name]) for _, v in cycles], "*", **look)
+        handles = axes.plot(
+            [F for F, _ in cycles], [float(stored[name]) for _, stored in cycles], "*", **look
+        )
     return handles if cycles else []
 
 
@@ -158,15 +160,15 @@ def _draw_mode(axes: Axes, results: RodResults, kind: str) -> None:
         _write_sentence(axes, f"no mode: {results.missing['modes']}", PANEL_TEXT_WIDTH)
         return
     F, view = results.modes[kind]
-    v = view.point_values(0)
+    variables = view.point_values(0)
     axes.set_title(results.units.mode_title(kind, F))
-    if not np.isfinite(v["Y_real"][0]).all():
+    if not np.isfinite(variables["Y_real"][0]).all():
         _write_sentence(axes, f"no mode: {_status_meaning(view)}", PANEL_TEXT_WIDTH)
         return
-    smallest = MIN_DRAWN_PART * np.abs(v["Y_real"][0]).max()
+    smallest = MIN_DRAWN_PART * np.abs(variables["Y_real"][0]).max()
     for name, line, label in (("Y_real", "-", "Re"), ("Y_imag", ":", "Im")):
-        if np.abs(v[name][0]).max() > smallest:
-            axes.plot(view.variables["u"], v[name][0], line, color=style.BLUE, lw=1.5, label=label)
+        if np.abs(variables[name][0]).max() > smallest:
+            axes.plot(view.variables["u"], variables[name][0], line, color=style.BLUE, lw=1.5, label=label)
     axes.axhline(0, color="0.8", lw=0.6, zorder=0)
     axes.set(xlabel="$u/L$", ylabel="$Y_1$", xlim=(0, 1))
     axes.legend(frameon=False, loc="upper left", fontsize=7, handlelength=1.2, borderpad=0)
@@ -182,20 +184,24 @@ def _draw_cycles(panels: Sequence[Axes], results: RodResults) -> None:
     cycles = [view.point_values(0) for _, view in results.cycles if _has_cycle(view)]
     units = results.units
     length = units.length.factor
-    max_y = max((float(np.abs(v["shape_y"]).max()) for v in cycles), default=0.0) + ARROW_LENGTH
+    max_y = max((float(np.abs(stored["shape_y"]).max()) for stored in cycles), default=0.0) + ARROW_LENGTH
     for axes, (F, view) in zip(panels, results.cycles, strict=True):
-        v = view.point_values(0)
+        stored = view.point_values(0)
         force = units.force_title(F)
         if not _has_cycle(view):
             axes.set_title(force)
             _write_sentence(axes, f"no cycle: {_status_meaning(view)}", PANEL_TEXT_WIDTH)
             continue
-        shades = matplotlib.colormaps["viridis_r"](np.linspace(UNUSED_COLOUR_FRACTION, 1, len(v["shape_x"])))
+        shades = matplotlib.colormaps["viridis_r"](
+            np.linspace(UNUSED_COLOUR_FRACTION, 1, len(stored["shape_x"]))
+        )
         draw_clamp(axes, length)
-        for x, y, theta, shade in zip(v["shape_x"], v["shape_y"], v["shape_theta"], shades, strict=True):
+        for x, y, theta, shade in zip(
+            stored["shape_x"], stored["shape_y"], stored["shape_theta"], shades, strict=True
+        ):
             axes.plot(length * x, length * y, color=shade, lw=1.3)
             force_arrow(axes, length * x, length * y, theta, shade, length)
-        period = units.time.text(float(v["period"]), float(v["period"] * v["period_error"]))
+        period = units.time.text(float(stored["period"]), float(stored["period"] * stored["period_error"]))
         axes.set_title(f"{force}\n$T$ = {period}".replace("tau2", r"$\tau_2$"))
         ends = length * np.array([-0.1, 1 + ARROW_LENGTH])
         axes.set(xlim=ends, ylim=(-length * max_y, length * max_y), aspect="equal")

@@ -76,8 +76,8 @@ class PortraitUnits:
         """Labels of the axes of the load, the largest y of the tip, and the period."""
         if not self.load:
             return style.LABELS["F"], "largest $y/L$ of the tip", r"period$/\tau_2$"
-        y = f"largest $y$ of the tip ({self.length.name})"
-        return f"{self.load} ({self.force.name})", y, f"period ({self.time.name})"
+        y_label = f"largest $y$ of the tip ({self.length.name})"
+        return f"{self.load} ({self.force.name})", y_label, f"period ({self.time.name})"
 
     def mode_title(self, kind: str, F: float) -> str:
         """Title of the panel of a mode at the threshold F of the given kind."""
@@ -104,7 +104,8 @@ def portrait_units(view: ResultView, load_kind: str, largest: float) -> Portrait
     if not view.quantities:
         return ROD_UNITS
     force, length, tau2 = (
-        float(view.quantities[n].ravel()[0]) for n in (SCALE_NAME[load_kind], "length", "tau2")
+        float(view.quantities[quantity_name].ravel()[0])
+        for quantity_name in (SCALE_NAME[load_kind], "length", "tau2")
     )
 
     def unit(si: str, scale: float, largest: float) -> Unit:

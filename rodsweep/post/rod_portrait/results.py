@@ -33,7 +33,9 @@ class DescribedRod:
         """Description of the rod as text: quantities of an arm, parameters other than F, and material."""
         quantity_texts = [f"{name.replace('_', ' ')} {_quantity(value)}" for name, value in self.arm.items()]
         quantity_texts += [f"{name} = {value:g}" for name, value in self.parameters.items() if name != "F"]
-        quantity_texts += [f"{n} {self.material[n]}" for n in ("law", "section") if n in self.material]
+        quantity_texts += [
+            f"{key} {self.material[key]}" for key in ("law", "section") if key in self.material
+        ]
         quantity_texts += ["a profile along its length"] if "profile" in self.material else []
         return ", ".join(quantity_texts)
 

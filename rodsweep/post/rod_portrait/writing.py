@@ -43,7 +43,7 @@ def write_portrait(results: RodResults, output: Path) -> str:
 
 
 def portrait_caption(results: RodResults) -> str:
-    """Description of the picture: the results that it shows."""
+    """Enumeration of the results that the picture shows, for the sentence "wrote ..."."""
     branches = results.branches
     part_is_shown = {
         "thresholds": True,
@@ -70,7 +70,8 @@ def portrait_page(results: RodResults) -> str:
         paragraph=paragraph(results),
         pictures=Pictures((CaptionedPicture(caption, picture),)),
         tables=[
-            (name, [t for t in page_tables(view) if t.name not in HIDDEN_TABLES]) for name, view in views
+            (name, [table for table in page_tables(view) if table.name not in HIDDEN_TABLES])
+            for name, view in views
         ],
         origin=provenance_lines(results.views["thresholds"].attributes),
     )

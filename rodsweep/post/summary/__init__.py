@@ -60,7 +60,7 @@ def summary_of(view: ResultView, every_status: bool = False) -> Summary:
     rods = computed & (status < NOT_SLENDER)
     no_points_lines = SummaryLines([] if computed.any() else [f"no {noun} is computed yet"])
     lines = SUMMARIES[view.task](view, rods) if rods.any() else no_points_lines
-    a = view.attributes
+    attributes = view.attributes
     return Summary(
         answer=_answer_lines(view, computed, lines),
         reliability=[
@@ -73,7 +73,11 @@ def summary_of(view: ResultView, every_status: bool = False) -> Summary:
         material=material_lines(view),
         axes=_axes_table(view),
         numbers=lines.numbers,
-        provenance=[*time_lines(view, computed, noun), *rank_lines(a, noun), *provenance_lines(a)],
+        provenance=[
+            *time_lines(view, computed, noun),
+            *rank_lines(attributes, noun),
+            *provenance_lines(attributes),
+        ],
     )
 
 
@@ -139,18 +143,18 @@ def _answer_lines(view: ResultView, computed: np.ndarray, summary: SummaryLines)
     return [*lines, "", "the same in dimensionless numbers:", *summary.answer] if summary.answer else lines
 
 
-def _unfinished_lines(view: ResultView, missing: int, noun: str) -> list[str]:
+def _unfinished_lines(view: ResultView, missing_count: int, noun: str) -> list[str]:
     """Lines about points and curves that are not computed yet, and about points that only the journal holds.
-    missing: number of missing points."""
+    missing_count: number of missing points."""
     lines = []
-    subject = f"{counted(missing, noun)} {is_or_are(missing)}"
-    if missing and (shard := view.attributes.get("shard")):
+    count_phrase = f"{counted(missing_count, noun)} {is_or_are(missing_count)}"
+    if missing_count and (shard := view.attributes.get("shard")):
         lines.append(
-            f"{subject} not in this file: it is shard {shard}, and `rodsweep merge` combines the shards; if "
-            "the run of this shard was interrupted, the same command continues the run"
+            f"{count_phrase} not in this file: it is shard {shard}, and `rodsweep merge` combines the "
+            "shards; if the run of this shard was interrupted, the same command continues the run"
         )
-    elif missing:
-        lines.append(f"{subject} missing; if no run is in progress, the same command continues")
+    elif missing_count:
+        lines.append(f"{count_phrase} missing; if no run is in progress, the same command continues")
     elif lacks_sweep_wide_variables(view.attributes):
         lines.append(
             f"all {plural(noun)} are computed; the curves are missing; repeat the command to add the curves"
@@ -210,9 +214,9 @@ def _count_and_range(values: np.ndarray) -> tuple[str, str, str]:
     values. NaN is ignored. `largest` is empty if all values are equal."""
     # Twelve digits, because values computed from an arm may differ by rounding.
     distinct = {f"{value:.12g}" for value in values[~np.isnan(values)]}
-    ends = sorted(map(float, distinct))
-    texts = [f"{end:.6g}" for end in ends]
-    return str(len(ends)), texts[0] if texts else "", texts[-1] if len(texts) > 1 else ""
+    range_ends = sorted(map(float, distinct))
+    texts = [f"{end:.6g}" for end in range_ends]
+    return str(len(range_ends)), texts[0] if texts else "", texts[-1] if len(texts) > 1 else ""
 
 
 def _status_table(view: ResultView, status: np.ndarray, is_every_shown: bool, noun: str) -> TextTable:
@@ -220,7 +224,7 @@ def _status_table(view: ResultView, status: np.ndarray, is_every_shown: bool, no
     are included."""
     sentences = view.sentences | {"missing": "not computed yet"}
     rows = []
-    counts = dict(zip(*(a.tolist() for a in np.unique(status, return_counts=True)), strict=True))
+    counts = dict(zip(*(array.tolist() for array in np.unique(status, return_counts=True)), strict=True))
     for value in sorted(view.flags.keys() | counts.keys()) if is_every_shown else counts:
         name = view.flags.get(value, f"unknown ({value})")
         rows.append((name, str(counts.get(value, 0)), sentences.get(name, "")))

@@ -46,11 +46,11 @@ def branch_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
     """Summary of branches. computed: mask of the computed points, of the shape of the points."""
     if computed.size == 1:
         return SummaryLines(list(_one_rod_lines(RodBranches(view))), [searched_range_line(view, computed)])
-    v = view.variables
+    variables = view.variables
     rods = [RodBranches(view, int(rod)) for rod in np.flatnonzero(computed.ravel())]
-    counts = v["branch_count"][computed]
+    counts = variables["branch_count"][computed]
     branches, cycles = (
-        counted(int(v[f"{name}_count"][computed].clip(min=0).sum()), noun)
+        counted(int(variables[f"{name}_count"][computed].clip(min=0).sum()), noun)
         for name, noun in (("branch", "branch"), ("point", "cycle"))
     )
     count_text = count_of_total((counts > 0).sum(), len(rods), "rod")
@@ -68,11 +68,11 @@ def branch_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
 def _one_rod_lines(rod: RodBranches) -> Iterator[str]:
     """Yields lines about every branch of the only rod in a file, with the errors of its special points."""
     parameter = followed_parameter(rod.view)
-    v = rod.view.variables
+    variables = rod.view.variables
     if rod.hidden_count:
-        count = count_of_total(rod.hidden_count, rod.hidden_count + len(rod.curves), "branch")
-        yield f"{count} {is_or_are(rod.hidden_count)} not shown: {LIST_IS_FULL_REASON}"
-    elif v["branch_count"].max() < 0:
+        count_text = count_of_total(rod.hidden_count, rod.hidden_count + len(rod.curves), "branch")
+        yield f"{count_text} {is_or_are(rod.hidden_count)} not shown: {LIST_IS_FULL_REASON}"
+    elif variables["branch_count"].max() < 0:
         yield "the branches of this rod are not known: its solve failed"
     elif not rod.curves:
         [(low, high)] = uncrushed_ranges(rod.view, [rod.index])
@@ -81,7 +81,7 @@ def _one_rod_lines(rod: RodBranches) -> Iterator[str]:
             return
         yield f"no Hopf point in the range of {parameter}, so that no branch begins there"
     for number, curve in enumerate(rod.curves, 1):
-        errors = v["amplitude_error"].ravel()[v["branch"].ravel() == number]
+        errors = variables["amplitude_error"].ravel()[variables["branch"].ravel() == number]
         yield f"branch {number}, {_ends_phrase(curve, parameter)}: {_extent_text(curve, errors, parameter)}"
         yield from _special_points_between_ends(curve, parameter)
         if curve.stable_ranges:
@@ -90,9 +90,9 @@ def _one_rod_lines(rod: RodBranches) -> Iterator[str]:
         else:
             yield "  no stable cycle" if curve.is_decided else "  no cycle is known to be stable"
     if rod.curves and not rod.hidden_count:
-        nowhere = "nowhere in the range" if rod.coexistence_is_decided else "not known"
+        nowhere_text = "nowhere in the range" if rod.coexistence_is_decided else "not known"
         ranges = rod.coexistence_ranges
-        text = f"{parameter} = {ranges_text(ranges, rod.parameter_errors)}" if ranges else nowhere
+        text = f"{parameter} = {ranges_text(ranges, rod.parameter_errors)}" if ranges else nowhere_text
         yield f"{COEXISTENCE_WORDS}: {text}"
         if pairs := rod.two_cycle_ranges:
             yield f"{TWO_CYCLES_WORDS} at {parameter} = {ranges_text(pairs, rod.parameter_errors)}"
@@ -117,54 +117,58 @@ def _special_points_between_ends(curve: StoredBranch, parameter_name: str) -> It
             continue
         if special in (curve.special[0], curve.special[-1]) and special.kind == "symmetry_breaking":
             continue
-        position = number_with_error(special.at, special.error)
+        position_text = number_with_error(special.at, special.error)
         kind = special.kind.replace("_", " ")
         kind += f", where branch {special.meets} meets it," * (special.meets > 0)
-        period = number_with_error(special.period, special.period * special.period_error)
-        y = number_with_error(special.tip_y_max, special.tip_y_max * special.tip_y_max_error)
-        yield f"  {kind} at {parameter_name} = {position}, period {period} tau2, largest tip y {y} L"
+        period_text = number_with_error(special.period, special.period * special.period_error)
+        y_text = number_with_error(special.tip_y_max, special.tip_y_max * special.tip_y_max_error)
+        yield (
+            f"  {kind} at {parameter_name} = {position_text}, period {period_text} tau2, "
+            f"largest tip y {y_text} L"
+        )
 
 
 def _ends_phrase(curve: StoredBranch, parameter_name: str) -> str:
     """Phrase for the start and the end of a branch: "from ... to ..."."""
     first = curve.special[0]
     last = curve.special[-1]
-    position = f"{parameter_name} = {number_with_error(first.at, first.error)}"
-    start = f"from the Hopf point at {position}"
+    position_text = f"{parameter_name} = {number_with_error(first.at, first.error)}"
+    start_text = f"from the Hopf point at {position_text}"
     if first.kind == "symmetry_breaking":
-        start = f"without mirror symmetry, from branch {first.meets} at {position}"
+        start_text = f"without mirror symmetry, from branch {first.meets} at {position_text}"
     if curve.enters_range:
-        position = f"{parameter_name} = {rounded_text(first.at, first.error)}"
-        start = f"from beyond {BRANCH_END_WORDS[first.reason]}, {position},"
-    end = f"{parameter_name} = {number_with_error(last.at, last.error)}"
+        position_text = f"{parameter_name} = {rounded_text(first.at, first.error)}"
+        start_text = f"from beyond {BRANCH_END_WORDS[first.reason]}, {position_text},"
+    end_text = f"{parameter_name} = {number_with_error(last.at, last.error)}"
     if last.kind == "hopf":
-        return f"{start} to that at {end}"
+        return f"{start_text} to that at {end_text}"
     if last.kind == "symmetry_breaking":
-        return f"{start} to branch {last.meets} at {end}"
+        return f"{start_text} to branch {last.meets} at {end_text}"
     if last.kind == "left_the_model":
-        return f"{start} to {BRANCH_END_WORDS[last.kind]}, {end}"
+        return f"{start_text} to {BRANCH_END_WORDS[last.kind]}, {end_text}"
     return (
-        f"{start} to {BRANCH_END_WORDS[last.reason]}, {parameter_name} = {rounded_text(last.at, last.error)}"
+        f"{start_text} to {BRANCH_END_WORDS[last.reason]}, {parameter_name} = "
+        f"{rounded_text(last.at, last.error)}"
     )
 
 
 def _sizes_text(view: ResultView, computed: np.ndarray) -> str:
     """Clause with the ranges of period and amplitude over all cycles at the points in the mask `computed`;
     empty if there is no cycle."""
-    v = view.variables
-    if not np.isfinite(v["period"][computed]).any():
+    variables = view.variables
+    if not np.isfinite(variables["period"][computed]).any():
         return ""
-    period, y = (known_range_text(v, name, computed) for name in ("period", "tip_y_max"))
-    return f": period {period} tau2, largest tip y {y} L"
+    period_text, y_text = (known_range_text(variables, name, computed) for name in ("period", "tip_y_max"))
+    return f": period {period_text} tau2, largest tip y {y_text} L"
 
 
 def _special_lines(rods: Sequence[RodBranches], parameter_name: str) -> Iterator[str]:
     """Yields lines on the number and range of special points of each kind, and of branch ends, over all rods;
     then a line for each branch that stopped because no further cycle was found."""
     points: dict[str, list[tuple[float, float]]] = {w: [] for w in (*SPECIAL_POINT_WORDS, *BRANCH_END_WORDS)}
-    curves = [(rod, number, curve) for rod in rods for number, curve in enumerate(rod.curves, 1)]
-    entries = [curve.special[0] for _, _, curve in curves if curve.enters_range]
-    for _, number, curve in curves:
+    rods_and_curves = [(rod, number, curve) for rod in rods for number, curve in enumerate(rod.curves, 1)]
+    entries = [curve.special[0] for _, _, curve in rods_and_curves if curve.enters_range]
+    for _, number, curve in rods_and_curves:
         for special in curve.special[curve.enters_range :]:
             kind = special.reason if special.kind == "end" else special.kind
             is_counted = 0 < special.meets < number  # already counted on the other branch at this point
@@ -184,10 +188,10 @@ def _special_lines(rods: Sequence[RodBranches], parameter_name: str) -> Iterator
         verb = "enters" if len(entries) == 1 else "enter"
         yield f"{counted(len(entries), 'branch')} {verb} the range from beyond: {parameter_name} = {span}"
     stopped = []
-    for rod, number, curve in curves:
+    for rod, number, curve in rods_and_curves:
         if (end := curve.special[-1]).reason == "no_cycle_found":
-            position = f"{parameter_name} = {rounded_text(end.at, end.error)}"
-            stopped.append(f"{point_text(rod.view, rod.index)}: branch {number}, at {position}")
+            position_text = f"{parameter_name} = {rounded_text(end.at, end.error)}"
+            stopped.append(f"{point_text(rod.view, rod.index)}: branch {number}, at {position_text}")
     yield from first_lines(stopped, "branch")
 
 
@@ -195,8 +199,8 @@ def _coexistence_lines(rods: Sequence[RodBranches], parameter_name: str) -> Iter
     """Yields lines on the number of rods with two stable states, and on the ranges of the first such rods."""
     complete = [rod for rod in rods if not rod.hidden_count]
     if len(complete) < len(rods):
-        unknown = counted(len(rods) - len(complete), "rod")
-        yield f"whether two states are stable is not known for {unknown}: {LIST_IS_FULL_REASON}"
+        unknown_rods_text = counted(len(rods) - len(complete), "rod")
+        yield f"whether two states are stable is not known for {unknown_rods_text}: {LIST_IS_FULL_REASON}"
     if complete:
         coexistence = [rod.coexistence_ranges for rod in complete]
         yield from _lines_on_rods_with(complete, parameter_name, COEXISTENCE_WORDS, coexistence)

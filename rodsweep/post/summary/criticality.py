@@ -1,5 +1,5 @@
-"""Hopf points in `rodsweep show`: criticality, coefficients of the normal form, and errors. v: variables of a
-single rod, by name."""
+"""Hopf points in `rodsweep show`: criticality, coefficients of the normal form, and errors.
+variables: variables of a single rod, by name."""
 
 from collections.abc import Iterator, Mapping
 
@@ -34,11 +34,11 @@ def criticality_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
     """Summary of Hopf points. computed: mask of the computed points, of the shape of the points."""
     v = view.variables
     if computed.size == 1:
-        none = "the Hopf points of this rod are not known"
+        none_text = "the Hopf points of this rod are not known"
         if v["crossing_count"].max() >= 0:
-            none = f"no Hopf point up to F = {span_text(v['F_end'])}"
+            none_text = f"no Hopf point up to F = {span_text(v['F_end'])}"
         of_rod = view.point_values(0)
-        lines = list(_hopf_lines(of_rod)) or [none]
+        lines = list(_hopf_lines(of_rod)) or [none_text]
         lines[0] += unknown_beyond_clause(view, float(of_rod["F_end"]))
         reliability = [_searched_range_line(view, computed)]
         numbers = _hopf_table(of_rod)
@@ -46,73 +46,83 @@ def criticality_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
     criticality = v["criticality"][computed]
     is_known = np.isfinite(criticality)
     with_hopf = v["crossing_count"] > 0
-    region = in_brackets(region_text(view, computed & with_hopf)) if (computed & with_hopf).any() else ""
+    place_text = in_brackets(region_text(view, computed & with_hopf)) if (computed & with_hopf).any() else ""
     unknown = int(((v["crossing_count"] < 0) | (view.has_status(ENDED_EARLY) & ~with_hopf))[computed].sum())
     lines = [
         f"Hopf points at {count_of_total(with_hopf[computed].sum(), computed.sum(), 'rod')}"
-        f"{region}{unknown_clause(unknown)}"
+        f"{place_text}{unknown_clause(unknown)}"
     ]
     if not is_known.any():
         return SummaryLines(lines, [_searched_range_line(view, computed)])
     names = ("amplitude_coefficient", "frequency_slope")
     values, errors = ((v[name][computed], absolute_errors(v, name)[computed]) for name in names)
-    F = span_text(v["crossing_F"][computed][:, 0], v["crossing_error"][computed][:, 0])
-    size = span_text(*(table[:, 0] for table in values))
-    lines.append(f"first Hopf point of each rod: {_count_text(criticality[:, 0])}; F = {F}, a = {size} L")
+    forces_text = span_text(v["crossing_F"][computed][:, 0], v["crossing_error"][computed][:, 0])
+    amplitude_text = span_text(*(table[:, 0] for table in values))
+    lines.append(
+        f"first Hopf point of each rod: {_count_text(criticality[:, 0])}; F = {forces_text}, a = "
+        f"{amplitude_text} L"
+    )
     lines += _subcritical_lines(view)
     symbols = {"landau": "c", "growth_slope": "dw/dF", "amplitude_coefficient": "a", "frequency_slope": "b"}
     worst = [f"{symbol} {_maximum(v[f'{name}_error'][computed])}" for name, symbol in symbols.items()]
     reliability = [_searched_range_line(view, computed), f"worst relative errors: {', '.join(worst)}"]
     scope = "stored" if (v["crossing_count"][computed] > is_known.sum(axis=-1)).any() else "all"
-    sizes = f"a = {span_text(*values)} L, b = {span_text(*errors)} L^2/(k3 tau2)"
-    return SummaryLines(lines, reliability, [f"{scope} Hopf points: {_count_text(criticality)}; {sizes}"])
+    coefficients_text = f"a = {span_text(*values)} L, b = {span_text(*errors)} L^2/(k3 tau2)"
+    return SummaryLines(
+        lines, reliability, [f"{scope} Hopf points: {_count_text(criticality)}; {coefficients_text}"]
+    )
 
 
-def _hopf_lines(v: Mapping[str, np.ndarray]) -> Iterator[str]:
+def _hopf_lines(variables: Mapping[str, np.ndarray]) -> Iterator[str]:
     """Yields one line for each Hopf point of the only rod in a file."""
-    for i in np.flatnonzero(v["crossing_kind"] > 0):
-        F = rounded_text(v["crossing_F"][i], v["crossing_error"][i])
-        kind = CROSSING_KINDS[int(v["crossing_kind"][i])]
-        normal_form = "its normal form is not known"
-        if np.isfinite(v["landau_error"][i]):
-            normal_form = f"{CRITICALITY_WORDS[int(v['criticality'][i])]}, {_nearby_cycles_clause(v, int(i))}"
-        unstable_count = int(v["unstable_after"][i])
-        modes = "the number of unstable modes beyond it is not known"
+    for i in np.flatnonzero(variables["crossing_kind"] > 0):
+        F_text = rounded_text(variables["crossing_F"][i], variables["crossing_error"][i])
+        kind = CROSSING_KINDS[int(variables["crossing_kind"][i])]
+        normal_form_text = "its normal form is not known"
+        if np.isfinite(variables["landau_error"][i]):
+            normal_form_text = (
+                f"{CRITICALITY_WORDS[int(variables['criticality'][i])]}, "
+                f"{_nearby_cycles_clause(variables, int(i))}"
+            )
+        unstable_count = int(variables["unstable_after"][i])
+        modes_sentence = "the number of unstable modes beyond it is not known"
         if unstable_count >= 0:
-            modes = f"the straight rod has {counted(unstable_count, 'unstable mode')} beyond it"
-        yield f"{kind} at F = {F}: {normal_form}; {modes}"
+            modes_sentence = f"the straight rod has {counted(unstable_count, 'unstable mode')} beyond it"
+        yield f"{kind} at F = {F_text}: {normal_form_text}; {modes_sentence}"
 
 
-def _hopf_table(v: Mapping[str, np.ndarray]) -> TextTable | None:
+def _hopf_table(variables: Mapping[str, np.ndarray]) -> TextTable | None:
     """Table with one column for each Hopf point of the only rod in a file; None if the rod has no Hopf
     point."""
-    indices = np.flatnonzero(v["crossing_kind"] > 0)
-    kinds = (CROSSING_KINDS[int(v["crossing_kind"][i])] for i in indices)
+    indices = np.flatnonzero(variables["crossing_kind"] > 0)
+    kinds = (CROSSING_KINDS[int(variables["crossing_kind"][i])] for i in indices)
     rows = []
     for name, label in HOPF_NUMBERS.items():
-        numbers = zip(v[name][indices].tolist(), absolute_errors(v, name)[indices].tolist(), strict=True)
+        numbers = zip(
+            variables[name][indices].tolist(), absolute_errors(variables, name)[indices].tolist(), strict=True
+        )
         rows.append((label, *(cell for number in numbers for cell in number_and_error(*number))))
     headings = ("", *(title for kind in kinds for title in (kind, "+-")))
     return TextTable(headings, tuple(rows)) if len(indices) else None
 
 
-def _nearby_cycles_clause(v: Mapping[str, np.ndarray], i: int) -> str:
+def _nearby_cycles_clause(variables: Mapping[str, np.ndarray], i: int) -> str:
     """Clause on the cycles near the i-th Hopf point of the only rod in a file: whether F is larger or
     smaller, and whether the cycles are stable."""
-    sign = int(v["criticality"][i])
+    sign = int(variables["criticality"][i])
     if sign == 0:
         return "the sign of Re c is within its error"
-    side_of_hopf = "larger F" if v["amplitude_coefficient"][i] > 0 else "smaller F"
-    count = int(v["unstable_after"][i])
-    is_hopf = CROSSING_KINDS[int(v["crossing_kind"][i])] == "hopf"
+    side_text = "larger F" if variables["amplitude_coefficient"][i] > 0 else "smaller F"
+    count = int(variables["unstable_after"][i])
+    is_hopf = CROSSING_KINDS[int(variables["crossing_kind"][i])] == "hopf"
     other_count = count - 2 if is_hopf else count
     if sign > 0:
-        return f"unstable cycles at {side_of_hopf}"
+        return f"unstable cycles at {side_text}"
     if count < 0:
-        return f"cycles at {side_of_hopf}"
+        return f"cycles at {side_text}"
     if other_count:
-        return f"cycles at {side_of_hopf}, unstable by {other_count} other modes"
-    return f"stable cycles at {side_of_hopf}"
+        return f"cycles at {side_text}, unstable by {other_count} other modes"
+    return f"stable cycles at {side_text}"
 
 
 def _subcritical_lines(view: ResultView) -> Iterator[str]:
@@ -126,10 +136,15 @@ def _subcritical_lines(view: ResultView) -> Iterator[str]:
         name = ", ".join(f"{key} = {column[rod]:.6g}" for key, column in columns.items())
         indices = np.flatnonzero(criticality[rod] == 1)
         names = ("crossing_F", "amplitude_coefficient", "amplitude_coefficient_error", "crossing_error")
-        forces, a, relative, absolute = (view.by_point(name)[rod][indices] for name in names)
+        forces, amplitude_coefficient, relative, absolute = (
+            view.by_point(name)[rod][indices] for name in names
+        )
         texts = ", ".join(
-            f"F = {rounded_text(F, dF)} (Hopf point {i + 1}, a = {rounded_text(x, abs(x) * dx)} L)"
-            for F, dF, i, x, dx in zip(forces, absolute, indices, a, relative, strict=True)
+            f"F = {rounded_text(F, F_error)} (Hopf point {i + 1}, a = "
+            f"{rounded_text(coefficient, abs(coefficient) * coefficient_error)} L)"
+            for F, F_error, i, coefficient, coefficient_error in zip(
+                forces, absolute, indices, amplitude_coefficient, relative, strict=True
+            )
         )
         yield f"subcritical Hopf points, with the amplitude coefficient a, for {name}: {texts}"
     if len(rods) > MAX_LISTED_ITEMS:
@@ -145,14 +160,17 @@ def _count_text(signs: np.ndarray) -> str:
 
 def _searched_range_line(view: ResultView, computed: np.ndarray) -> str:
     """Line on the searched range of F, and on the completeness of the list of Hopf points."""
-    v = view.variables
-    certified = int(v["certified"][computed].sum())
+    variables = view.variables
+    certified = int(variables["certified"][computed].sum())
     rods = int(computed.sum())
-    unlisted = int(v["crossing_count"][computed].clip(min=0).sum() - (v["crossing_kind"][computed] > 0).sum())
-    ends = v["F_end"][computed]
-    search = f"searched up to F = {span_text(ends)}; " if np.isfinite(ends).any() else ""
+    unlisted = int(
+        variables["crossing_count"][computed].clip(min=0).sum()
+        - (variables["crossing_kind"][computed] > 0).sum()
+    )
+    ends = variables["F_end"][computed]
+    search_clause = f"searched up to F = {span_text(ends)}; " if np.isfinite(ends).any() else ""
     return (
-        f"{search}the list of Hopf points {proof_clause(view)} for "
+        f"{search_clause}the list of Hopf points {proof_clause(view)} for "
         f"{count_of_total(certified, rods, 'rod')}{unstored_clause(unlisted)}"
     )
 

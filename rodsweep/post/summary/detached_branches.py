@@ -1,5 +1,5 @@
-"""Cycles on branches that no Hopf point of a diagram's row leads to, in `rodsweep show`. line: parameter that
-varies along a row. row: parameter that is constant on a row."""
+"""Cycles on branches that no Hopf point of a diagram's row leads to, in `rodsweep show`. line_parameter:
+parameter that varies along a row. row_parameter: parameter that is constant on a row."""
 
 from itertools import pairwise
 
@@ -21,14 +21,13 @@ def detached_branch_lines(view: ResultView, row_parameter: str) -> list[str]:
     lost = lost_beyond_lines(view)
     if DETACHED_ROW not in view.variables:
         return lost
-    numbers = view.variables[DETACHED_ROW] - 1
-    rows = count_of_total(len(numbers), view.variables["status"].size, "row")
-    values = axis_values_text(view.point_columns[row_parameter][numbers])
+    row_indices = view.variables[DETACHED_ROW] - 1
+    rows_text = count_of_total(len(row_indices), view.variables["status"].size, "row")
+    values_text = axis_values_text(view.point_columns[row_parameter][row_indices])
     return [
-        f"branches that no Hopf point of their row leads to: on {rows}, {row_parameter} = {values}; they "
-        "were followed "
-        "from the crossings of curves of folds or torus points with the rows, and the stable states include "
-        "their cycles",
+        f"branches that no Hopf point of their row leads to: on {rows_text}, {row_parameter} = "
+        f"{values_text}; they were followed from the crossings of curves of folds or torus points with the "
+        "rows, and the stable states include their cycles",
         *lost,
     ]
 
@@ -39,8 +38,8 @@ def lost_beyond_lines(view: ResultView) -> list[str]:
         return []
     count = int(view.variables[CURVES_LOST_BEYOND.name])
     return [
-        f"ends of curves of folds lost beyond the range: {count}; rows that only these curves lead to lack "
-        "their cycles in the stable states"
+        f"ends of curves of folds lost beyond the range: {count}; on rows whose branches are found only from "
+        "these curves, the stable states lack the cycles"
     ]
 
 
@@ -49,14 +48,16 @@ def rows_without_cycles_of_curve(
 ) -> list[str]:
     """Lines about completed rows that a curve of folds or torus points crosses although no branch of the row
     has this special point. indices: indices of the points of the curve, (points,)."""
-    v = view.variables
+    variables = view.variables
     if len(indices) < 2:
         return []
-    kind = int(v["cycle_curve_kind"][indices[0]])
+    kind = int(variables["cycle_curve_kind"][indices[0]])
     kinds, specials = map(view.by_point, ("cycle_special_kind", f"cycle_special_{line_parameter}"))
-    tolerance = MAX_ROW_DISTANCE * float(np.ptp(v[line_parameter]))
+    tolerance = MAX_ROW_DISTANCE * float(np.ptp(variables[line_parameter]))
     points = zip(
-        v[f"cycle_curve_{row_parameter}"][indices], v[f"cycle_curve_{line_parameter}"][indices], strict=True
+        variables[f"cycle_curve_{row_parameter}"][indices],
+        variables[f"cycle_curve_{line_parameter}"][indices],
+        strict=True,
     )
     lines = []
     for number, ((x, y), (next_x, next_y)) in enumerate(pairwise(points)):

@@ -1,5 +1,5 @@
-"""Curves of a phase diagram in `rodsweep show`: folds, ends, and generalised Hopf points. line: parameter
-that varies along a row. row: parameter that is constant on a row."""
+"""Curves of a phase diagram in `rodsweep show`: folds, ends, and generalised Hopf points. line_parameter:
+parameter that varies along a row. row_parameter: parameter that is constant on a row."""
 
 import numpy as np
 
@@ -47,33 +47,37 @@ END_SUFFIXES = ("start", "end")
 def curve_lines(view: ResultView, line_parameter: str, row_parameter: str) -> list[str]:
     """Lines about folds, generalised Hopf points and their curves, and curves of folds and torus points of
     cycles."""
-    v = view.variables
+    variables = view.variables
     lines = fold_lines(view, line_parameter, row_parameter)
-    if "curve_criticality" in v:
+    if "curve_criticality" in variables:
         lines += bautin_lines(view, line_parameter, row_parameter)
-    if "bautin_along_curve" in v:
+    if "bautin_along_curve" in variables:
         lines += bautin_curve_lines(view)
-    if "cycle_curve_number" in v:
+    if "cycle_curve_number" in variables:
         lines += cycle_curve_lines(view, line_parameter, row_parameter)
     return lines
 
 
 def cycle_curve_lines(view: ResultView, line_parameter: str, row_parameter: str) -> list[str]:
     """Lines about the curves of folds and torus points of cycles, with the reasons for their ends."""
-    v = view.variables
+    variables = view.variables
     lines = []
-    for number in np.unique(v["cycle_curve_number"]):
-        indices = np.flatnonzero(v["cycle_curve_number"] == number)
-        noun = CYCLE_CHANGE_WORDS[SPECIAL_KINDS[int(v["cycle_curve_kind"][indices[0]])]]
-        ends = " to ".join(
-            f"{row_parameter} = {v[f'cycle_curve_{row_parameter}'][i]:.9g}, {line_parameter} = "
-            f"{number_with_error(v[f'cycle_curve_{line_parameter}'][i], v['cycle_curve_error'][i])} "
-            f"({CURVE_END_WORDS[tuple(CYCLE_CURVE_ENDS)[int(v[f'cycle_curve_{suffix}'][i])]]})"
+    for number in np.unique(variables["cycle_curve_number"]):
+        indices = np.flatnonzero(variables["cycle_curve_number"] == number)
+        noun = CYCLE_CHANGE_WORDS[SPECIAL_KINDS[int(variables["cycle_curve_kind"][indices[0]])]]
+        line_values = variables[f"cycle_curve_{line_parameter}"]
+        ends_text = " to ".join(
+            f"{row_parameter} = {variables[f'cycle_curve_{row_parameter}'][i]:.9g}, {line_parameter} = "
+            f"{number_with_error(line_values[i], variables['cycle_curve_error'][i])} "
+            f"({CURVE_END_WORDS[tuple(CYCLE_CURVE_ENDS)[int(variables[f'cycle_curve_{suffix}'][i])]]})"
             for suffix, i in zip(END_SUFFIXES, indices[[0, -1]], strict=True)
         )
-        error = error_text(float(v["cycle_curve_error"][indices].max()))
-        points = counted(len(indices), "point")
-        lines.append(f"curve of {noun}: from {ends}; {points}, largest error of {line_parameter} {error}")
+        error_of_curve = error_text(float(variables["cycle_curve_error"][indices].max()))
+        points_text = counted(len(indices), "point")
+        lines.append(
+            f"curve of {noun}: from {ends_text}; {points_text}, largest error of {line_parameter} "
+            f"{error_of_curve}"
+        )
         lines += rows_without_cycles_of_curve(view, line_parameter, row_parameter, indices)
     return (
         lines
@@ -86,66 +90,75 @@ def curve_count_lines(view: ResultView, line_parameter: str) -> list[str]:
     """Sentences on the numbers of curves by kind, their largest distance from the points located on rows,
     along the parameter `line_parameter` and as a fraction of its range, and the number of points on no
     curve."""
-    v = view.variables
-    hopf_count = len(np.unique(v["curve_number"][v["curve_kind"] == 1]))
-    double_count = len(np.unique(v["curve_number"])) - hopf_count
-    error = error_text(float(v["curve_agreement"]))
-    agreement = f"crossings located on rows lie on them within {error} of the range of {line_parameter}; "
-    agreement *= hopf_count + double_count > 0
+    variables = view.variables
+    hopf_count = len(np.unique(variables["curve_number"][variables["curve_kind"] == 1]))
+    double_count = len(np.unique(variables["curve_number"])) - hopf_count
+    distance_text = error_text(float(variables["curve_agreement"]))
+    agreement_text = (
+        f"crossings located on rows lie on them within {distance_text} of the range of {line_parameter}; "
+    )
+    agreement_text *= hopf_count + double_count > 0
     lines = []
-    if hopf_count or double_count or v["curves_untraced"]:
+    if hopf_count or double_count or variables["curves_untraced"]:
         lines.append(
-            f"curves: {hopf_count} of Hopf points, {double_count} of double eigenvalues; {agreement}"
-            f"{_on_no_curve_clause(int(v['curves_untraced']), 'crossing')}"
+            f"curves: {hopf_count} of Hopf points, {double_count} of double eigenvalues; {agreement_text}"
+            f"{_on_no_curve_clause(int(variables['curves_untraced']), 'crossing')}"
         )
-    if "cycle_curve_number" in v and (len(v["cycle_curve_number"]) or v["cycle_curves_untraced"]):
-        curves = len(np.unique(v["cycle_curve_number"]))
-        error = error_text(float(v["cycle_curve_agreement"]))
-        agreement = f"points located on rows lie on them within {error} of the range of {line_parameter}; "
-        agreement *= curves > 0
-        untraced = _on_no_curve_clause(int(v["cycle_curves_untraced"]), "fold or torus point")
-        lines.append(f"curves of folds and torus points of cycles: {curves}; {agreement}{untraced}")
+    if "cycle_curve_number" in variables and (
+        len(variables["cycle_curve_number"]) or variables["cycle_curves_untraced"]
+    ):
+        curve_count = len(np.unique(variables["cycle_curve_number"]))
+        distance_text = error_text(float(variables["cycle_curve_agreement"]))
+        agreement_text = (
+            f"points located on rows lie on them within {distance_text} of the range of {line_parameter}; "
+        )
+        agreement_text *= curve_count > 0
+        untraced_clause = _on_no_curve_clause(int(variables["cycle_curves_untraced"]), "fold or torus point")
+        lines.append(
+            f"curves of folds and torus points of cycles: {curve_count}; {agreement_text}{untraced_clause}"
+        )
     return lines
 
 
 def incomplete_curve_lines(view: ResultView, line_parameter: str, row_parameter: str) -> list[str]:
     """Lines about incomplete boundary curves: curves that could not be followed further, or for which the
     list was full."""
-    v = view.variables
+    variables = view.variables
     lines = []
     for end in ("not_followed", "list_full"):
         reason = list(CURVE_ENDS).index(end)
-        for i in np.flatnonzero((v["curve_start"] == reason) | (v["curve_end"] == reason)):
-            noun = "Hopf points" if v["curve_kind"][i] else "double eigenvalues"
-            position = ", ".join(
-                f"{name} = {v[f'curve_{name}'][i]:.6g}" for name in (row_parameter, line_parameter)
+        for i in np.flatnonzero((variables["curve_start"] == reason) | (variables["curve_end"] == reason)):
+            noun = "Hopf points" if variables["curve_kind"][i] else "double eigenvalues"
+            position_text = ", ".join(
+                f"{name} = {variables[f'curve_{name}'][i]:.6g}" for name in (row_parameter, line_parameter)
             )
-            curve = f"curve {int(v['curve_number'][i])}, of {noun}"
-            lines.append(f"{curve}, is incomplete: it stops at {position}: {CURVE_ENDS[end]}")
+            curve_text = f"curve {int(variables['curve_number'][i])}, of {noun}"
+            lines.append(f"{curve_text}, is incomplete: it stops at {position_text}: {CURVE_ENDS[end]}")
     return lines
 
 
-def _on_no_curve_clause(count: int, noun: str) -> str:
-    """Clause on the number `count` of points located on rows that lie on no curve."""
-    none = f"every {noun} is on a curve"
-    return f"{counted(count, noun)} {is_or_are(count)} on no curve" if count else none
+def _on_no_curve_clause(point_count: int, noun: str) -> str:
+    """Clause on the number `point_count` of points located on rows that lie on no curve."""
+    none_text = f"every {noun} is on a curve"
+    return f"{counted(point_count, noun)} {is_or_are(point_count)} on no curve" if point_count else none_text
 
 
 def fold_lines(view: ResultView, line_parameter: str, row_parameter: str) -> list[str]:
     """Lines about folds of curves, and about the fold in the partial beam limit of the paper's Sec. VIII."""
-    v = view.variables
+    variables = view.variables
     lines = []
-    for i, (kind, name) in enumerate(zip(v["fold_kind"], v["fold_of"], strict=True)):
+    for i, (kind, name) in enumerate(zip(variables["fold_kind"], variables["fold_of"], strict=True)):
         noun = "Hopf points" if kind else "double eigenvalues"
-        position = _position_text(view, "fold", i, (row_parameter, line_parameter))
+        position_text = _position_text(view, "fold", i, (row_parameter, line_parameter))
         lines.append(
             f"fold of the curve of {noun}, where {(line_parameter, row_parameter)[int(name)]} is extremal: "
-            f"{position}"
+            f"{position_text}"
         )
-    if "partial_beam_k1" in v:
+    if "partial_beam_k1" in variables:
         lines.append(
-            f"partial beam limit: the Hopf curve folds at k1 = 4 Fc = {float(v['partial_beam_k1']):.13g}, "
-            f"F = 2 Fc = {float(v['partial_beam_F']):.13g}"
+            "partial beam limit: the Hopf curve folds at k1 = 4 Fc = "
+            f"{float(variables['partial_beam_k1']):.13g}, "
+            f"F = 2 Fc = {float(variables['partial_beam_F']):.13g}"
         )
     return lines
 
@@ -153,9 +166,10 @@ def fold_lines(view: ResultView, line_parameter: str, row_parameter: str) -> lis
 def _position_text(view: ResultView, prefix: str, i: int, names: tuple[str, str]) -> str:
     """Position of the i-th fold or generalised Hopf point as text, with errors. prefix: prefix of the
     variables, "fold" or "bautin"."""
-    v = view.variables
+    variables = view.variables
     return ", ".join(
-        f"{name} = {number_with_error(v[f'{prefix}_{name}'][i], v[f'{prefix}_{name}_error'][i])}"
+        f"{name} = "
+        f"{number_with_error(variables[f'{prefix}_{name}'][i], variables[f'{prefix}_{name}_error'][i])}"
         for name in names
     )
 
@@ -163,25 +177,25 @@ def _position_text(view: ResultView, prefix: str, i: int, names: tuple[str, str]
 def criticality_lines(view: ResultView) -> list[str]:
     """List with a line on gamma1 and on the numbers of points of the Hopf curves by criticality, including
     undecided and unknown."""
-    v = view.variables
-    criticality = v["curve_criticality"][v["curve_kind"] == 1]
-    kinds = {word: np.sign(criticality) == sign for sign, word in CRITICALITY_WORDS.items()}
-    kinds["without a normal form"] = np.isnan(criticality)
-    counts = [f"{int(mask.sum())} {word}" for word, mask in kinds.items() if mask.any()]
-    curves = f"of {counted(len(criticality), 'point')} of the Hopf curves {', '.join(counts) or 'none'}"
-    return [f"criticality, gamma1 = {float(v['curve_gamma1']):g}: {curves}"]
+    variables = view.variables
+    criticality = variables["curve_criticality"][variables["curve_kind"] == 1]
+    masks_by_word = {word: np.sign(criticality) == sign for sign, word in CRITICALITY_WORDS.items()}
+    masks_by_word["without a normal form"] = np.isnan(criticality)
+    counts = [f"{int(mask.sum())} {word}" for word, mask in masks_by_word.items() if mask.any()]
+    curves_text = f"of {counted(len(criticality), 'point')} of the Hopf curves {', '.join(counts) or 'none'}"
+    return [f"criticality, gamma1 = {float(variables['curve_gamma1']):g}: {curves_text}"]
 
 
 def bautin_lines(view: ResultView, line_parameter: str, row_parameter: str) -> list[str]:
     """Lines about generalised Hopf points, and on the number of changes of criticality that were not
     located."""
-    v = view.variables
+    variables = view.variables
     lines = [
-        f"generalised Hopf point (Re c = 0) on curve {int(v['bautin_curve'][i])}: "
+        f"generalised Hopf point (Re c = 0) on curve {int(variables['bautin_curve'][i])}: "
         + _position_text(view, "bautin", i, (row_parameter, line_parameter))
-        for i in range(len(v["bautin_curve"]))
+        for i in range(len(variables["bautin_curve"]))
     ]
-    if unlocated := int(v["bautin_unlocated"]):
+    if unlocated := int(variables["bautin_unlocated"]):
         lines.append(f"{counted(unlocated, 'change')} of criticality along Hopf curves could not be located")
     return lines
 
@@ -189,14 +203,14 @@ def bautin_lines(view: ResultView, line_parameter: str, row_parameter: str) -> l
 def bautin_curve_lines(view: ResultView) -> list[str]:
     """Lines about curves of generalised Hopf points along a third parameter, with the reasons for their
     ends."""
-    v = view.variables
+    variables = view.variables
     lines = []
-    names = [name for name in LINEAR_PARAMETERS if f"bautin_along_{name}" in v]
-    for number in np.unique(v["bautin_along_curve"]):
-        mask = v["bautin_along_curve"] == number
-        span = ", ".join(f"{name} = {span_text(v[f'bautin_along_{name}'][mask])}" for name in names)
+    names = [name for name in LINEAR_PARAMETERS if f"bautin_along_{name}" in variables]
+    for number in np.unique(variables["bautin_along_curve"]):
+        mask = variables["bautin_along_curve"] == number
+        span = ", ".join(f"{name} = {span_text(variables[f'bautin_along_{name}'][mask])}" for name in names)
         start, end = (
-            BAUTIN_END_WORDS[BAUTIN_ENDS[int(v[f"bautin_along_{suffix}"][mask].max())]]
+            BAUTIN_END_WORDS[BAUTIN_ENDS[int(variables[f"bautin_along_{suffix}"][mask].max())]]
             for suffix in END_SUFFIXES
         )
         lines.append(

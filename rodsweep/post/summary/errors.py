@@ -1,5 +1,5 @@
-"""Absolute errors of the variables in a result file, which limit the digits in a summary. v: variables of the
-file, by name."""
+"""Absolute errors of the variables in a result file, which limit the digits in a summary.
+variables: variables of the file, by name."""
 
 from collections.abc import Mapping
 
@@ -59,64 +59,70 @@ MODULATION_RATIO_ERROR = 1e-3
 measured on a torus."""
 
 
-def absolute_errors(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
+def absolute_errors(variables: Mapping[str, np.ndarray], name: str) -> np.ndarray:
     """Absolute errors of the variable `name`, of the shape of the variable; 0 for a variable without an
     error."""
     stem, _, part_name = name.rpartition("_")
     with np.errstate(invalid="ignore"):  # an infinite value times the error 0
-        if stem in COMPLEX_VARIABLES and part_name != "error" and f"{stem}_error" in v:
-            return np.hypot(v[f"{stem}_real"], v[f"{stem}_imag"]) * v[f"{stem}_error"]
-        return _errors_of_real_variable(v, name)
+        if stem in COMPLEX_VARIABLES and part_name != "error" and f"{stem}_error" in variables:
+            return np.hypot(variables[f"{stem}_real"], variables[f"{stem}_imag"]) * variables[f"{stem}_error"]
+        return _errors_of_real_variable(variables, name)
 
 
-def _errors_of_real_variable(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
+def _errors_of_real_variable(variables: Mapping[str, np.ndarray], name: str) -> np.ndarray:
     """Absolute errors of the variable `name`, which is not a part of a complex variable. The errors have the
     shape of the variable. NumPy may warn of infinite values."""
-    values = np.abs(v[name])
+    values = np.abs(variables[name])
     if name in STRAIGHT_EIGENVALUE:
-        return EIGENVALUE_ERROR * np.hypot(*(v[part_name] for part_name in STRAIGHT_EIGENVALUE))
-    if name in CYCLE_POWER_VARIABLES and "amplitude_error" in v:
-        return values * relative_power_error(v, fluctuation=name.endswith("rms"))
-    if name in EXTREMA_VARIABLES and "extrema_error" in v:
-        dip_error = MAX_DIP_BETWEEN_NODES * np.abs(1 - v[name]) if name == "least_stretch" else 0.0
-        return v["extrema_error"] * v["tip_y_max"] + dip_error
-    if name == "transient_time" and "growth_error" in v:
+        return EIGENVALUE_ERROR * np.hypot(*(variables[part_name] for part_name in STRAIGHT_EIGENVALUE))
+    if name in CYCLE_POWER_VARIABLES and "amplitude_error" in variables:
+        return values * relative_power_error(variables, fluctuation=name.endswith("rms"))
+    if name in EXTREMA_VARIABLES and "extrema_error" in variables:
+        dip_error = MAX_DIP_BETWEEN_NODES * np.abs(1 - variables[name]) if name == "least_stretch" else 0.0
+        return variables["extrema_error"] * variables["tip_y_max"] + dip_error
+    if name == "transient_time" and "growth_error" in variables:
         # The growth is quadratic near its maximum, and is 1 at t = 0.
-        log_growth = np.maximum(1 - 1 / v["transient_growth"], np.finfo(float).tiny)
-        return values * np.sqrt(v["growth_error"] / log_growth)
+        log_growth = np.maximum(1 - 1 / variables["transient_growth"], np.finfo(float).tiny)
+        return values * np.sqrt(variables["growth_error"] / log_growth)
     relative_error = RELATIVE_ERRORS.get(name, "")
-    if name == "modulation_ratio" or relative_error in v:
-        return values * (v[relative_error] if relative_error else MODULATION_RATIO_ERROR)
-    return v[ABSOLUTE_ERRORS[name]] if ABSOLUTE_ERRORS.get(name, "") in v else np.zeros_like(values, float)
+    if name == "modulation_ratio" or relative_error in variables:
+        return values * (variables[relative_error] if relative_error else MODULATION_RATIO_ERROR)
+    return (
+        variables[ABSOLUTE_ERRORS[name]]
+        if ABSOLUTE_ERRORS.get(name, "") in variables
+        else np.zeros_like(values, float)
+    )
 
 
-def relative_power_error(v: Mapping[str, np.ndarray], fluctuation: bool = False) -> np.ndarray:
-    """Relative error of the mean power of cycles, or of the rms fluctuation of the power if `fluctuation`. v:
-    variables of the file, of equal shapes.
+def relative_power_error(variables: Mapping[str, np.ndarray], fluctuation: bool = False) -> np.ndarray:
+    """Relative error of the mean power of cycles, or of the rms fluctuation of the power if `fluctuation`.
+    variables: variables of the file, of equal shapes.
 
     The mean power is proportional to the squared amplitude. In an integrated cycle, which has no multiplier,
     injection and dissipation have a common error from the interpolation between steps, at most about the
     error of the extrema.
     """
-    error = 2 * v["amplitude_error"] + v["period_error"] + np.abs(v["energy_imbalance"])
-    error = error + np.where(np.isnan(v["multiplier"]), v["extrema_error"], 0.0)
-    return error + 2 * v["extrema_error"] if fluctuation else error
+    error = (
+        2 * variables["amplitude_error"] + variables["period_error"] + np.abs(variables["energy_imbalance"])
+    )
+    error = error + np.where(np.isnan(variables["multiplier"]), variables["extrema_error"], 0.0)
+    return error + 2 * variables["extrema_error"] if fluctuation else error
 
 
-def is_known(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
+def is_known(variables: Mapping[str, np.ndarray], name: str) -> np.ndarray:
     """Mask of the known values of the variable `name`, of the shape of the variable.
 
     Only the time of the largest transient growth can be unknown: the error of this time is large if the
     growth hardly exceeds 1.
     """
-    values = np.asarray(v[name])
-    if name != "transient_time" or "growth_error" not in v:
+    values = np.asarray(variables[name])
+    if name != "transient_time" or "growth_error" not in variables:
         return np.ones(values.shape, bool)
-    return (values == 0) | ~(absolute_errors(v, name) >= UNKNOWN_FROM_ERROR * values)
+    return (values == 0) | ~(absolute_errors(variables, name) >= UNKNOWN_FROM_ERROR * values)
 
 
-def known_range_text(v: Mapping[str, np.ndarray], name: str, mask: np.ndarray) -> str:
+def known_range_text(variables: Mapping[str, np.ndarray], name: str, mask: np.ndarray) -> str:
     """Range of the variable `name` over the points in `mask`, (...,), as text, rounded according to the
     errors; unknown values of transient_time are left out."""
-    selected = mask & is_known(v, name) if name == "transient_time" else mask
-    return span_text(v[name][selected], absolute_errors(v, name)[selected])
+    selected = mask & is_known(variables, name) if name == "transient_time" else mask
+    return span_text(variables[name][selected], absolute_errors(variables, name)[selected])

@@ -24,11 +24,12 @@ def followed_range_text(view: ResultView, computed: np.ndarray, parameter_name: 
     limits = [view.variables[f"{prefix}{end}"][computed] for end in ("from", "to")]
     if not all(np.isfinite(values).any() for values in limits):
         return MISSED_CYCLES_TEXT
-    low, high = map(span_text, limits)
-    followed = (
-        f"branches that may enter the range are followed down to {parameter_name} = {low} and up to {high}"
+    low_text, high_text = map(span_text, limits)
+    followed_sentence = (
+        f"branches that may enter the range are followed down to {parameter_name} = "
+        f"{low_text} and up to {high_text}"
     )
-    return f"{followed}; {MISSED_CYCLES_TEXT}"
+    return f"{followed_sentence}; {MISSED_CYCLES_TEXT}"
 
 
 def searched_range_line(view: ResultView, computed: np.ndarray) -> str:
@@ -40,8 +41,9 @@ def searched_range_line(view: ResultView, computed: np.ndarray) -> str:
     if all(last <= first for first, last in ranges):
         return "no branch is followed"
     note = "" if set(ranges) <= {(start, end)} else ", where the force does not crush the rod"
-    proved = count_of_total(view.variables["certified"][computed].sum(), computed.sum(), "rod")
+    proved_text = count_of_total(view.variables["certified"][computed].sum(), computed.sum(), "rod")
     return (
         f"followed in {parameter} from {start:g} to {end:g}{note}; the list of Hopf points "
-        f"{proof_clause(view)} for {proved}; " + followed_range_text(view, computed, parameter, "followed_")
+        f"{proof_clause(view)} for {proved_text}; "
+        + followed_range_text(view, computed, parameter, "followed_")
     )

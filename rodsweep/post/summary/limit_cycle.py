@@ -1,5 +1,5 @@
-"""Limit cycles in `rodsweep show`: which rods beat, variables of the cycles, and reliability. v: variables of
-the file, by name."""
+"""Limit cycles in `rodsweep show`: which rods beat, variables of the cycles, and reliability. variables:
+variables of the file, by name."""
 
 from collections.abc import Callable, Mapping
 
@@ -45,7 +45,7 @@ CYCLE_NUMBERS = (
 
 def limit_cycle_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
     """Summary of limit cycles. computed: mask of the computed points, of the shape of the points."""
-    v = view.variables
+    variables = view.variables
     beats = computed & view.has_status("cycle")
     orbit = computed & view.has_status(*CYCLE_STATUSES)
     stability, arm_sentences = _threshold_lines(view)
@@ -54,25 +54,27 @@ def limit_cycle_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
         arm_sentences.insert(0, outcome_line(view, computed, region_of_arms))
     reliability = _proof_lines(view)
     rate, frequency = (
-        known_range_text(v, f"linear_{name}", computed) for name in ("growth_rate", "frequency")
+        known_range_text(variables, f"linear_{name}", computed) for name in ("growth_rate", "frequency")
     )
     details = [f"straight rod: leading growth rate {rate} 1/tau2, frequency {frequency} rad/tau2"]
     numbers = None
     on_torus = computed & view.has_status("torus")
     if on_torus.any():
-        ratio, modulus = (known_range_text(v, name, on_torus) for name in ("modulation_ratio", "multiplier"))
+        ratio, modulus = (
+            known_range_text(variables, name, on_torus) for name in ("modulation_ratio", "multiplier")
+        )
         details.append(
             f"quasiperiodic motions: modulated at {ratio} times the frequency of the oscillation; the "
             f"unstable cycles inside the tori have a largest |Floquet multiplier| of {modulus}"
         )
     if computed.size == 1 and orbit.any():
-        answer.insert(1, orbit_line(v, stable=bool(beats.any())))
-        numbers = orbit_table(v)
+        answer.insert(1, orbit_line(variables, stable=bool(beats.any())))
+        numbers = orbit_table(variables)
     elif beats.any():
-        period, y = (known_range_text(v, name, beats) for name in ("period", "tip_y_max"))
-        answer.insert(1, f"period: {period} tau2; largest y of the tip: {y} L")
-        reliability.insert(0, _error_line(v, beats))
-    details += _cycle_lines(v, beats) if beats.any() else []
+        period_text, y_text = (known_range_text(variables, name, beats) for name in ("period", "tip_y_max"))
+        answer.insert(1, f"period: {period_text} tau2; largest y of the tip: {y_text} L")
+        reliability.insert(0, _error_line(variables, beats))
+    details += _cycle_lines(variables, beats) if beats.any() else []
     return SummaryLines(answer, reliability, details, arm_sentences, numbers)
 
 
@@ -85,16 +87,23 @@ def outcome_line(
     points of a mask.
     """
     status = view.variables["status"]
-    total = counted(int(computed.sum()), "point")
+    total_text = counted(int(computed.sum()), "point")
     masks = {word: computed & (status == value) for value, word in view.flags.items() if value >= 0}
-    found = {OUTCOME_WORDS.get(w, w.replace("_", " ")): mask for w, mask in masks.items() if mask.any()}
-    if len(found) == 1:
-        word = next(iter(found))
-        outcome = f"the rod {word}" if word in OUTCOME_WORDS.values() else word
-        place = f" at all {total}" if computed.sum() > 1 else " at the only solved point"
-        return outcome + place * (computed.size > 1)
-    counts = (f"{word} at {int(mask.sum())}{in_brackets(region(view, mask))}" for word, mask in found.items())
-    return f"of {total}: {', '.join(counts)}"
+    masks_of_outcomes = {
+        OUTCOME_WORDS.get(status_word, status_word.replace("_", " ")): mask
+        for status_word, mask in masks.items()
+        if mask.any()
+    }
+    if len(masks_of_outcomes) == 1:
+        word = next(iter(masks_of_outcomes))
+        outcome_text = f"the rod {word}" if word in OUTCOME_WORDS.values() else word
+        place_text = f" at all {total_text}" if computed.sum() > 1 else " at the only solved point"
+        return outcome_text + place_text * (computed.size > 1)
+    counts = (
+        f"{word} at {int(mask.sum())}{in_brackets(region(view, mask))}"
+        for word, mask in masks_of_outcomes.items()
+    )
+    return f"of {total_text}: {', '.join(counts)}"
 
 
 def _threshold_lines(view: ResultView) -> tuple[list[str], list[str]]:
@@ -114,43 +123,45 @@ def _threshold_lines(view: ResultView) -> tuple[list[str], list[str]]:
 def _proof_lines(view: ResultView) -> list[str]:
     """Sentence, in a list, on whether the Hopf points are proved complete; empty if no line of points was
     searched."""
-    v = view.variables
-    lines = int(v["hopf_lines"]) if "hopf_lines" in v else 0
-    if not lines:
+    variables = view.variables
+    line_count = int(variables["hopf_lines"]) if "hopf_lines" in variables else 0
+    if not line_count:
         return []
-    proved = count_of_total(int(v["hopf_lines_proved"]), lines, "line")
-    return [f"the list of Hopf points between neighbouring points {proof_clause(view)} for {proved}"]
+    proved_text = count_of_total(int(variables["hopf_lines_proved"]), line_count, "line")
+    return [f"the list of Hopf points between neighbouring points {proof_clause(view)} for {proved_text}"]
 
 
-def orbit_line(v: Mapping[str, np.ndarray], stable: bool) -> str:
+def orbit_line(variables: Mapping[str, np.ndarray], stable: bool) -> str:
     """Line that says whether the only cycle in a file is stable, or that no Floquet multiplier is computed.
-    v: variables of the file, (1, ...) each. stable: whether the status is "cycle"."""
-    if np.isnan(v["multiplier"]).all():
+    variables: variables of the file, (1, ...) each. stable: whether the status is "cycle"."""
+    if np.isnan(variables["multiplier"]).all():
         return "the motion in time settles on the cycle; no Floquet multiplier is computed"
     if stable:
         return "the cycle is stable in the plane: its largest nontrivial Floquet multiplier is below 1"
     return "the cycle is unstable: its largest nontrivial Floquet multiplier is above 1"
 
 
-def orbit_table(v: Mapping[str, np.ndarray]) -> TextTable:
-    """Table of the numbers of the only cycle in a file, with errors. v: variables of the file, (1, ...)
-    each."""
+def orbit_table(variables: Mapping[str, np.ndarray]) -> TextTable:
+    """Table of the numbers of the only cycle in a file, with errors. variables: variables of the
+    file, (1, ...) each."""
     rows = []
     for label, name, unit in CYCLE_NUMBERS:
-        value = float(np.nanmax(v[name], initial=-np.inf))
+        value = float(np.nanmax(variables[name], initial=-np.inf))
         if np.isfinite(value):
-            rows.append((label, *number_and_error(value, float(absolute_errors(v, name).max())), unit))
+            rows.append(
+                (label, *number_and_error(value, float(absolute_errors(variables, name).max())), unit)
+            )
     return TextTable(("", "value", "+-", "unit"), tuple(rows))
 
 
 def _second_state_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     """Lines about points at which a second stable state is certain or possible, or at which the straight rod
     is stable but the motion ended in no stable state."""
-    v = view.variables
+    variables = view.variables
     numbers = {word: number for number, word in SECOND_STATES}
     lines = []
-    straight = computed & (v["second_state"] == numbers["straight"])
-    cycle = computed & (v["second_state"] == numbers["cycle_possible"])
+    straight = computed & (variables["second_state"] == numbers["straight"])
+    cycle = computed & (variables["second_state"] == numbers["cycle_possible"])
     are_bistable = straight & view.has_status("cycle", "torus")
     if are_bistable.any():
         at_points = _at_count(are_bistable, computed)
@@ -161,8 +172,8 @@ def _second_state_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     if cycle.any():
         lines.append(
             f"a stable cycle may exist beside the straight rod{_at_count(cycle, computed)}: the Hopf point "
-            f"at F = {span_text(v['subcritical_F'][cycle])} is subcritical, so a larger initial deflection "
-            "may lead to a cycle; `task: branch` follows the branch of these cycles"
+            f"at F = {span_text(variables['subcritical_F'][cycle])} is subcritical, so a larger initial "
+            "deflection may lead to a cycle; `task: branch` follows the branch of these cycles"
         )
     return lines
 
@@ -173,45 +184,47 @@ def _at_count(mask: np.ndarray, computed: np.ndarray) -> str:
     return "" if computed.sum() == 1 else f" at {count_of_total(mask.sum(), computed.sum(), 'point')}"
 
 
-def _cycle_lines(v: Mapping[str, np.ndarray], is_cycle: np.ndarray) -> list[str]:
+def _cycle_lines(variables: Mapping[str, np.ndarray], is_cycle: np.ndarray) -> list[str]:
     """Lines on frequency, period in tau1, extrema of the tip, power, multiplier, integrated periods and least
     h1 of the cycles."""
     tips = (
-        f"{label} {known_range_text(v, f'tip_{name}', is_cycle)} {unit}"
+        f"{label} {known_range_text(variables, f'tip_{name}', is_cycle)} {unit}"
         for label, name, unit in (
             ("least x", "x_min", "L"), ("largest x", "x_max", "L"), ("largest |theta|", "theta_max", "rad"),
         )
     )  # fmt: skip
-    frequency = known_range_text(v, "frequency", is_cycle)
-    lines = [f"frequency of the cycle: {frequency} rad/tau2{_relative_frequency_clause(v, is_cycle)}"]
-    if "period_tau1" in v:
-        lines.append(f"period: {known_range_text(v, 'period_tau1', is_cycle)} tau1")
+    frequency_text = known_range_text(variables, "frequency", is_cycle)
+    lines = [
+        f"frequency of the cycle: {frequency_text} rad/tau2{_relative_frequency_clause(variables, is_cycle)}"
+    ]
+    if "period_tau1" in variables:
+        lines.append(f"period: {known_range_text(variables, 'period_tau1', is_cycle)} tau1")
     return [
         *lines,
         f"tip: {', '.join(tips)}",
-        f"mean power of the force: {known_range_text(v, 'injection_mean', is_cycle)} k3/(L tau2)",
-        f"largest |Floquet multiplier|: {known_range_text(v, 'multiplier', is_cycle)}; periods integrated in "
-        f"time: {span_text(v['periods'][is_cycle])}; smallest stretch h1: "
-        f"{known_range_text(v, 'least_stretch', is_cycle)}",
+        f"mean power of the force: {known_range_text(variables, 'injection_mean', is_cycle)} k3/(L tau2)",
+        f"largest |Floquet multiplier|: {known_range_text(variables, 'multiplier', is_cycle)}; returns of "
+        f"the tip in the integration: {span_text(variables['periods'][is_cycle])}; smallest stretch h1: "
+        f"{known_range_text(variables, 'least_stretch', is_cycle)}",
     ]
 
 
-def _relative_frequency_clause(v: Mapping[str, np.ndarray], is_cycle: np.ndarray) -> str:
+def _relative_frequency_clause(variables: Mapping[str, np.ndarray], is_cycle: np.ndarray) -> str:
     """Clause that compares the frequencies of the cycles with the frequencies of the leading modes; empty if
     no frequency of a leading mode is known."""
-    oscillates = is_cycle & (np.abs(v["linear_frequency"]) > 0)
-    steady = is_cycle & (v["linear_frequency"] == 0)
+    oscillates = is_cycle & (np.abs(variables["linear_frequency"]) > 0)
+    steady = is_cycle & (variables["linear_frequency"] == 0)
     clause = ""
     if oscillates.any():
-        ratio = v["frequency"][oscillates] / v["linear_frequency"][oscillates]
-        times = span_text(ratio, ratio * v["period_error"][oscillates])
-        clause = f", {times} times that of the leading mode of the straight rod"
+        ratio = variables["frequency"][oscillates] / variables["linear_frequency"][oscillates]
+        ratio_text = span_text(ratio, ratio * variables["period_error"][oscillates])
+        clause = f", {ratio_text} times that of the leading mode of the straight rod"
     if steady.any():
         clause += f"; the leading mode of the straight rod does not oscillate{_at_count(steady, is_cycle)}"
     return clause
 
 
-def _error_line(v: Mapping[str, np.ndarray], is_cycle: np.ndarray) -> str:
+def _error_line(variables: Mapping[str, np.ndarray], is_cycle: np.ndarray) -> str:
     """Line on the largest errors of the cycles."""
     names = {
         "period": "period_error",
@@ -222,6 +235,8 @@ def _error_line(v: Mapping[str, np.ndarray], is_cycle: np.ndarray) -> str:
     }
     errors = []
     for word, name in names.items():
-        sizes = np.abs(v[name][is_cycle & np.isfinite(v[name])])
-        errors.append(f"{word} {error_text(float(sizes.max())) if sizes.size else 'not known'}")
+        errors_of_cycles = np.abs(variables[name][is_cycle & np.isfinite(variables[name])])
+        errors.append(
+            f"{word} {error_text(float(errors_of_cycles.max())) if errors_of_cycles.size else 'not known'}"
+        )
     return f"worst errors: {', '.join(errors)}; multiplier errors are absolute, all other errors are relative"

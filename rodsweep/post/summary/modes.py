@@ -29,21 +29,21 @@ def modes_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
 def growth_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     """Lines about the condition of the leading eigenvalue, the numerical abscissa and the transient growth;
     fewer if no growth is stored. computed: mask of the computed points, of the shape of the points."""
-    v = view.variables
-    condition = v["condition"][computed][:, 0]
-    error = absolute_errors(v, "condition")[computed][:, 0]
-    lines = [f"condition number of the leading eigenvalue: {span_text(condition, error)}"]
-    if "transient_growth" not in v:
+    variables = view.variables
+    condition = variables["condition"][computed][:, 0]
+    condition_errors = absolute_errors(variables, "condition")[computed][:, 0]
+    lines = [f"condition number of the leading eigenvalue: {span_text(condition, condition_errors)}"]
+    if "transient_growth" not in variables:
         return lines
-    growth = v["transient_growth"][computed]
-    lines.append(f"numerical abscissa: {known_range_text(v, 'numerical_abscissa', computed)} 1/tau2")
+    growth = variables["transient_growth"][computed]
+    lines.append(f"numerical abscissa: {known_range_text(variables, 'numerical_abscissa', computed)} 1/tau2")
     if np.isfinite(growth).any():
-        finite = computed & np.isfinite(v["transient_growth"])
+        finite = computed & np.isfinite(variables["transient_growth"])
         names = ("transient_growth", "transient_time")
-        growth_text, time_text = (known_range_text(v, name, finite) for name in names)
+        growth_text, time_text = (known_range_text(variables, name, finite) for name in names)
         time_clause = "" if time_text == NONE_TEXT else f", at t = {time_text} tau2"
         lines.append(f"largest transient growth: {growth_text} times{time_clause}")
     if np.isinf(growth).any():
-        points = counted(int(np.isinf(growth).sum()), "point")
-        lines.append(f"growth without bound at {points}: a mode is unstable")
+        points_text = counted(int(np.isinf(growth).sum()), "point")
+        lines.append(f"growth without bound at {points_text}: a mode is unstable")
     return lines

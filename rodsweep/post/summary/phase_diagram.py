@@ -1,5 +1,5 @@
-"""Phase diagrams in `rodsweep show`: fraction of the plane in each class, and changes along the rows. line:
-parameter that varies along a row. row: parameter that is constant on a row."""
+"""Phase diagrams in `rodsweep show`: fraction of the plane in each class, and changes along the rows.
+line_parameter: parameter that varies along a row. row_parameter: parameter that is constant on a row."""
 
 import numpy as np
 
@@ -39,25 +39,31 @@ GRID_RESOLUTION = 1e-8
 
 def phase_diagram_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
     """Summary of a phase diagram. computed: mask of the computed rows, of the shape of the rows."""
-    v = view.variables
-    line = next(name for name in LINEAR_PARAMETERS if name not in view.parameters)
-    row = next(name for name in view.parameters if len(view.parameter_values[name]) > 1)
-    answer = [*class_fraction_lines(v["class"][computed]), *lines_about_rows(view, computed, line, row)]
-    if "stable_states" in v:
-        answer += state_lines(view, computed, line, row)
-    reliability = search_lines(view, computed, "row")
-    if "stable_states" in v:
-        followed = followed_range_text(view, computed, line, "cycle_followed_")
-        reliability.append(f"{followed}, unless a curve of folds or torus points crosses the row there")
-    details = [
-        *count_lines(v["class"][computed]),
-        *cost_lines(view, computed),
-        *cost_saving_lines(view, computed, line),
+    variables = view.variables
+    line_parameter = next(name for name in LINEAR_PARAMETERS if name not in view.parameters)
+    row_parameter = next(name for name in view.parameters if len(view.parameter_values[name]) > 1)
+    answer = [
+        *class_fraction_lines(variables["class"][computed]),
+        *lines_about_rows(view, computed, line_parameter, row_parameter),
     ]
-    if "curve_number" in v:
-        answer += curve_lines(view, line, row)
-        reliability += [*curve_count_lines(view, line), *incomplete_curve_lines(view, line, row)]
-    if "curve_criticality" in v:
+    if "stable_states" in variables:
+        answer += state_lines(view, computed, line_parameter, row_parameter)
+    reliability = search_lines(view, computed, "row")
+    if "stable_states" in variables:
+        followed_text = followed_range_text(view, computed, line_parameter, "cycle_followed_")
+        reliability.append(f"{followed_text}, unless a curve of folds or torus points crosses the row there")
+    details = [
+        *count_lines(variables["class"][computed]),
+        *cost_lines(view, computed),
+        *cost_saving_lines(view, computed, line_parameter),
+    ]
+    if "curve_number" in variables:
+        answer += curve_lines(view, line_parameter, row_parameter)
+        reliability += [
+            *curve_count_lines(view, line_parameter),
+            *incomplete_curve_lines(view, line_parameter, row_parameter),
+        ]
+    if "curve_criticality" in variables:
         details += criticality_lines(view)
     return SummaryLines(answer, reliability, details, crossings_of_arms(view, computed))
 
@@ -78,15 +84,15 @@ def cost_saving_lines(view: ResultView, computed: np.ndarray, line_parameter: st
     """
     if not has_standard_rods(view.config):
         return []
-    v = view.variables
-    rows = int(computed.sum())
-    count = int(v["solves"][computed].sum())
-    boxes = int(v["boxes"][computed].sum())
-    uniform = float(np.ptp(v[line_parameter])) / GRID_RESOLUTION * rows
+    variables = view.variables
+    row_count = int(computed.sum())
+    solve_count = int(variables["solves"][computed].sum())
+    boxes = int(variables["boxes"][computed].sum())
+    uniform = float(np.ptp(variables[line_parameter])) / GRID_RESOLUTION * row_count
     return [
-        f"in all {counted(count, 'eigenproblem')} and {counted(boxes, 'evaluation')} of D; a uniform grid "
-        f"that resolves {line_parameter} to {GRID_RESOLUTION:g} on these rows has {uniform:.2g} points, "
-        f"{float(f'{uniform / max(count + boxes, 1):.1g}'):g} times as many"
+        f"in all {counted(solve_count, 'eigenproblem')} and {counted(boxes, 'evaluation')} of D; a uniform "
+        f"grid that resolves {line_parameter} to {GRID_RESOLUTION:g} on these rows has {uniform:.2g} points, "
+        f"{float(f'{uniform / max(solve_count + boxes, 1):.1g}'):g} times as many"
     ]
 
 
@@ -101,15 +107,16 @@ def class_fraction_lines(classes: np.ndarray) -> list[str]:
 def row_start_lines(view: ResultView, computed: np.ndarray, line_parameter: str) -> list[str]:
     """List with a line on the classes at the starts of the rows; empty if all these classes are monotone.
     computed: mask of the computed rows, (...,)."""
-    start = view.variables["class"][computed][:, 0]
-    texts = [f"{word} on {int((start == n).sum())}" for n, word in STABILITY_CLASSES if (start == n).any()]
-    if texts == [f"monotone on {len(start)}"]:
-        return []
-    rows = f"of {counted(len(start), 'row')}"
-    return [
-        f"at {line_parameter} = {view.variables[line_parameter][0]:.6g}, where the rows begin, {rows}: "
-        f"{', '.join(texts)}"
+    start_classes = view.variables["class"][computed][:, 0]
+    texts = [
+        f"{word} on {int((start_classes == value).sum())}"
+        for value, word in STABILITY_CLASSES
+        if (start_classes == value).any()
     ]
+    if texts == [f"monotone on {len(start_classes)}"]:
+        return []
+    place_text = f"{line_parameter} = {view.variables[line_parameter][0]:.6g}, where the rows begin"
+    return [f"the straight rod at {place_text}: {', '.join(texts)} of {counted(len(start_classes), 'row')}"]
 
 
 def lines_about_rows(
@@ -117,9 +124,9 @@ def lines_about_rows(
 ) -> list[str]:
     """Lines about the rows in the mask `computed`, (...,): states at their starts, crossings by kind,
     undecided ranges, rows with and without flutter."""
-    v = view.variables
-    stored = (v["crossing_kind"] > 0).sum(axis=-1)
-    is_incomplete = computed & ((v["crossing_count"] != stored) | np.isfinite(v["open_from"]))
+    variables = view.variables
+    stored = (variables["crossing_kind"] > 0).sum(axis=-1)
+    is_incomplete = computed & ((variables["crossing_count"] != stored) | np.isfinite(variables["open_from"]))
     return [
         *row_start_lines(view, computed, line_parameter),
         *_crossing_lines(view, computed, is_incomplete, line_parameter, row_parameter),
@@ -132,24 +139,28 @@ def _crossing_lines(
 ) -> list[str]:
     """Lines about the crossings of each kind on the rows in the mask `computed`; `unknown`: mask of rows with
     further crossings that are not known."""
-    v = view.variables
+    variables = view.variables
     row_values = view.point_columns[row_parameter].reshape(computed.shape)
     lines = []
     for number, word in enumerate(CROSSING_KINDS):
-        of_kind = (v["crossing_kind"] == number) & computed[..., np.newaxis]
+        of_kind = (variables["crossing_kind"] == number) & computed[..., np.newaxis]
         has_kind = of_kind.any(axis=-1)
         if number and has_kind.any():
             is_later = of_kind & (of_kind.cumsum(axis=-1) > 1)
             masks = (of_kind & ~is_later, is_later)
-            first_text, later_text = (span_text(v["crossing_at"][m], v["crossing_error"][m]) for m in masks)
+            first_text, later_text = (
+                span_text(variables["crossing_at"][mask], variables["crossing_error"][mask]) for mask in masks
+            )
             bound = "at least " * bool((unknown & ~has_kind).any())
-            on_rows = f"on {bound}{count_of_total(has_kind.sum(), computed.sum(), 'row')}"
-            text = f"{word}{CROSSING_REMARKS.get(word, '')}: {on_rows}, {line_parameter} = {first_text}"
+            rows_text = f"on {bound}{count_of_total(has_kind.sum(), computed.sum(), 'row')}"
+            text = f"{word}{CROSSING_REMARKS.get(word, '')}: {rows_text}, {line_parameter} = {first_text}"
             text += f", {row_parameter} = {axis_values_text(row_values[has_kind])}"
             if is_later.any():
                 bound = "at least " * bool(unknown.any())
-                rows = f"{bound}{int(is_later.any(axis=-1).sum())} of these rows"
-                text += f"; again further along the row on {rows}, at {line_parameter} = {later_text}"
+                later_rows_text = f"{bound}{int(is_later.any(axis=-1).sum())} of these rows"
+                text += (
+                    f"; again further along the row on {later_rows_text}, at {line_parameter} = {later_text}"
+                )
             lines.append(text)
     return lines
 
@@ -159,31 +170,33 @@ def _lines_about_flutter(
 ) -> list[str]:
     """Lines about undecided ranges, and about the rows with and without flutter. The masks as in
     `_crossing_lines`."""
-    v = view.variables
+    variables = view.variables
     row_values = view.point_columns[row_parameter].reshape(computed.shape)
     lines = []
     flutter, unknown_class = (flag_number(word, STABILITY_CLASSES) for word in ("flutter", "undecided"))
-    undecided = (v["class"] == unknown_class) & computed[..., np.newaxis]
+    undecided = (variables["class"] == unknown_class) & computed[..., np.newaxis]
     if undecided.any():
-        rows = undecided.any(axis=-1)
-        values = np.broadcast_to(v[line_parameter], undecided.shape)[undecided]
-        on_rows = (
-            f"on {count_of_total(rows.sum(), computed.sum(), 'row')}, {line_parameter} = {span_text(values)}"
+        has_undecided = undecided.any(axis=-1)
+        values = np.broadcast_to(variables[line_parameter], undecided.shape)[undecided]
+        rows_text = (
+            f"on {count_of_total(has_undecided.sum(), computed.sum(), 'row')}, {line_parameter} "
+            f"= {span_text(values)}"
         )
         lines.append(
-            f"behaviour undecided: {on_rows}, {row_parameter} = {axis_values_text(row_values[rows])}"
+            f"behaviour undecided: {rows_text}, {row_parameter} = "
+            f"{axis_values_text(row_values[has_undecided])}"
         )
     # A window of flutter may lie between two grid points: the located crossings show it.
-    flutters = (v["class"] == flutter).any(axis=-1) | (v["unstable_after"] > 0).any(axis=-1)
-    never_flutters = ~flutters & ~unknown & (v["class"] != unknown_class).all(axis=-1)
+    flutters = (variables["class"] == flutter).any(axis=-1) | (variables["unstable_after"] > 0).any(axis=-1)
+    never_flutters = ~flutters & ~unknown & (variables["class"] != unknown_class).all(axis=-1)
     flutters &= computed
     never_flutters &= computed
     if never_flutters.any() and flutters.any():
         with_flutter, without = (axis_values_text(row_values[mask]) for mask in (flutters, never_flutters))
-        count = count_of_total(flutters.sum(), computed.sum(), "row")
+        count_text = count_of_total(flutters.sum(), computed.sum(), "row")
         none = int(never_flutters.sum())
         lines.append(
-            f"flutter: on {count}, {row_parameter} = {with_flutter}; none on {none}, {row_parameter} = "
+            f"flutter: on {count_text}, {row_parameter} = {with_flutter}; none on {none}, {row_parameter} = "
             f"{without}"
         )
     return lines
@@ -195,12 +208,14 @@ def crossings_of_arms(view: ResultView, computed: np.ndarray) -> list[str]:
     rows."""
     if not view.quantities or "F" in view.parameters:
         return []
-    v = view.variables
+    variables = view.variables
     lines = []
     for number, word in list(enumerate(CROSSING_KINDS))[1:]:
-        is_of_kind = (v["crossing_kind"] == number) & computed[..., np.newaxis]
+        is_of_kind = (variables["crossing_kind"] == number) & computed[..., np.newaxis]
         if is_of_kind.any():
-            forces = v["crossing_at"][is_of_kind]
-            rows = count_of_total(is_of_kind.any(axis=-1).sum(), computed.sum(), "row")
-            lines.append(f"{word}: on {rows}, at {load_range_text(view, forces, np.zeros(len(forces), int))}")
+            forces = variables["crossing_at"][is_of_kind]
+            rows_text = count_of_total(is_of_kind.any(axis=-1).sum(), computed.sum(), "row")
+            lines.append(
+                f"{word}: on {rows_text}, at {load_range_text(view, forces, np.zeros(len(forces), int))}"
+            )
     return lines

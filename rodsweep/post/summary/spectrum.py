@@ -41,22 +41,24 @@ def stable_line(view: ResultView, computed: np.ndarray) -> str:
     unstable = view.variables["unstable_count"]
     masks = {"stable": unstable == 0, "unstable": unstable > 0, "not known": unstable < 0}
     masks_by_word = {word: computed & mask for word, mask in masks.items() if (computed & mask).any()}
-    point_count = counted(int(computed.sum()), "point")
+    points_text = counted(int(computed.sum()), "point")
     if len(masks_by_word) == 1:
-        return f"straight rod: {next(iter(masks_by_word))} at all {point_count}"
+        return f"straight rod: {next(iter(masks_by_word))} at all {points_text}"
     regions = {word: in_brackets(region_text(view, mask)) for word, mask in masks_by_word.items()}
     counts = (f"{word} at {int(mask.sum())}{regions[word]}" for word, mask in masks_by_word.items())
-    return f"straight rod, of {point_count}: {', '.join(counts)}"
+    return f"straight rod, of {points_text}: {', '.join(counts)}"
 
 
 def leading_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     """List with a line on the leading eigenvalues; empty if none is known. computed: mask of the computed
     points, of the shape of the points."""
-    v = view.variables
-    if not np.isfinite(v["growth_rate"][computed][:, 0]).any():
+    variables = view.variables
+    if not np.isfinite(variables["growth_rate"][computed][:, 0]).any():
         return []
-    error = v["error_estimate"][computed][:, 0]
-    rate, frequency = (span_text(v[n][computed][:, 0], error) for n in ("growth_rate", "frequency"))
+    errors = variables["error_estimate"][computed][:, 0]
+    rate, frequency = (
+        span_text(variables[name][computed][:, 0], errors) for name in ("growth_rate", "frequency")
+    )
     return [f"leading growth rate {rate} 1/tau2, frequency {frequency} rad/tau2"]
 
 
@@ -82,10 +84,10 @@ def eigenvalue_table(view: ResultView) -> TextTable | None:
 
 def unstable_count_line(view: ResultView) -> str:
     """Line on the number of unstable modes at the only point of a file."""
-    v = view.variables
-    unstable = int(v["unstable_count"].max())
-    proof = PROOF_WORDS[bool(v["certified"].all())]
-    if v["certified"].all() and estimates_counts(view.config):
+    variables = view.variables
+    unstable = int(variables["unstable_count"].max())
+    proof = PROOF_WORDS[bool(variables["certified"].all())]
+    if variables["certified"].all() and estimates_counts(view.config):
         proof = "proved by D or counted by its winding number, with some bounds estimated"
     return f"unstable modes: {unstable}, {proof}" if unstable >= 0 else "unstable modes: not known"
 
@@ -93,9 +95,9 @@ def unstable_count_line(view: ResultView) -> str:
 def error_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     """List with a line on the errors of the eigenvalues; empty if no error is known. computed: mask of the
     computed points, of the shape of the points."""
-    v = view.variables
-    size = np.hypot(v["growth_rate"][computed], v["frequency"][computed])
-    relative = v["error_estimate"][computed] / size
+    variables = view.variables
+    moduli = np.hypot(variables["growth_rate"][computed], variables["frequency"][computed])
+    relative = variables["error_estimate"][computed] / moduli
     if not np.isfinite(relative).any():
         return []
     worst, median = (f"{statistic(relative):.1e}" for statistic in (np.nanmax, np.nanmedian))
@@ -105,8 +107,8 @@ def error_lines(view: ResultView, computed: np.ndarray) -> list[str]:
 def unknowns_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     """List with a line on the number of unknowns per point, and on the number of points without a mesh.
     computed: mask of the computed points, of the shape of the points."""
-    v = view.variables
-    unknowns = 3 * v["elements"][computed].astype(int) * v["order"][computed]
+    variables = view.variables
+    unknowns = 3 * variables["elements"][computed].astype(int) * variables["order"][computed]
     if (followed := int((unknowns == 0).sum())) == unknowns.size:
         return ["no mesh was needed: eigenvalues were continued from a neighbouring point, or not found"]
     text = f"unknowns of the mesh per point: {span_text(unknowns[unknowns > 0])}"
@@ -121,12 +123,12 @@ def stability_line(view: ResultView, computed: np.ndarray) -> str:
     estimate; the number of points at which it is unknown. computed: mask of the computed points, of the shape
     of the points."""
     unstable = view.variables["unstable_count"][computed]
-    points = int(computed.sum())
+    point_count = int(computed.sum())
     if (unstable < 0).all():
         return "number of unstable modes: not known at any point"
     certified = int(view.variables["certified"][computed].sum())
-    certainty = "confirmed by an estimate" if estimates_counts(view.config) else "proved"
-    text = f"largest number of unstable modes: {int(unstable.max())}; the number is {certainty} at "
-    text += count_of_total(certified, points, "point")
+    certainty_text = "confirmed by an estimate" if estimates_counts(view.config) else "proved"
+    text = f"largest number of unstable modes: {int(unstable.max())}; the number is {certainty_text} at "
+    text += count_of_total(certified, point_count, "point")
     unknown_count = int((unstable < 0).sum())
     return text + (f", not known at {unknown_count}" if unknown_count else "")

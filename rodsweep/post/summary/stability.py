@@ -42,15 +42,24 @@ def stability_lines(
     if len(np.unique(column[np.isfinite(column)])) < 2:
         return [], []
     lines = list(lines_along(view.point_columns, name))
-    varied = [n for n in lines[0].parameters if len({line.parameters[n] for line in lines}) > 1]
-    names = [", ".join(f"{n} = {line.parameters[n]:.6g}" for n in varied) for line in lines]
+    varied = [
+        parameter_name
+        for parameter_name in lines[0].parameters
+        if len({line.parameters[parameter_name] for line in lines}) > 1
+    ]
+    parameter_texts = [
+        ", ".join(f"{parameter_name} = {line.parameters[parameter_name]:.6g}" for parameter_name in varied)
+        for line in lines
+    ]
     by_line = [thresholds_on(line) for line in lines]
     texts = list[str]()
     arm_sentences = list[str]()
     for kind, phrase in (FORCE_THRESHOLD_WORDS if name == "F" else OTHER_THRESHOLD_WORDS).items():
         kind_points = [[point for point in points if point.kind == kind] for points in by_line]
         if points_of_line := {i: points for i, points in enumerate(kind_points) if points}:
-            texts.append(f"{phrase.format(name=name)}: {_positions_text(points_of_line, names, name)}")
+            texts.append(
+                f"{phrase.format(name=name)}: {_positions_text(points_of_line, parameter_texts, name)}"
+            )
             pairs = [(point, lines[i].indices) for i, points in points_of_line.items() for point in points]
             located = [(point, indices) for point, indices in pairs if isinstance(point, LocatedThreshold)]
             arm_sentences += thresholds_of_arm(view, kind, located) if name == "F" else []
@@ -63,23 +72,23 @@ def _positions_text(by_line: Mapping[int, list[Threshold]], names: list[str], pa
     points = [point for line in by_line.values() for point in line]
     located = [point for point in points if isinstance(point, LocatedThreshold)]
     errors = [stated_error(point.position, point.error)[1] for point in located]
-    error = f" (+- {error_text(max(errors))})" if errors else ""
+    error_clause = f" (+- {error_text(max(errors))})" if errors else ""
     lines_text = f", on {count_of_total(len(by_line), len(names), 'line')} of points along {parameter_name}"
     lines_text *= len(by_line) < len(names)
     if len(located) == len(points) and all(point.equals_within_errors(located[0]) for point in located):
         frequency = located[0].frequency
         rate_text = f", frequency {frequency:.6g} rad/tau2" if np.isfinite(frequency) else ""
-        return _position_text(located[0]) + error + lines_text + rate_text
+        return _position_text(located[0]) + error_clause + lines_text + rate_text
     if len(by_line) <= MAX_LISTED_LINES:
         texts = ((" and ".join(map(_position_text, by_line[i])), names[i]) for i in by_line)
-        return f"{', '.join(' for '.join(filter(None, pair)) for pair in texts)}{error}"
+        return f"{', '.join(' for '.join(filter(None, pair)) for pair in texts)}{error_clause}"
     bracketed = [point for point in points if isinstance(point, UnlocatedThreshold)]
     if not located:
-        low = min(point.low for point in bracketed)
-        high = max(point.high for point in bracketed)
-        return f"between {low:.6g} and {high:.6g}{lines_text}"
+        lowest = min(point.low for point in bracketed)
+        highest = max(point.high for point in bracketed)
+        return f"between {lowest:.6g} and {highest:.6g}{lines_text}"
     ends = (choice(located, key=lambda point: point.position) for choice in (min, max))
-    text = f"{' to '.join(map(_position_text, ends))}{error}{lines_text}"
+    text = f"{' to '.join(map(_position_text, ends))}{error_clause}{lines_text}"
     if bracketed:
         text += f"; {counted(len(bracketed), 'further threshold')} known only to lie between two points"
     return text

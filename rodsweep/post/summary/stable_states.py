@@ -1,5 +1,5 @@
-"""Stable states of a phase diagram with cycles in `rodsweep show`: straight rod, cycle, or both. line:
-parameter that varies along a row. row: parameter that is constant on a row."""
+"""Stable states of a phase diagram with cycles in `rodsweep show`: straight rod, cycle, or both.
+line_parameter: parameter that varies along a row. row_parameter: parameter that is constant on a row."""
 
 import numpy as np
 
@@ -32,12 +32,15 @@ NO_CYCLE_CHANGE = tuple(map(SPECIAL_KINDS.index, ("none", "hopf")))
 def state_lines(view: ResultView, computed: np.ndarray, line_parameter: str, row_parameter: str) -> list[str]:
     """Lines about the fraction of the grid with each stable state, the ranges of some states, and the special
     points of cycles. computed: mask of the computed rows, (...,)."""
-    v = view.variables
+    variables = view.variables
     row_values = view.point_columns[row_parameter].reshape(computed.shape)
-    states = v["stable_states"]
-    kinds = v["cycle_special_kind"]
-    positions = v[f"cycle_special_{line_parameter}"]
-    shares = ((float((states[computed] == n).mean()), STABLE_STATE_WORDS.get(w, w)) for n, w in STABLE_STATES)
+    states = variables["stable_states"]
+    kinds = variables["cycle_special_kind"]
+    positions = variables[f"cycle_special_{line_parameter}"]
+    shares = (
+        (float((states[computed] == number).mean()), STABLE_STATE_WORDS.get(state_word, state_word))
+        for number, state_word in STABLE_STATES
+    )
     texts = ", ".join(f"{100 * share:.1f} % {phrase}" for share, phrase in shares if share)
     lines = [f"stable states, in % of the grid points: {texts}"]
     for phrase, state in LISTED_STATES.items():
@@ -47,7 +50,7 @@ def state_lines(view: ResultView, computed: np.ndarray, line_parameter: str, row
             lines.append(
                 f"{phrase}: at grid points of {count_of_total(at_points.sum(), computed.sum(), 'row')}, "
                 f"{line_parameter} = "
-                f"{span_text(np.broadcast_to(v[line_parameter], in_state.shape)[in_state])}, "
+                f"{span_text(np.broadcast_to(variables[line_parameter], in_state.shape)[in_state])}, "
                 f"{row_parameter} = {axis_values_text(row_values[at_points])}"
             )
         is_hidden = computed & ~in_state.any(axis=-1) & _both_between_grid_points(view, line_parameter)
@@ -59,32 +62,34 @@ def state_lines(view: ResultView, computed: np.ndarray, line_parameter: str, row
         is_of_kind = (kinds == SPECIAL_KINDS.index(kind)) & computed[..., np.newaxis]
         has_kind = is_of_kind.any(axis=-1)
         if has_kind.any():
-            on_rows = f"on {count_of_total(has_kind.sum(), computed.sum(), 'row')}"
+            rows_text = f"on {count_of_total(has_kind.sum(), computed.sum(), 'row')}"
             rows = axis_values_text(row_values[has_kind])
             lines.append(
-                f"{phrase}: {on_rows}, {line_parameter} = {span_text(positions[is_of_kind])}, "
+                f"{phrase}: {rows_text}, {line_parameter} = {span_text(positions[is_of_kind])}, "
                 f"{row_parameter} = {rows}"
             )
     return lines
 
 
 def _both_between_grid_points(view: ResultView, line_parameter: str) -> np.ndarray:
-    """Mask of rows, (...,), with two neighbouring grid points between which straight rod and cycle are both
-    stable though not at these points: one stable state at each, and between them first the beginning of one
-    and then the end of the other. Only intervals with one change of the straight rod and one change of cycles
-    are decided."""
-    v = view.variables
-    x = v[line_parameter]
+    """Mask of the rows, (...,), on which straight rod and cycle are both stable somewhere between two
+    neighbouring grid points, but not at these points: only the straight rod is stable at one point, only the
+    cycle at the other, and between them one state becomes stable before the other state ends. Only intervals
+    with one change of the straight rod and one change of cycles are considered."""
+    variables = view.variables
+    x = variables[line_parameter]
     straight, cycle = (flag_number(state, STABLE_STATES) for state in ("straight", "cycle"))
-    is_between = np.zeros(v["stable_states"].shape[:-1], dtype=bool)
+    is_between = np.zeros(variables["stable_states"].shape[:-1], dtype=bool)
     for row in np.ndindex(is_between.shape):
-        states = v["stable_states"][row]
-        hopfs = v["crossing_at"][row][np.isin(v["crossing_kind"][row], HOPF_CROSSING_CODES)]
-        specials = v[f"cycle_special_{line_parameter}"][row][
-            ~np.isin(v["cycle_special_kind"][row], NO_CYCLE_CHANGE)
+        states = variables["stable_states"][row]
+        hopfs = variables["crossing_at"][row][np.isin(variables["crossing_kind"][row], HOPF_CROSSING_CODES)]
+        specials = variables[f"cycle_special_{line_parameter}"][row][
+            ~np.isin(variables["cycle_special_kind"][row], NO_CYCLE_CHANGE)
         ]
         for i in np.flatnonzero(states[:-1] + states[1:] == straight + cycle):
-            positions_between = [p[(p > x[i]) & (p < x[i + 1])] for p in (hopfs, specials)]
+            positions_between = [
+                positions[(positions > x[i]) & (positions < x[i + 1])] for positions in (hopfs, specials)
+            ]
             if {states[i], states[i + 1]} != {straight, cycle} or list(map(len, positions_between)) != [1, 1]:
                 continue
             (change_of_straight,), (change_of_cycle,) = positions_between

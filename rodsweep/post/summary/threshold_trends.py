@@ -42,8 +42,10 @@ def monotony_lines(view: ResultView) -> list[str]:
     """Lines on whether the first thresholds rise or fall with each parameter that has more than two values
     (for gamma3: with 1/gamma3); empty for a list of points."""
     lines = []
-    long = [name for name, values in view.parameter_values.items() if len(values) > 2] if view.is_grid else []
-    for name, force in product(long, ("F_onset", "F_hopf")):
+    varied_names = (
+        [name for name, values in view.parameter_values.items() if len(values) > 2] if view.is_grid else []
+    )
+    for name, force in product(varied_names, ("F_onset", "F_hopf")):
         forces = np.moveaxis(view.variables[force], list(view.parameter_values).index(name), -1)
         label = name
         if name == "gamma3":
@@ -59,9 +61,9 @@ def monotony_lines(view: ResultView) -> list[str]:
             if number := int((trend_of_lines == trend).sum()):
                 text += f", {phrase} on {number}"
         is_mixed = trend_of_lines == Trend.rises_and_falls
-        others = [n for n in view.parameter_values if n != name]
+        other_names = [axis_name for axis_name in view.parameter_values if axis_name != name]
         positions = []
-        for axis, axis_indices in zip(others, np.argwhere(is_mixed).T, strict=True):
+        for axis, axis_indices in zip(other_names, np.argwhere(is_mixed).T, strict=True):
             if len(view.parameter_values[axis]) > 1 and axis_indices.size:
                 values = view.parameter_values[axis][axis_indices]
                 low = values.min()

@@ -35,7 +35,7 @@ LATER_CROSSING_WORDS = {"hopf": "flutter again from", "restabilization": "stable
 
 
 def later_flutter_changes(kinds: Sequence[str]) -> list[int]:
-    """Places, in a list of crossings, of the starts and ends of all windows of flutter after the first
+    """Indices, in a list of crossings, of the starts and ends of all windows of flutter after the first
     window. kinds: kinds of the crossings, in the order of the force."""
     indices = []
     expected = "restabilization"
@@ -68,23 +68,23 @@ def first_threshold_line(view: ResultView, computed: np.ndarray, event: str) -> 
     points."""
     phrase = FORCE_THRESHOLD_WORDS[event]
     rate_name, noun, unit = FIRST_THRESHOLD_RATES[event]
-    v = view.variables
-    F = np.where(computed, v[f"F_{event}"], np.nan).ravel()
+    variables = view.variables
+    F = np.where(computed, variables[f"F_{event}"], np.nan).ravel()
     mask = np.isfinite(F)
     rods = int(computed.sum())
-    searched = v["crossing_count"].ravel() >= 0
-    decided = searched & ~np.isfinite(v["open_from"].ravel()) & ~view.has_status(ENDED_EARLY).ravel()
-    unknown = unknown_clause(int((computed.ravel() & ~mask & ~decided).sum()))
+    searched = variables["crossing_count"].ravel() >= 0
+    decided = searched & ~np.isfinite(variables["open_from"].ravel()) & ~view.has_status(ENDED_EARLY).ravel()
+    unknown_text = unknown_clause(int((computed.ravel() & ~mask & ~decided).sum()))
     if not mask.any():
-        return f"{phrase}: at none of {counted(rods, 'rod')}{unknown}"
+        return f"{phrase}: at none of {counted(rods, 'rod')}{unknown_text}"
     errors = crossing_errors(view, F, "crossing_F")
     ends = (int(np.nanargmin(F)), int(np.nanargmax(F)))
     extremes = [f"{rounded_text(F[i], errors[i])}{in_brackets(point_text(view, i))}" for i in ends]
-    forces = " to ".join(extremes if extremes[0] != extremes[1] else extremes[:1])
-    every_rod = f"all {counted(rods, 'rod')}"
-    rods_text = every_rod if mask.sum() == rods else count_of_total(int(mask.sum()), rods, "rod")
-    rates = span_text(v[rate_name][computed])
-    return f"{phrase}: F = {forces}, at {rods_text}{unknown}; {noun} {rates} {unit}"
+    forces_text = " to ".join(extremes if extremes[0] != extremes[1] else extremes[:1])
+    every_rod_text = f"all {counted(rods, 'rod')}"
+    rods_text = every_rod_text if mask.sum() == rods else count_of_total(int(mask.sum()), rods, "rod")
+    rates_text = span_text(variables[rate_name][computed])
+    return f"{phrase}: F = {forces_text}, at {rods_text}{unknown_text}; {noun} {rates_text} {unit}"
 
 
 def unknown_beyond_clause(view: ResultView, F: float) -> str:
@@ -105,32 +105,34 @@ def crossing_errors(view: ResultView, F: np.ndarray, force_name: str) -> np.ndar
 def crossing_lines(view: ResultView) -> list[str]:
     """Lines about the first thresholds and the number of crossings of the only rod in a file, and the meaning
     of the kinds of crossings."""
-    v = view.point_values(0)
-    end = f"F = {v['F_end']:.15g}{unknown_beyond_clause(view, float(v['F_end']))}"
-    if kinds := [CROSSING_KINDS[int(kind)] for kind in v["crossing_kind"][v["crossing_kind"] > 0]]:
-        first_forces = {word: v[f"F_{event}"] for event, word in FIRST_CROSSING_WORDS.items()}
+    variables = view.point_values(0)
+    end_text = f"F = {variables['F_end']:.15g}{unknown_beyond_clause(view, float(variables['F_end']))}"
+    if kinds := [
+        CROSSING_KINDS[int(kind)] for kind in variables["crossing_kind"][variables["crossing_kind"] > 0]
+    ]:
+        first_forces = {word: variables[f"F_{event}"] for event, word in FIRST_CROSSING_WORDS.items()}
         changes = [f"{word} F = {F:.6g}" for word, F in first_forces.items() if np.isfinite(F)]
         for i in later_flutter_changes(kinds):
-            changes.append(f"{LATER_CROSSING_WORDS[kinds[i]]} F = {v['crossing_F'][i]:.6g}")
+            changes.append(f"{LATER_CROSSING_WORDS[kinds[i]]} F = {variables['crossing_F'][i]:.6g}")
         text = ", ".join(changes)
-        count = f"{counted(int(v['crossing_count']), 'crossing')} up to {end}"
+        count_text = f"{counted(int(variables['crossing_count']), 'crossing')} up to {end_text}"
         meanings = (f"{kind}: {CROSSING_MEANINGS[kind]}" for kind in dict.fromkeys(kinds))
-        return ["; ".join(filter(None, (text, count))), *meanings]
-    if v["crossing_count"] < 0:
+        return ["; ".join(filter(None, (text, count_text))), *meanings]
+    if variables["crossing_count"] < 0:
         return ["the thresholds of this rod are not known"]
-    none = "no threshold is located" if np.isfinite(v["open_from"]) else "no threshold"
-    return [f"{none} up to {end}"]
+    none_text = "no threshold is located" if np.isfinite(variables["open_from"]) else "no threshold"
+    return [f"{none_text} up to {end_text}"]
 
 
 def crossing_table(view: ResultView) -> TextTable | None:
     """Table of the crossings of the only rod in a file; None if there is no crossing."""
-    v = view.point_values(0)
+    variables = view.point_values(0)
     rows = []
-    for i in np.flatnonzero(v["crossing_kind"] > 0):
-        F = number_and_error(float(v["crossing_F"][i]), float(v["crossing_error"][i]))
-        rates = (f"{v[f'crossing_{name}'][i] + 0.0:.6g}" for name in ("growth_rate", "frequency"))
-        unstable_count = int(v["unstable_after"][i])
-        kind = CROSSING_KINDS[int(v["crossing_kind"][i])]
+    for i in np.flatnonzero(variables["crossing_kind"] > 0):
+        F = number_and_error(float(variables["crossing_F"][i]), float(variables["crossing_error"][i]))
+        rates = (f"{variables[f'crossing_{name}'][i] + 0.0:.6g}" for name in ("growth_rate", "frequency"))
+        unstable_count = int(variables["unstable_after"][i])
+        kind = CROSSING_KINDS[int(variables["crossing_kind"][i])]
         rows.append((kind, *F, *rates, str(unstable_count) if unstable_count >= 0 else "not known"))
     unit = PARAMETERS["F"].unit
     rate_headings = ("growth rate\n1/tau2", f"frequency\n{ANGULAR_UNIT}", "unstable\nabove")
@@ -140,30 +142,36 @@ def crossing_table(view: ResultView) -> TextTable | None:
 def completeness_lines(view: ResultView) -> list[str]:
     """Lines on the searched range, the completeness of the list of crossings, and the undecided range, for
     the only rod in a file."""
-    v = view.point_values(0)
-    unlisted = int(v["crossing_count"]) - int((v["crossing_kind"] > 0).sum())
-    proof = "proved complete" if has_standard_rods(view.config) else "confirmed by counts of unstable modes"
-    proof = proof if v["certified"] else f"not {proof}"
-    search = f"searched up to F = {v['F_end']:.15g}; " if np.isfinite(v["F_end"]) else ""
-    lines = [f"{search}the list of crossings is {proof}{unstored_clause(max(unlisted, 0))}"]
-    if np.isfinite(v["open_from"]):
+    variables = view.point_values(0)
+    unlisted = int(variables["crossing_count"]) - int((variables["crossing_kind"] > 0).sum())
+    proof_text = (
+        "proved complete" if has_standard_rods(view.config) else "confirmed by counts of unstable modes"
+    )
+    proof_text = proof_text if variables["certified"] else f"not {proof_text}"
+    search_text = f"searched up to F = {variables['F_end']:.15g}; " if np.isfinite(variables["F_end"]) else ""
+    lines = [f"{search_text}the list of crossings is {proof_text}{unstored_clause(max(unlisted, 0))}"]
+    if np.isfinite(variables["open_from"]):
         lines.append(
-            f"undecided from F = {v['open_from']:.9g} to {v['open_to']:.9g}: this range may contain a window "
-            "of flutter that is too narrow to be resolved"
+            f"undecided from F = {variables['open_from']:.9g} to {variables['open_to']:.9g}: this range may "
+            "contain a window of flutter that is too narrow to be resolved"
         )
     return lines
 
 
-def unknown_clause(count: int) -> str:
+def unknown_clause(rod_count: int) -> str:
     """Clause on the number of rods whose search failed or left a range of F unsearched; empty for 0."""
-    return f", not known at {counted(count, 'rod')}" if count else ""
+    return f", not known at {counted(rod_count, 'rod')}" if rod_count else ""
 
 
-def unstored_clause(count: int) -> str:
-    """Clause on the number `count` of crossings that are not stored because the list was full; empty for
-    0."""
-    verb = "is" if count == 1 else "are"
-    return f"; {count} more {verb} not stored, raise the option crossings" if count > 0 else ""
+def unstored_clause(crossing_count: int) -> str:
+    """Clause on the number `crossing_count` of crossings that are not stored because the list was full; empty
+    for 0."""
+    verb_form = "is" if crossing_count == 1 else "are"
+    return (
+        f"; {crossing_count} more {verb_form} not stored, raise the option crossings"
+        if crossing_count > 0
+        else ""
+    )
 
 
 def search_lines(view: ResultView, computed: np.ndarray, noun: str) -> list[str]:
@@ -171,22 +179,24 @@ def search_lines(view: ResultView, computed: np.ndarray, noun: str) -> list[str]
 
     computed: mask of the computed points, of the shape of the points.
     """
-    v = view.variables
+    variables = view.variables
     searches = int(computed.sum())
-    is_crossing = v["crossing_kind"][computed] > 0
+    is_crossing = variables["crossing_kind"][computed] > 0
     stored_counts = is_crossing.sum(axis=-1)
-    errors = v["crossing_error"][computed][is_crossing]
+    errors = variables["crossing_error"][computed][is_crossing]
     known_errors = errors[np.isfinite(errors)]
-    bound = f"; absolute error at most {error_text(float(known_errors.max()))}" if known_errors.size else ""
-    undecided = int(np.isfinite(v["open_from"][computed]).sum())
-    proved = count_of_total(int(v["certified"][computed].sum()), searches, noun)
+    error_bound_clause = (
+        f"; absolute error at most {error_text(float(known_errors.max()))}" if known_errors.size else ""
+    )
+    undecided = int(np.isfinite(variables["open_from"][computed]).sum())
+    proved_text = count_of_total(int(variables["certified"][computed].sum()), searches, noun)
     window = f"; for {counted(undecided, noun)} a narrow window of flutter may be missing" * (undecided > 0)
-    unlisted = int((v["crossing_count"][computed] - stored_counts).clip(min=0).sum())
-    lines = [f"the list of crossings {proof_clause(view)} for {proved}{window}"]
+    unlisted = int((variables["crossing_count"][computed] - stored_counts).clip(min=0).sum())
+    lines = [f"the list of crossings {proof_clause(view)} for {proved_text}{window}"]
     if stored_counts.any() or unlisted:
         lines.append(
             f"crossings stored: {int(stored_counts.sum())}, at most {int(stored_counts.max())} on a "
-            f"{noun}{bound}{unstored_clause(unlisted)}"
+            f"{noun}{error_bound_clause}{unstored_clause(unlisted)}"
         )
     return lines
 
@@ -199,8 +209,8 @@ def cost_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     """
     if not has_standard_rods(view.config):
         return []
-    v = view.variables
-    boxes, solve_counts = (v[name][computed] for name in ("boxes", "solves"))
+    variables = view.variables
+    boxes, solve_counts = (variables[name][computed] for name in ("boxes", "solves"))
     return [
         f"cost of a search: {count_range(boxes, 'evaluation')} of the determinant D over a box, "
         f"{count_range(solve_counts, 'eigenproblem')}"

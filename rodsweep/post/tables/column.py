@@ -75,7 +75,7 @@ class Column:
             texts = self._numbers()
         else:
             texts = self.values.astype(str).tolist()
-        return ["" if none else text for text, none in zip(texts, self.absent, strict=True)]
+        return ["" if is_absent else text for text, is_absent in zip(texts, self.absent, strict=True)]
 
     def _numbers(self) -> list[str]:
         """Real numbers as text: estimates with ERROR_DIGITS digits, coordinates without rounding error, other

@@ -23,13 +23,13 @@ list."""
 def item_rows(view: ResultView, variables: Sequence[Variable], is_sweep_wide: bool) -> Rows:
     """Indices of all items of a list that are not missing. is_sweep_wide: whether the list belongs to the
     whole file, not to single points."""
-    points = 1 if is_sweep_wide else view.variables["status"].size
+    point_count = 1 if is_sweep_wide else view.variables["status"].size
     is_present: NDArray[np.bool_] = np.zeros((), bool)
     for variable in variables:
         if marks_missing_items(variable) and (_is_of_points(view, variable) or is_sweep_wide):
             values = view.variables[variable.name]
             inner_dimensions = len(variable.extra)
-            values = values.reshape(points, *values.shape[values.ndim - inner_dimensions :])
+            values = values.reshape(point_count, *values.shape[values.ndim - inner_dimensions :])
             is_present = is_present | ~missing_values_mask(variable, values)
     return np.nonzero(is_present)
 
@@ -136,12 +136,12 @@ def _axis_indices(view: ResultView, parameter_name: str) -> NDArray[np.int64]:
 def quantities_at_points(view: ResultView) -> dict[str, NDArray]:
     """Quantities of an arm at all points, (points,) each, by name, except quantities that vary along a row of
     a diagram."""
-    count = view.variables["status"].size
+    point_count = view.variables["status"].size
     columns = {}
     for name, values in view.quantities.items():
         dimension = PARAMETER_STORED_ALONG.get(name, "")
         if values.size == 1 or not view.is_grid:
-            columns[name] = np.broadcast_to(values, count)
+            columns[name] = np.broadcast_to(values, point_count)
         elif dimension in view.parameters:
             columns[name] = values[_axis_indices(view, dimension)]
     return columns

@@ -124,17 +124,25 @@ def chosen_table(
                 f"{view.path} has no table {table!r}; {unknown_key_hint(table, contents.tables, LIST_INTRO)}"
             )
         return table
-    holding = {v.name: name for name, variables in contents.lists.items() for v in variables}
+    holding = {variable.name: name for name, variables in contents.lists.items() for variable in variables}
     holding |= {name: list_name for list_name in contents.lists for name in contents.dimensions(list_name)}
     lists = list(dict.fromkeys(holding[name] for name in columns if name in holding))
     if set(lists) == BRANCHES_TABLE_PARTS:
         return BRANCHES
     if len(lists) > 1:
-        pair = [next(name for name in columns if holding.get(name) == list_name) for list_name in lists[:2]]
+        columns_of_two_lists = [
+            next(name for name in columns if holding.get(name) == list_name) for list_name in lists[:2]
+        ]
         raise InputError(
-            f"{pair[0]} and {pair[1]} are in two tables, {lists[0]} and {lists[1]}; name columns of one table"
+            f"{columns_of_two_lists[0]} and {columns_of_two_lists[1]} are in two tables, {lists[0]} and "
+            f"{lists[1]}; name columns of one table"
         )
-    all_names = (*(v.name for v in contents.point_variables), *holding, *view.point_columns, *view.quantities)
+    all_names = (
+        *(variable.name for variable in contents.point_variables),
+        *holding,
+        *view.point_columns,
+        *view.quantities,
+    )
     refuse_unknown_columns(view.path, columns, all_names, "")
     if lists:
         return lists[0]

@@ -67,10 +67,14 @@ class Tables:
         table_names.refuse_unknown_columns(self.view.path, tuple(columns), tuple(by_name), name)
         if not columns:
             hidden = {variable.name for variable in variables if variable.name != "status"}
-            columns = [each for each in by_name if name == table_names.POINTS or each not in hidden]
+            columns = [
+                column_name
+                for column_name in by_name
+                if name == table_names.POINTS or column_name not in hidden
+            ]
         empty = 0 if points is None else self.view.variables["status"].size - len(np.unique(points))
-        others = tuple(choice for choice in self.contents.tables if choice != name)
-        return Table(name, tuple(by_name[each] for each in columns), empty, others)
+        other_names = tuple(choice for choice in self.contents.tables if choice != name)
+        return Table(name, tuple(by_name[column_name] for column_name in columns), empty, other_names)
 
     def list_columns(self, name: str) -> tuple[Column, ...]:
         """Columns of the list `name`, without the columns of the points."""
@@ -120,10 +124,12 @@ def merged_rows(view: ResultView, cycles: Rows, special_points: Rows) -> tuple[N
     branch = np.concatenate([branch_of_cycle, branch_of_special])
     position = np.concatenate([cycles[1] + 1, position_of_special])
     point, number = (np.concatenate(pair) for pair in zip(cycles, special_points, strict=True))
-    kind = np.repeat([0, 1], [len(cycles[0]), len(special_points[0])])
-    order = np.lexsort((number, kind, position, branch, point))
-    row = np.concatenate([np.arange(len(cycles[0])), np.arange(len(special_points[0]))])
-    cycle_indices, special_indices = (np.where(kind == own_kind, row, -1)[order] for own_kind in (0, 1))
+    is_special_point = np.repeat([0, 1], [len(cycles[0]), len(special_points[0])])
+    order = np.lexsort((number, is_special_point, position, branch, point))
+    row_index = np.concatenate([np.arange(len(cycles[0])), np.arange(len(special_points[0]))])
+    cycle_indices, special_indices = (
+        np.where(is_special_point == own_kind, row_index, -1)[order] for own_kind in (0, 1)
+    )
     return point[order], cycle_indices, special_indices
 
 

@@ -46,15 +46,15 @@ def is_user_added(name: str) -> bool:
 
 
 def variable_digest(
-    kind: np.dtype,
+    dtype: np.dtype,
     shape: tuple[int, ...],
     dimensions: Iterable[str],
     attributes: Mapping[str, Any],
     blocks: Iterable[Any],
 ) -> str:
-    """Digest of a variable of the NumPy type `kind` and the shape `shape`. dimensions: names of its
+    """Digest of a variable of the NumPy type `dtype` and the shape `shape`. dimensions: names of its
     dimensions. attributes: its attributes by name. blocks: its numbers as buffers in row-major order."""
-    described = [kind.newbyteorder("<").str, list(shape), list(dimensions), _plain_attributes(attributes)]
+    described = [dtype.newbyteorder("<").str, list(shape), list(dimensions), _plain_attributes(attributes)]
     digest = sha256(json.dumps(described, sort_keys=True).encode())
     for block in blocks:
         digest.update(block)
@@ -71,11 +71,11 @@ def digests_of(file: h5py.File) -> Digests:
     """Digests of an open file. Raises ValueError, with a clause as message, for content that rodsweep does
     not write."""
     variables = {}
-    for name, data in _variables(file):
-        if data.dtype.kind not in NUMBER_KINDS or data.shape is None:
+    for name, dataset in _variables(file):
+        if dataset.dtype.kind not in NUMBER_KINDS or dataset.shape is None:
             raise ValueError(f"its variable {printable_name(name, 40)} has no numbers")
-        described = data.dtype, data.shape, _dimensions(name, data), data.attrs
-        variables[name] = variable_digest(*described, _number_buffers(data))
+        described = dataset.dtype, dataset.shape, _dimensions(name, dataset), dataset.attrs
+        variables[name] = variable_digest(*described, _number_buffers(dataset))
     return {"attributes": attribute_digests(file.attrs), "variables": variables}
 
 
@@ -90,7 +90,10 @@ def refuse_changed(file: h5py.File) -> None:
         current_digests = digests[f"{noun}s"]
         for name, digest in sealed_digests.items():
             if name not in current_digests:
-                raise ValueError(f"its {noun} {name} was removed")
+                raise ValueError(
+                    f"its {noun} {name} was removed; restore a copy of the file, or compute it again with "
+                    "--fresh"
+                )
             if current_digests[name] != digest:
                 raise ValueError(f"its {noun} {name} was changed after rodsweep wrote it")
         for name in current_digests.keys() - sealed_digests.keys():
@@ -108,40 +111,50 @@ def _variables(file: h5py.File) -> Iterator[tuple[str, h5py.Dataset]]:
         name_text = printable_name(name, 40)
         if not isinstance(file.get(name, getlink=True), h5py.HardLink):
             raise ValueError(f"{name_text} is a link, and a result has no links")
-        data = file[name]
-        if not isinstance(data, h5py.Dataset):
-            if is_user_added(name) and isinstance(data, h5py.Group):
+        dataset = file[name]
+        if not isinstance(dataset, h5py.Dataset):
+            if is_user_added(name) and isinstance(dataset, h5py.Group):
                 continue
             raise ValueError(f"{name_text} is not a variable")
-        if data.is_virtual or data.external:
+        if dataset.is_virtual or dataset.external:
             raise ValueError(f"{name_text} lies in another file")
-        address = h5py.h5o.get_info(data.id).addr
+        address = h5py.h5o.get_info(dataset.id).addr
         if address in offsets:
             raise ValueError(f"{name_text} is a second hard link to another variable")
         offsets.add(address)
         if not is_user_added(name):
-            yield name, data
+            yield name, dataset
 
 
-def _dimensions(name: str, data: h5py.Dataset) -> list[str]:
+def _dimensions(name: str, dataset: h5py.Dataset) -> list[str]:
     """Names of a variable's dimensions, read from its attributes. The only dimension of a coordinate has the
     name of the coordinate. A scalar has no dimensions. ValueError if the attributes are damaged. HDF5's own
     functions for dimensions are not used, because they crash on damaged attributes."""
-    attributes = data.attrs
-    text = printable_name(name, 40)
-    changed = ValueError(f"the dimensions of {text} were changed after rodsweep wrote them")
+    attributes = dataset.attrs
+    name_text = printable_name(name, 40)
+    changed = ValueError(f"the dimensions of {name_text} were changed after rodsweep wrote them")
     if "CLASS" in attributes:
-        number = attributes.get("_Netcdf4Dimid", 0)  # number of the dimension, in files that xarray wrote
-        stored = [attributes["CLASS"], attributes.get("NAME"), attributes.get("_Netcdf4Coordinates", number)]
-        if list(map(_attribute_as_list, stored)) != [["DIMENSION_SCALE"], [name], _attribute_as_list(number)]:
+        dimension_id = attributes.get(
+            "_Netcdf4Dimid", 0
+        )  # number of the dimension, in files that xarray wrote
+        stored = [
+            attributes["CLASS"],
+            attributes.get("NAME"),
+            attributes.get("_Netcdf4Coordinates", dimension_id),
+        ]
+        if list(map(_attribute_as_list, stored)) != [
+            ["DIMENSION_SCALE"],
+            [name],
+            _attribute_as_list(dimension_id),
+        ]:
             raise changed
         return [name]
     if "DIMENSION_LIST" not in attributes:
         return []
-    kind = h5py.check_vlen_dtype(attributes.get_id("DIMENSION_LIST").dtype)
-    if kind is None or h5py.check_ref_dtype(kind) is not h5py.Reference:
+    list_dtype = h5py.check_vlen_dtype(attributes.get_id("DIMENSION_LIST").dtype)
+    if list_dtype is None or h5py.check_ref_dtype(list_dtype) is not h5py.Reference:
         raise changed
-    file = data.file.id
+    file = dataset.file.id
     try:  # by low-level handles, because `data.file[place]` takes half the time of opening a file
         references = (each for references in attributes["DIMENSION_LIST"] for each in references)
         scales = [h5py.h5r.dereference(reference, file) for reference in references]
@@ -154,15 +167,15 @@ def _dimensions(name: str, data: h5py.Dataset) -> list[str]:
     return dimensions
 
 
-def _number_buffers(data: h5py.Dataset) -> Iterator[Any]:
+def _number_buffers(dataset: h5py.Dataset) -> Iterator[Any]:
     """Yields the numbers of a variable as buffers. Contiguous numbers are read from the file without HDF5;
     other numbers, and big-endian numbers, come as one buffer of little-endian numbers."""
-    start = data.id.get_offset()
-    size = data.id.get_storage_size()
-    if start is None or data.dtype.byteorder == ">":
-        yield np.ascontiguousarray(data[...], data.dtype.newbyteorder("<"))
+    start = dataset.id.get_offset()
+    size = dataset.id.get_storage_size()
+    if start is None or dataset.dtype.byteorder == ">":
+        yield np.ascontiguousarray(dataset[...], dataset.dtype.newbyteorder("<"))
         return
-    handle = data.file.id.get_vfd_handle()
+    handle = dataset.file.id.get_vfd_handle()
     for offset in range(start, start + size, BYTES_PER_READ):
         yield os.pread(handle, min(BYTES_PER_READ, start + size - offset), offset)
 

@@ -45,7 +45,7 @@ class FilePlan:
     """Attributes of the file, in addition to the attributes that every result file has."""
     flags: tuple[tuple[int, str], ...]
     """(value, name) of every status except MISSING_STATUS."""
-    quantities: tuple[FilledVariable, ...] = ()
+    quantity_variables: tuple[FilledVariable, ...] = ()
     """Quantities of an arm, with values: axes of a grid over these quantities, or additional coordinates of
     the points."""
     chains: Chains | None = None
@@ -89,10 +89,10 @@ def create_file(path: Path, plan: FilePlan) -> None:
         for name, length in plan.layout.extents.items():
             _write_scale(file, name, plan.coordinates.get(name, np.arange(1, length + 1)))
         for variable in plan.layout.variables:
-            data = _new_dataset(file, variable, plan.points.shape + plan.layout.point_shape(variable))
-            _write_attributes(file, data, variable, (*plan.dimensions, *variable.extra))
+            dataset = _new_dataset(file, variable, plan.points.shape + plan.layout.point_shape(variable))
+            _write_attributes(file, dataset, variable, (*plan.dimensions, *variable.extra))
         add_variables(file, constants)
-        add_variables(file, [entry for entry in plan.quantities if not is_axis(entry[0])])
+        add_variables(file, [quantity for quantity in plan.quantity_variables if not is_axis(quantity[0])])
         file["status"].attrs.update(flag_attributes(((MISSING_STATUS, "missing"), *plan.flags)))
         file.attrs["program"] = PROGRAM
         file.attrs["format"] = FORMAT
@@ -108,18 +108,18 @@ def add_variables(file: h5py.File, variables: Sequence[FilledVariable]) -> None:
         for name, length in zip(variable.extra, values.shape, strict=True):
             if name not in file:
                 _write_scale(file, name, np.arange(1, length + 1))
-        data = file.create_dataset(variable.name, data=values.astype(variable.dtype))
-        _write_attributes(file, data, variable, variable.extra)
+        dataset = file.create_dataset(variable.name, data=values.astype(variable.dtype))
+        _write_attributes(file, dataset, variable, variable.extra)
 
 
 def _write_parameters(file: h5py.File, plan: FilePlan) -> None:
     """Writes the coordinates of the points: axes of a grid, or all parameters along `point`."""
     names = plan.layout.parameters
     points = plan.points
-    for variable, values in plan.quantities:
+    for variable, values in plan.quantity_variables:
         if is_axis(variable):
             _write_scale(file, variable.name, values, variable)
-    dependent_names = [variable.name for variable, _ in plan.quantities if not is_axis(variable)]
+    dependent_names = [variable.name for variable, _ in plan.quantity_variables if not is_axis(variable)]
     if dependent_names or not points.axes:
         file.attrs["coordinates"] = " ".join([*(() if points.axes else names), *dependent_names])
     if points.arm_axes:
@@ -130,9 +130,9 @@ def _write_parameters(file: h5py.File, plan: FilePlan) -> None:
         if points.is_grid:
             _write_scale(file, name, column)
         else:
-            data = file.create_dataset(name, data=column)
-            data.attrs.update(dimension_attributes(name))
-            data.dims[0].attach_scale(file["point"])
+            dataset = file.create_dataset(name, data=column)
+            dataset.attrs.update(dimension_attributes(name))
+            dataset.dims[0].attach_scale(file["point"])
 
 
 def is_axis(variable: Variable) -> bool:
@@ -143,9 +143,9 @@ def is_axis(variable: Variable) -> bool:
 def _write_scale(file: h5py.File, name: str, values: NDArray[Any], variable: Variable | None = None) -> None:
     """Writes the coordinate `values`, (n,), of the dimension `name`. variable: description of a dimension
     that is not in DIMENSIONS."""
-    data = file.create_dataset(name, data=values)
-    data.make_scale(name)
-    data.attrs.update(dimension_attributes(name) if variable is None else variable.attributes)
+    dataset = file.create_dataset(name, data=values)
+    dataset.make_scale(name)
+    dataset.attrs.update(dimension_attributes(name) if variable is None else variable.attributes)
 
 
 def _new_dataset(file: h5py.File, variable: Variable, shape: tuple[int, ...]) -> h5py.Dataset:
@@ -155,17 +155,17 @@ def _new_dataset(file: h5py.File, variable: Variable, shape: tuple[int, ...]) ->
     creation.set_layout(h5py.h5d.CONTIGUOUS)
     creation.set_alloc_time(h5py.h5d.ALLOC_TIME_EARLY)
     creation.set_fill_value(np.array(variable.fill, variable.dtype))
-    kind = h5py.h5t.py_create(np.dtype(variable.dtype), logical=True)
+    hdf5_type = h5py.h5t.py_create(np.dtype(variable.dtype), logical=True)
     space = h5py.h5s.create_simple(shape)
-    return h5py.Dataset(h5py.h5d.create(file.id, variable.name.encode(), kind, space, creation))
+    return h5py.Dataset(h5py.h5d.create(file.id, variable.name.encode(), hdf5_type, space, creation))
 
 
 def _write_attributes(
-    file: h5py.File, data: h5py.Dataset, variable: Variable, dimensions: Sequence[str]
+    file: h5py.File, dataset: h5py.Dataset, variable: Variable, dimensions: Sequence[str]
 ) -> None:
-    """Adds unit, long name, flags and dimensions of `variable` to its dataset `data`."""
-    data.attrs.update(variable.attributes)
+    """Adds unit, long name, flags and dimensions of `variable` to its `dataset`."""
+    dataset.attrs.update(variable.attributes)
     for axis, name in enumerate(dimensions):
-        data.dims[axis].attach_scale(file[name])
+        dataset.dims[axis].attach_scale(file[name])
     if "point" in dimensions:
-        data.attrs["coordinates"] = file.attrs["coordinates"]
+        dataset.attrs["coordinates"] = file.attrs["coordinates"]

@@ -32,15 +32,15 @@ def iterate_statuses(path: Path, block_size: int | None = None) -> Iterator[tupl
     block_size: number of points per step; MAX_BLOCK_POINTS by default.
     """
     with h5py.File(path, "r") as file:
-        data = file["status"]
-        offset = data.id.get_offset()
-        kind = data.dtype
-        count = data.size
+        status_dataset = file["status"]
+        offset = status_dataset.id.get_offset()
+        dtype = status_dataset.dtype
+        point_count = status_dataset.size
     block_size = block_size or MAX_BLOCK_POINTS
     with path.open("rb") as stream:
-        for start in range(0, count, block_size):
-            stream.seek(offset + start * kind.itemsize)
-            yield start, np.fromfile(stream, kind, min(block_size, count - start))
+        for start in range(0, point_count, block_size):
+            stream.seek(offset + start * dtype.itemsize)
+            yield start, np.fromfile(stream, dtype, min(block_size, point_count - start))
 
 
 def missing_ranges(path: Path) -> list[IndexRange]:
@@ -56,7 +56,10 @@ def records_to_add(path: Path, other_path: Path, layout: Layout) -> Iterator[np.
     """Yields records, (n,), of points that the file `other_path` has and the file `path` lacks."""
     block_size = _block_points(layout)
     pairs = zip(iterate_statuses(path, block_size), iterate_statuses(other_path, block_size), strict=True)
-    masks = ((start, own == MISSING_STATUS, other != MISSING_STATUS) for (start, own), (_, other) in pairs)
+    masks = (
+        (start, statuses == MISSING_STATUS, other_statuses != MISSING_STATUS)
+        for (start, statuses), (_, other_statuses) in pairs
+    )
     blocks = ((start, is_missing & is_in_other) for start, is_missing, is_in_other in masks)
     yield from _selected_records(other_path, layout, blocks)
 
@@ -87,10 +90,10 @@ def _selected_records(
                 records = np.empty(is_selected.sum(), layout.record_dtype)
                 records["index"] = start + np.flatnonzero(is_selected)
                 for name, offset in offsets.items():
-                    kind = layout.record_dtype[name]
-                    stream.seek(offset + start * kind.itemsize)
-                    values = np.fromfile(stream, kind.base, len(is_selected) * prod(kind.shape))
-                    records[name] = values.reshape(len(is_selected), *kind.shape)[is_selected]
+                    dtype = layout.record_dtype[name]
+                    stream.seek(offset + start * dtype.itemsize)
+                    values = np.fromfile(stream, dtype.base, len(is_selected) * prod(dtype.shape))
+                    records[name] = values.reshape(len(is_selected), *dtype.shape)[is_selected]
                 yield records
 
 
@@ -101,10 +104,10 @@ def records_at(path: Path, index: np.ndarray, layout: Layout) -> np.ndarray:
     offsets = _variable_offsets(path, layout)
     with path.open("rb") as stream:
         for name, offset in offsets.items():
-            kind = layout.record_dtype[name]
+            dtype = layout.record_dtype[name]
             for i, position in enumerate(index):
-                stream.seek(offset + int(position) * kind.itemsize)
-                records[name][i] = np.fromfile(stream, kind.base, prod(kind.shape)).reshape(kind.shape)
+                stream.seek(offset + int(position) * dtype.itemsize)
+                records[name][i] = np.fromfile(stream, dtype.base, prod(dtype.shape)).reshape(dtype.shape)
     return records
 
 

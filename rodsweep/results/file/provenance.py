@@ -74,9 +74,9 @@ def failure_sentence(failure: str) -> str:
     """
     points_text, _, outcome = failure.partition(": ")
     status, _, message = outcome.partition(" ")
-    pairs = (pair.partition("=") for pair in points_text.split(", "))
-    point = ", ".join(f"{name} = {float(value):.9g}" for name, _, value in pairs)
-    return f"{status}, for example at {point}" + f": {message}" * bool(message)
+    name_value_pairs = (pair.partition("=") for pair in points_text.split(", "))
+    point_text = ", ".join(f"{name} = {float(value):.9g}" for name, _, value in name_value_pairs)
+    return f"{status}, for example at {point_text}" + f": {message}" * bool(message)
 
 
 def failure_kind(line: str) -> str:
@@ -125,7 +125,9 @@ def merged_history(attribute_sets: Sequence[Mapping[str, Any]]) -> dict[str, Any
         "shard": "",
         KERNELS_ATTRIBUTE: merged_blas_kernels(*map(blas_kernels_in, attribute_sets))[:MAX_ATTRIBUTE_LENGTH],
     }
-    reasons = (str(each.get(FAILURE_REASONS_ATTRIBUTE, "")) for each in attribute_sets)
+    reasons = (
+        str(attributes_of_file.get(FAILURE_REASONS_ATTRIBUTE, "")) for attributes_of_file in attribute_sets
+    )
     history |= joined_failure_reasons(*reasons)
     runs = [attributes for attributes in attribute_sets if "ranks" in attributes]
     if not runs:

@@ -20,11 +20,12 @@ EXTRA_SPACE_BYTES = 300_000
 
 def require_room(path: Path, plan: FilePlan) -> None:
     """Raises EnvironmentIncomplete unless the disk has space for the file of a plan, journals and a copy."""
-    size = SPACE_FACTOR * plan.points.count * (plan.layout.bytes_per_point + 12) + EXTRA_SPACE_BYTES
+    needed_bytes = SPACE_FACTOR * plan.points.count * (plan.layout.bytes_per_point + 12) + EXTRA_SPACE_BYTES
     free = shutil.disk_usage(path.parent).free
-    if free < size:
+    if free < needed_bytes:
         raise EnvironmentIncomplete(
-            f"{path} needs {size / 1e6:.3g} MB of disk space, but {free / 1e6:.3g} MB are free; make room"
+            f"{path} needs {needed_bytes / 1e6:.3g} MB of disk space, but {free / 1e6:.3g} MB are free; "
+            "make room"
         )
 
 
@@ -38,23 +39,23 @@ def header_of_existing_file(path: Path, plan: FilePlan, journals: Path) -> Resul
     try:
         return read_header(path)
     except InvalidResultFile as error:
-        remedies = _remedies_clause(plan, journals)
+        remedies_clause = _remedies_clause(plan, journals)
         if not is_rodsweep_file(path) and not journals_with_fingerprint(journals, plan.fingerprint):
-            remedies = "choose another file with -o, or move this file away"
-        raise InputError(f"{error}; the file is left unchanged: {remedies}") from None
+            remedies_clause = "choose another file with -o, or move this file away"
+        raise InputError(f"{error}; the file is left unchanged: {remedies_clause}") from None
 
 
 def require_same_config(header: ResultHeader, plan: FilePlan, journals: Path) -> None:
     """Raises InputError for an existing file, described by `header`, whose config differs from the config of
     the plan."""
     change = config_change_text(header.config, plan.config)
-    remedies = _remedies_clause(plan, journals)
+    remedies_clause = _remedies_clause(plan, journals)
     try:
         extension_of(header, points_of_file(header.path, header.layout), plan)
-        remedies += "; --extend computes only the missing points"
+        remedies_clause += "; --extend computes only the missing points"
     except InputError:  # the plan lacks points or results of the file
         pass
-    raise InputError(f"{header.path} was made from another config ({change}); {remedies}")
+    raise InputError(f"{header.path} was made from another config ({change}); {remedies_clause}")
 
 
 def _remedies_clause(plan: FilePlan, journals: Path) -> str:

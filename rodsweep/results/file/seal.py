@@ -96,8 +96,8 @@ def _hdf5_end(stream: BinaryIO) -> int:
 
 def _large_pieces(file: h5py.File) -> list[ByteRange]:
     """Byte ranges of the numbers of contiguous variables larger than MAX_INCLUDED_BYTES, in order."""
-    variables = [data for data in map(file.get, file) if isinstance(data, h5py.Dataset)]
-    ranges = {(data.id.get_offset(), data.id.get_storage_size()) for data in variables}
+    variables = [dataset for dataset in map(file.get, file) if isinstance(dataset, h5py.Dataset)]
+    ranges = {(dataset.id.get_offset(), dataset.id.get_storage_size()) for dataset in variables}
     return sorted((start, size) for start, size in ranges if start is not None and size > MAX_INCLUDED_BYTES)
 
 

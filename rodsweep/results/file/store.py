@@ -65,7 +65,8 @@ class ResultFileWriter:
                 raise
 
     def _open(self, replaces: bool, extends: bool) -> None:
-        """Creates, replaces, continues or extends the file, or refuses it; moves other journals away."""
+        """Creates, replaces, continues or extends the file, or refuses it; moves journals of other configs
+        out of the journal directory."""
         if replaces or not self.path.exists():
             self._create(replaces)
         else:
@@ -224,9 +225,9 @@ class ResultFileWriter:
         counts: dict[str, int] = {}
         with damage_refusals(self.path):
             for _, status in iterate_statuses(self.path):
-                for value, n in zip(*np.unique(status, return_counts=True), strict=True):
+                for value, count in zip(*np.unique(status, return_counts=True), strict=True):
                     name = names.get(int(value), f"unknown ({value})")
-                    counts[name] = counts.get(name, 0) + int(n)
+                    counts[name] = counts.get(name, 0) + int(count)
         return counts
 
     def close(self) -> None:

@@ -55,7 +55,7 @@ def damage_refusals(path: Path) -> Iterator[None]:
 def one_line_message(error: Exception) -> str:
     """Message of a library's exception about a file, on a single line, cut to LONGEST_REASON characters."""
     text = getattr(error, "strerror", None) or str(error) or type(error).__name__
-    text = "".join(c if c.isprintable() else " " for c in text)
+    text = "".join(character if character.isprintable() else " " for character in text)
     return text if len(text) <= LONGEST_REASON else text[: LONGEST_REASON - 3] + "..."
 
 
@@ -75,12 +75,13 @@ class ResultHeader:
     points: int
 
 
-def open_checked(path: Path, values: bool = True) -> tuple[h5py.File, ResultHeader]:
+def open_checked(path: Path, checks_values: bool = True) -> tuple[h5py.File, ResultHeader]:
     """Returns (open file, header); every reader opens a result file by this function.
 
-    values: whether the numbers of large variables are also compared with the seal, which takes a second per
-    GB. Otherwise only HDF5's structures and small variables are compared, unless another program has written
-    the file. Raises InputError unless the file is a complete result with the content written by rodsweep.
+    checks_values: whether the numbers of large variables are also compared with the seal, which takes a
+    second per GB. Otherwise only HDF5's structures and small variables are compared, unless another program
+    has written the file. Raises InputError unless the file is a complete result with the content written by
+    rodsweep.
     """
     refuse_absent(path)
     if path.suffix in CONFIG_SUFFIXES:
@@ -91,7 +92,7 @@ def open_checked(path: Path, values: bool = True) -> tuple[h5py.File, ResultHead
         is_framed = has_valid_structure_checksum(path)
         file = h5py.File(path, "r")
         try:
-            return file, header_of(path, file, check_content=values or not is_framed)
+            return file, header_of(path, file, check_content=checks_values or not is_framed)
         except BaseException:
             file.close()
             raise
@@ -162,13 +163,16 @@ def require_variables_of_layout(file: h5py.File, layout: Layout) -> None:
     Every variable must be contiguous and have the type and shape of the layout.
     """
     shape = tuple(len(file[name]) for name in layout.dimensions(is_list="point" in file))
-    expected = {v.name: (shape + layout.point_shape(v), np.dtype(v.dtype)) for v in layout.variables}
+    expected = {
+        variable.name: (shape + layout.point_shape(variable), np.dtype(variable.dtype))
+        for variable in layout.variables
+    }
     expected |= {name: ((length,), file[name].dtype) for name, length in layout.extents.items()}
     for name, (extents, kind) in expected.items():
-        data = file[name]
-        if not isinstance(data, h5py.Dataset) or data.shape != extents or data.dtype != kind:
+        dataset = file[name]
+        if not isinstance(dataset, h5py.Dataset) or dataset.shape != extents or dataset.dtype != kind:
             raise ValueError(f"its variable {name} does not fit its config")
-        if data.id.get_offset() is None or data.chunks or not data.id.get_storage_size():
+        if dataset.id.get_offset() is None or dataset.chunks or not dataset.id.get_storage_size():
             raise ValueError(
                 f"its variable {name} is chunked, compressed or without data, as after a rewrite by another "
                 "program"

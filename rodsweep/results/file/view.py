@@ -127,13 +127,17 @@ class ResultView:
         if name in self.arm_axes:
             axes_shape = [-1 if axis == name else 1 for axis in self.arm_axes]
             return np.broadcast_to(values.reshape(axes_shape), shape).ravel()
-        n = len(shape)
-        return values.reshape(-1, *values.shape[n:]) if values.shape[:n] == shape else values
+        dimension_count = len(shape)
+        return (
+            values.reshape(-1, *values.shape[dimension_count:])
+            if values.shape[:dimension_count] == shape
+            else values
+        )
 
     @property
     def status_names(self) -> NDArray[np.str_]:
         """Name of the status of every point, (points,)."""
-        return np.array([self.flags.get(int(s), "missing") for s in self.variables["status"].ravel()])
+        return np.array([self.flags.get(int(value), "missing") for value in self.variables["status"].ravel()])
 
     def has_status(self, *statuses: str) -> NDArray[np.bool_]:
         """Mask of the points whose status has one of the names `statuses`, with the shape of `status`."""
@@ -185,11 +189,11 @@ def _view(path: Path) -> ResultView:
     """View from reading the file and its journals once; see `read_view`."""
     refuse_absent(path)
     # Opened only once, because a run may replace the file at any instant.
-    file, header = open_checked(path, values=path.stat().st_size <= MAX_CHECKED_BYTES)
+    file, header = open_checked(path, checks_values=path.stat().st_size <= MAX_CHECKED_BYTES)
     with damage_refusals(path):
         status = file["status"]
         words = str(escape_control_characters(status.attrs["flag_meanings"])).split()
-        flags = dict(zip((int(v) for v in status.attrs["flag_values"]), words, strict=True))
+        flags = dict(zip((int(value) for value in status.attrs["flag_values"]), words, strict=True))
         recent = journalled_points(header, status[...].ravel())
         variables = FileVariables(path, file, recent)
         stored = (name for name in ALL_QUANTITIES if name in file)

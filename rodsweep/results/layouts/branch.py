@@ -74,8 +74,8 @@ def followed_variables(parameter_name: str) -> tuple[Variable, ...]:
             "within error",
         ),
         *(
-            real(name, "1", f"estimate of {error}, at branch_{parameter_name}")
-            for name, error in ERROR_VARIABLES
+            real(name, "1", f"estimate of {error_noun}, at branch_{parameter_name}")
+            for name, error_noun in ERROR_VARIABLES
         ),
     )
 
@@ -92,7 +92,7 @@ def followed_range_variables(parameter_name: str, prefix: str = "") -> tuple[Var
 
 
 def special_variables(parameter_name: str) -> tuple[Variable, ...]:
-    """Variables of the special points on all branches; parameter: the continuation parameter's name."""
+    """Variables of the special points on all branches. parameter_name: name of the followed parameter."""
     unit = PARAMETERS[parameter_name].unit
     return along_dimension(
         SPECIAL_DIMENSION,

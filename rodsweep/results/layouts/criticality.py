@@ -65,8 +65,12 @@ OPTION_EXTENSION_RULES = {"crossings": CROSSING_LIST_EXTENSION_RULE, "certify": 
 
 def layout(config: dict[str, Any]) -> Layout:
     """Layout of the result file of the task criticality, for a resolved config."""
-    search = [v for v in search_variables("F", "crossing_F") if v.name not in ABSENT_FROM_HOPF_SEARCH]
-    position = [v.name for v in search].index("unstable_after") + 1
+    search = [
+        variable
+        for variable in search_variables("F", "crossing_F")
+        if variable.name not in ABSENT_FROM_HOPF_SEARCH
+    ]
+    position = [variable.name for variable in search].index("unstable_after") + 1
     variables = (*search[:position], *NORMAL_FORM_VARIABLES, *SEARCH_END_VARIABLES, *search[position:])
     variables = with_certified_meaning(variables, config, "Hopf points")
     extents = {HOPF_POINT_DIMENSION: config["criticality"]["crossings"]}

@@ -16,5 +16,5 @@ CURVES_LOST_BEYOND = integer(
     "cycle_curves_lost_beyond",
     "number of ends of curves of folds that were lost beyond the range",
 )
-"""Number of lost ends. Rows that only these curves lead to lack their cycles. A file without lost ends does
-not have this variable."""
+"""Number of lost ends. A row whose detached branches are found only from a lost part of a curve lacks the
+cycles on these branches. A file without lost ends does not have this variable."""

@@ -72,9 +72,9 @@ def plane_of(config: dict[str, Any]) -> tuple[tuple[str, str], dict[str, int]]:
     that varies along each row. row: name of the parameter that differs between rows."""
     axes = config["parameters"]
     names = (name for name in TRANSVERSE_PARAMETERS if name in axes)
-    sizes = {name: len(axes[name].get("values", ())) or axes[name]["num"] for name in names}
-    line, row = (name for name, size in sizes.items() if size > 1)
-    return (line, row), sizes
+    value_counts = {name: len(axes[name].get("values", ())) or axes[name]["num"] for name in names}
+    line_parameter, row_parameter = (name for name, size in value_counts.items() if size > 1)
+    return (line_parameter, row_parameter), value_counts
 
 
 def sweep_wide_variables(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
@@ -115,8 +115,8 @@ def cycle_variables(line_parameter: str) -> tuple[Variable, ...]:
     cycles."""
     unit = PARAMETERS[line_parameter].unit
     place_clause = "at the special point"
-    absolute_error = "estimate of the absolute error of cycle_special_"
-    error = "estimate of the relative error of cycle_special_"
+    absolute_error_meaning = "estimate of the absolute error of cycle_special_"
+    relative_error_meaning = "estimate of the relative error of cycle_special_"
     return (
         word("stable_states", "stable states of the rod", STABLE_STATES, line_parameter),
         integer("cycle_special_count", "number of special points of the branches of the row, stored or not"),
@@ -125,11 +125,11 @@ def cycle_variables(line_parameter: str) -> tuple[Variable, ...]:
             CYCLE_SPECIAL_DIMENSION,
             word("cycle_special_kind", "kind of the special point of a branch", SPECIAL_KINDS),
             real(f"cycle_special_{line_parameter}", unit, f"{line_parameter} {place_clause}"),
-            real("cycle_special_error", unit, f"{absolute_error}{line_parameter}"),
+            real("cycle_special_error", unit, f"{absolute_error_meaning}{line_parameter}"),
             real("cycle_special_period", "tau2", f"period of the cycle {place_clause}"),
             real("cycle_special_tip_y_max", "L", f"largest y of the tip {place_clause}; 0 at a Hopf point"),
-            real("cycle_special_period_error", "1", f"{error}period"),
-            real("cycle_special_tip_y_max_error", "1", f"{error}tip_y_max"),
+            real("cycle_special_period_error", "1", f"{relative_error_meaning}period"),
+            real("cycle_special_tip_y_max_error", "1", f"{relative_error_meaning}tip_y_max"),
         ),
     )
 
@@ -139,15 +139,15 @@ def cycle_curve_variables(line_parameter: str, row_parameter: str) -> dict[str, 
     line_parameter, row_parameter: parameters."""
     dimension = "cycle_curve_point"
     force = PARAMETERS[line_parameter].unit
-    kind = "kind of the special points on the curve, fold or torus"
-    error = f"estimate of the absolute error of cycle_curve_{line_parameter} on the curve"
+    kind_meaning = "kind of the special points on the curve, fold or torus"
+    error_meaning = f"estimate of the absolute error of cycle_curve_{line_parameter} on the curve"
     variables = (
         integer("cycle_curve_number", "number of the curve of special points of cycles, from 1", dimension),
-        word("cycle_curve_kind", kind, SPECIAL_KINDS, dimension),
+        word("cycle_curve_kind", kind_meaning, SPECIAL_KINDS, dimension),
         real(f"cycle_curve_{line_parameter}", force, f"{line_parameter} on the curve", dimension),
         real(f"cycle_curve_{row_parameter}", PARAMETERS[row_parameter].unit, f"{row_parameter} on the curve",
              dimension),
-        real("cycle_curve_error", force, error, dimension),
+        real("cycle_curve_error", force, error_meaning, dimension),
         real("cycle_curve_period", "tau2", "period of the cycle on the curve", dimension),
         real("cycle_curve_tip_y_max", "L", "largest y of the tip; 0 where the amplitude vanishes", dimension),
         *end_variables("cycle_curve", CYCLE_CURVE_ENDS, dimension),
@@ -171,22 +171,22 @@ def end_variables(curve: str, reasons: Iterable[str], dimension: str) -> tuple[V
 def curve_variables(line_parameter: str, row_parameter: str) -> dict[str, Variable]:
     """Variables, by name, of the boundary curves of a phase diagram, their folds, their agreement with the
     rows, and reference values of filament and partial beam. line_parameter, row_parameter: parameters."""
-    kind = "kind of the points on the curve, double real eigenvalues or Hopf points"
+    kind_meaning = "kind of the points on the curve, double real eigenvalues or Hopf points"
     units = {name: PARAMETERS[name].unit for name in (line_parameter, row_parameter)}
     force = PARAMETERS["F"].unit
-    error = "estimate of the error of fold_"
+    error_meaning = "estimate of the error of fold_"
     variables = (
         integer("curve_number", "number of the curve, from 1", "curve_point"),
-        word("curve_kind", kind, CURVE_KINDS, "curve_point"),
+        word("curve_kind", kind_meaning, CURVE_KINDS, "curve_point"),
         *(real(f"curve_{name}", units[name], f"{name} on the curve", "curve_point") for name in units),
         real("curve_frequency", ANGULAR_UNIT, "angular frequency of the modes on the curve", "curve_point"),
         real("curve_growth_rate", "1/tau2", "growth rate of the modes on the curve", "curve_point"),
         *end_variables("curve", CURVE_ENDS, "curve_point"),
         integer("fold_curve", "number of the curve on which the fold lies", "fold"),
-        word("fold_kind", kind, CURVE_KINDS, "fold"),
+        word("fold_kind", kind_meaning, CURVE_KINDS, "fold"),
         word("fold_of", "parameter that reverses its direction along the curve at the fold", units, "fold"),
         *(real(f"fold_{name}", units[name], f"{name} at the fold", "fold") for name in units),
-        *(real(f"fold_{name}_error", units[name], f"{error}{name}", "fold") for name in units),
+        *(real(f"fold_{name}_error", units[name], f"{error_meaning}{name}", "fold") for name in units),
         real("fold_frequency", ANGULAR_UNIT, "angular frequency of the modes at the fold", "fold"),
         real("fold_growth_rate", "1/tau2", "growth rate of the modes at the fold", "fold"),
         real("curve_agreement", "1", f"largest distance of a crossing from its curve along {line_parameter}, "
@@ -203,7 +203,7 @@ def criticality_variables(line_parameter: str, row_parameter: str) -> dict[str, 
     """Variables, by name, of the sign of Re c along Hopf curves, and of its zeros, for
     `phase_diagram.criticality`. line_parameter, row_parameter: parameters."""
     units = {name: PARAMETERS[name].unit for name in (line_parameter, row_parameter)}
-    error = "estimate of the error of bautin_"
+    error_meaning = "estimate of the error of bautin_"
     variables = (
         *along_dimension("curve_point", criticality_variable("curve_criticality", "Re c")),
         real("curve_gamma1", PARAMETERS["gamma1"].unit, "axial drag of curve_criticality and bautin_*"),
@@ -214,7 +214,7 @@ def criticality_variables(line_parameter: str, row_parameter: str) -> dict[str, 
                 "bautin_curve_point", "number, from 1, of the curve_point before the generalised Hopf point"
             ),
             *(real(f"bautin_{name}", units[name], f"{name} where Re c = 0") for name in units),
-            *(real(f"bautin_{name}_error", units[name], f"{error}{name}") for name in units),
+            *(real(f"bautin_{name}_error", units[name], f"{error_meaning}{name}") for name in units),
             real(
                 "bautin_frequency",
                 ANGULAR_UNIT,
@@ -237,12 +237,12 @@ def bautin_curve_variables(line_parameter: str, row_parameter: str, third: str) 
     third."""
     names = (line_parameter, row_parameter, third)
     step = "bautin_step"
-    unit = {name: PARAMETERS[name].unit for name in names}
-    error = "estimate of the error of bautin_along_"
+    units = {name: PARAMETERS[name].unit for name in names}
+    error_meaning = "estimate of the error of bautin_along_"
     variables = (
         integer("bautin_along_curve", "number of the curve of generalised Hopf points, from 1", step),
-        *(real(f"bautin_along_{name}", unit[name], f"{name} where Re c = 0", step) for name in names),
-        *(real(f"bautin_along_{name}_error", unit[name], f"{error}{name}", step) for name in names),
+        *(real(f"bautin_along_{name}", units[name], f"{name} where Re c = 0", step) for name in names),
+        *(real(f"bautin_along_{name}_error", units[name], f"{error_meaning}{name}", step) for name in names),
         real("bautin_along_frequency", ANGULAR_UNIT, "angular frequency of the pair", step),
         real("bautin_along_landau_imag", LANDAU_UNIT, "imaginary part of the Landau coefficient c", step),
         *end_variables("bautin_along", BAUTIN_ENDS, step),

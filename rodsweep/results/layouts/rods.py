@@ -57,4 +57,6 @@ def with_certified_meaning(
 
 def with_meaning(variables: tuple[Variable, ...], name: str, meaning: str) -> tuple[Variable, ...]:
     """The variables, with the long name `meaning` for the variable `name`."""
-    return tuple(replace(v, long_name=meaning) if v.name == name else v for v in variables)
+    return tuple(
+        replace(variable, long_name=meaning) if variable.name == name else variable for variable in variables
+    )

@@ -83,7 +83,16 @@ def si_variables_of(layout: Layout, config: Mapping[str, Any]) -> dict[str, Vari
     variable."""
     is_force = load_kind_of(config["parameters"]["arm"]) == "force"
     units = ((variable, _stored_si_unit(variable, is_force).unit) for variable in layout.variables)
-    return {v.name: real(si_name_of(v.name, si), si, _si_meaning(v, si), *v.extra) for v, si in units if si}
+    return {
+        stored_variable.name: real(
+            si_name_of(stored_variable.name, si_unit),
+            si_unit,
+            _si_meaning(stored_variable, si_unit),
+            *stored_variable.extra,
+        )
+        for stored_variable, si_unit in units
+        if si_unit
+    }
 
 
 def si_name_of(name: str, unit: str) -> str:
@@ -152,7 +161,10 @@ def arm_variables(parameters: ParametersSection, points: Points) -> tuple[Filled
         return ()
     if not points.arm_axes:
         quantities = arm.grid_quantities()
-        along = {n: (PARAMETER_STORED_ALONG[n],) if np.ndim(v) else () for n, v in quantities.items()}
+        along = {
+            n: (PARAMETER_STORED_ALONG[n],) if np.ndim(quantity_values) else ()
+            for n, quantity_values in quantities.items()
+        }
         return tuple(_si_variable(arm, n, values, along[n]) for n, values in quantities.items())
     axes = points.arm_axes
     numbers = {name: axis.array()[0] for name, axis in arm.quantity_axes.items() if name not in axes}
@@ -203,12 +215,12 @@ def si_values(
     """
     values = {}
     for variable in layout.variables:
-        si = _stored_si_unit(variable, is_force)
-        if si.unit:
-            needed = {name: quantities[name] for name in (*si.factors, *si.divisors)}
+        si_unit = _stored_si_unit(variable, is_force)
+        if si_unit.unit:
+            needed = {name: quantities[name] for name in (*si_unit.factors, *si_unit.divisors)}
             at_index = {name: array[index] if np.ndim(array) else array for name, array in needed.items()}
             value = np.asarray(record[variable.name])
-            scale = si.scale(at_index)
+            scale = si_unit.scale(at_index)
             shape = scale.shape + (1,) * (value.ndim - scale.ndim)
-            values[si_name_of(variable.name, si.unit)] = value * scale.reshape(shape)
+            values[si_name_of(variable.name, si_unit.unit)] = value * scale.reshape(shape)
     return values

@@ -74,8 +74,12 @@ def longitudinal_variables(
     parameters on which the rates depend, or the dimension of all points."""
     meaning = f"longitudinal eigenvalue, real, for gamma1 = {gamma1:g}"
     rate = real("longitudinal_rate", "1/tau2", meaning, *dimensions, "mode")
-    error = "estimate of the relative error of longitudinal_rate"
-    return (rate,) if is_closed_form else (rate, real("longitudinal_error", "1", error, *dimensions, "mode"))
+    error_meaning = "estimate of the relative error of longitudinal_rate"
+    return (
+        (rate,)
+        if is_closed_form
+        else (rate, real("longitudinal_error", "1", error_meaning, *dimensions, "mode"))
+    )
 
 
 def longitudinal_parameters(is_closed_form: bool, linear: bool) -> tuple[str, ...]:

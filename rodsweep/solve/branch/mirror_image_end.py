@@ -52,7 +52,9 @@ def _end_at_hopf(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> 
     half_length = arc_length_between(start, end) / 2
     if start.cycle.measures.tip_y_max > BRANCH_END_SETTINGS.max_last_amplitude:
         if half_length < ARC_STEP_CONTROL.min_length:
-            raise Unsolvable("two cycles of opposite sign follow each other at the shortest allowed step")
+            raise Unsolvable(
+                "the branch jumps to its mirror image, and no shorter step along the branch is allowed"
+            )
         return replace(start, next_arc_length=half_length)
     can_halve = half_length >= ARC_STEP_CONTROL.min_length
     for number, hopf in enumerate(limits.hopfs):

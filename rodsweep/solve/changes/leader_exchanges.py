@@ -98,7 +98,9 @@ class LeaderExchangeSearch:
         # With a mode on the imaginary axis the status is undecided, but no mode is missing.
         self.leading_eigenvalues_proved &= spectrum.certified or spectrum.status == SpectrumStatus.undecided
         if not np.isfinite(spectrum.eigenvalues).all():
-            raise Unsolvable(f"{self.path.text_at(p)}: {spectrum.status.name} {spectrum.message}".rstrip())
+            place = self.path.text_at(p)
+            text = f"the spectrum at {place} has the status {spectrum.status.name}: {spectrum.message}"
+            raise Unsolvable(text.rstrip(": "))
         w = spectrum.eigenvalues.copy()
         slope = np.empty(SAMPLED_MODE_COUNT, dtype=complex)
         for i, guess in enumerate(spectrum.eigenvalues):

@@ -31,7 +31,7 @@ class ThresholdStatus(PointStatus):
     )
     ended_early = (
         9,
-        "only a part of the requested range is searched: the search ends, or on a row of a diagram begins, "
-        "at a rod beyond which unstable modes could not be counted, or ends because the list was full; "
-        "thresholds beyond this rod are not known; the message says why",
+        "only a part of the requested range is searched, because unstable modes could not be counted in the "
+        "other part, or because the list of crossings was full; thresholds in the other part are not known; "
+        "the message says where the searched part begins or ends, and why",
     )

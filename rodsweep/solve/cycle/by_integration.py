@@ -194,7 +194,8 @@ class _IntegrationUntilSettled:
         times = self._crossings(run)[0]
         if len(times) <= settled.returns_per_period:
             raise NoCycleFound(
-                IntegrationStatus.not_settled, f"the tip stops returning after {self.return_count} returns"
+                IntegrationStatus.not_settled,
+                f"after {self.return_count} returns to theta = 0 the tip does not return again",
             )
         period = float(times[settled.returns_per_period] - times[0])
         spline = CubicSpline(run.times, run.states)

@@ -22,7 +22,7 @@ class CycleStatus(PointStatus):
     )
     left_the_model = (
         3,
-        "a section of the rod was crushed (h1 <= 0) or lost its stiffness, so the model is no longer valid; "
+        "a cross-section of the rod was crushed (h1 <= 0) or lost its stiffness, so the model ends there; "
         "start from a smaller amplitude or from a neighbour's cycle, lower F, or raise k1",
     )
     failed = (
@@ -63,7 +63,7 @@ class IntegrationStatus(PointStatus):
     )
     left_the_model = (
         3,
-        "a section of the rod was crushed (h1 <= 0) or lost its stiffness, so the model is no longer valid; "
+        "a cross-section of the rod was crushed (h1 <= 0) or lost its stiffness, so the model ends there; "
         "start from a smaller amplitude, lower F, or raise k1",
     )
     failed = (

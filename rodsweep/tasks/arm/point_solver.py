@@ -94,9 +94,11 @@ def rod_numbers(points: Points) -> NDArray[np.int64] | None:
         return None
     columns = list(points.columns)
     if points.materials:
-        number = {material: float(i) for i, material in enumerate(points.materials)}
+        material_numbers = {material: float(i) for i, material in enumerate(points.materials)}
         points_per_rod = points.count // len(points.materials)
-        columns.append(np.repeat([number[material] for material in points.materials], points_per_rod))
+        columns.append(
+            np.repeat([material_numbers[material] for material in points.materials], points_per_rod)
+        )
     table = np.stack(columns, axis=-1)
     rods = np.unique(np.nan_to_num(table, nan=-1.0), axis=0, return_inverse=True)[1].ravel()
     return None if rods.max() + 1 == len(rods) else rods

@@ -78,10 +78,13 @@ def _motion_at_hopf_point(F_name: str) -> Callable[[Record], ArmMotion]:
 
     def motion(record: Record) -> ArmMotion:
         is_hopf = np.isin(record["crossing_kind"], HOPF_CROSSING_CODES)
-        first = np.argmax(is_hopf, axis=-1, keepdims=True)
+        first_hopf_index = np.argmax(is_hopf, axis=-1, keepdims=True)
         exists = is_hopf.any(axis=-1)
         pair = (np.asarray(record[name], float) for name in ("crossing_frequency", F_name))
-        frequency, F = (np.where(exists, np.take_along_axis(v, first, axis=-1)[..., 0], np.nan) for v in pair)
+        frequency, F = (
+            np.where(exists, np.take_along_axis(values, first_hopf_index, axis=-1)[..., 0], np.nan)
+            for values in pair
+        )
         return ArmMotion(np.abs(frequency), F)
 
     return motion
@@ -137,7 +140,9 @@ class ArmValidity:
         self.points = points
         self.task = config.task
         at_rest = AT_REST_STATUSES.get(self.task, ())
-        self.searched_statuses = [int(s) for s in statuses if s.succeeded or s.name in at_rest]
+        self.searched_statuses = [
+            int(status) for status in statuses if status.succeeded or status.name in at_rest
+        ]
         """Values of the statuses at which the solver missed no motion."""
         sections = [axis.size for name, axis in self.section.quantity_axes.items() if name in NON_LOAD_KEYS]
         self.points_per_arm = points.count // int(np.prod(sections)) if points.arm_axes else points.count
@@ -156,7 +161,8 @@ class ArmValidity:
         return self._validity_variables(arm, replace(motion, may_be_missed=may_be_missed), index)
 
     def variables_at_rest(self) -> dict[str, Array]:
-        """The VALIDITY_VARIABLES at the n points in the rod model, (n,), as if all arms were at rest."""
+        """The VALIDITY_VARIABLES, (n,), at the n points whose arm is slender enough for the rod model, as if
+        the arms did not move."""
         parts = []
         for start in range(0, self.points.count, self.points_per_arm):
             indices = np.arange(start, start + self.points_per_arm)
@@ -182,11 +188,11 @@ class ArmValidity:
         excesses = np.array([effect.value_over_limit for effect in relevant])  # (effects, n, ...)
         validity = worst_validity(effects, of_cycles=motion.is_cycle)
         # The last axis holds all motions of a point.
-        points = excesses.reshape(len(relevant), *np.shape(index), -1)
-        largest = np.nanmax(np.where(np.isnan(points), -1.0, points), axis=-1)
+        excesses_by_point = excesses.reshape(len(relevant), *np.shape(index), -1)
+        largest = np.nanmax(np.where(np.isnan(excesses_by_point), -1.0, excesses_by_point), axis=-1)
         effect_index = np.argmax(largest, axis=0)
-        numbers = [NEGLECTED_EFFECTS.index(effect.name.replace(" ", "_")) for effect in relevant]
-        number = np.array(numbers)[effect_index]
+        numbers_of_relevant = [NEGLECTED_EFFECTS.index(effect.name.replace(" ", "_")) for effect in relevant]
+        effect_numbers = np.array(numbers_of_relevant)[effect_index]
         at_worst = np.max(largest, axis=0)
         validities = validity.reshape(*np.shape(index), -1).max(axis=-1)
         has_motion = np.isfinite(rate).reshape(*np.shape(index), -1).any(axis=-1)
@@ -194,7 +200,7 @@ class ArmValidity:
         is_known = has_motion | ~np.asarray(motion.may_be_missed) | (validities == Validity.does_not_apply)
         return {
             "model_applies": np.where(is_known, validities, VALIDITY_NOT_KNOWN),
-            "neglected_effect": np.where(is_known & (at_worst > 0), number, -1),
+            "neglected_effect": np.where(is_known & (at_worst > 0), effect_numbers, -1),
             "neglected_excess": np.where(is_known & (at_worst >= 0), at_worst, np.nan),
         }
 

@@ -27,9 +27,14 @@ def boundary_curves(
     from ...solve.changes.diagram.boundaries import boundary_curves_through, seed_of
 
     names = ("crossing_at", "crossing_kind", "crossing_frequency", "crossing_growth_rate")
-    x, kind, frequency, rate = map(view.by_point, names)
+    x, kind, frequency, growth_rate = map(view.by_point, names)
     seeds = [
-        seed_of((float(x[i, j]), float(rows[i])), int(kind[i, j]), float(frequency[i, j]), float(rate[i, j]))
+        seed_of(
+            (float(x[i, j]), float(rows[i])),
+            int(kind[i, j]),
+            float(frequency[i, j]),
+            float(growth_rate[i, j]),
+        )
         for i in np.flatnonzero(np.isfinite(rows))
         for j in np.flatnonzero(kind[i])
     ]

@@ -146,8 +146,14 @@ def _values_along_dimension(
 
     rows: one row for each item along the dimension, with the objects whose attributes are the values.
     """
-    chosen = [v for v in variables.values() if v.extra == (dimension,) and v.name.startswith(prefix)]
-    return value_lists(chosen, [outcome_values(chosen, *row, prefix=prefix) for row in rows])
+    variables_of_dimension = [
+        variable
+        for variable in variables.values()
+        if variable.extra == (dimension,) and variable.name.startswith(prefix)
+    ]
+    return value_lists(
+        variables_of_dimension, [outcome_values(variables_of_dimension, *row, prefix=prefix) for row in rows]
+    )
 
 
 def _variables_with_values(
@@ -156,13 +162,13 @@ def _variables_with_values(
     return [(variables[name], np.asarray(value)) for name, value in values.items()]
 
 
-def _end_reasons(end_reasons: Sequence[int], count: int) -> list[dict[str, int]]:
-    """For each of the `count` points of a curve, the reasons why the curve starts or ends there; 0 if the
-    curve goes on.
+def _end_reasons(end_reasons: Sequence[int], point_count: int) -> list[dict[str, int]]:
+    """For each of the `point_count` points of a curve, the reasons why the curve starts or ends there; 0 if
+    the curve goes on.
 
     end_reasons: (reason at the first point, reason at the last point).
     """
-    reasons = [{"start": 0, "end": 0} for _ in range(count)]
+    reasons = [{"start": 0, "end": 0} for _ in range(point_count)]
     reasons[0]["start"], reasons[-1]["end"] = end_reasons
     return reasons
 
@@ -172,7 +178,11 @@ def cycles_record(result: "CoexistenceRow", line_parameter: str) -> dict[str, An
 
     line_parameter: parameter that varies along the row.
     """
-    variables = [v for v in cycle_variables(line_parameter) if v.extra == (CYCLE_SPECIAL_DIMENSION,)]
+    variables = [
+        variable
+        for variable in cycle_variables(line_parameter)
+        if variable.extra == (CYCLE_SPECIAL_DIMENSION,)
+    ]
     attribute_names = {f"cycle_special_{line_parameter}": "parameter_value"}
     rows = [
         outcome_values(variables, point, prefix="cycle_special_", names=attribute_names)

@@ -74,8 +74,9 @@ class DiagramCurves:
         return row
 
     def cached_starts(self, items: "Stage", item_numbers: Sequence[int]) -> "dict[RowKey, Any]":
-        """Special points cached on this rank, for the rows on which the half curves numbered `item_numbers`
-        start. items: all half curves, or rows; rows that are solved again need no special points."""
+        """Special points cached on this rank, by row, for the rows on which the half curves numbered
+        `item_numbers` start. items: work items of the current stage: half curves, or rows to be solved again,
+        which need no special points."""
         from ...solve.branch.special.detached_rows import DetachedRows
 
         if isinstance(items, DetachedRows):
@@ -97,7 +98,7 @@ class DiagramCurves:
         return stages.stages(results)[-1] if stages is not None else None
 
     def _stages(self, view: ResultView) -> "DiagramStages | None":
-        """All stages of the search, as in `work_items`."""
+        """All stages of the search for curves of folds and torus points; None as for `work_items`."""
         from ...determinant.parameter_plane import PlaneAxis
         from ...solve.branch.regions_beyond import extended_range
         from ...solve.branch.special.detached_rows import DiagramStages
@@ -106,20 +107,20 @@ class DiagramCurves:
         plane = self.plane if self.task.config.phase_diagram.cycles else None
         if plane is None:
             return None
-        line, row = self.task.config.plane_parameters
-        rows = self.task.points.columns_by_name[row]
-        complete = np.flatnonzero(view.has_status(COMPLETE_ROW_STATUS).ravel() & np.isfinite(rows))
+        line_parameter, row_parameter = self.task.config.plane_parameters
+        row_values = self.task.points.columns_by_name[row_parameter]
+        complete = np.flatnonzero(view.has_status(COMPLETE_ROW_STATUS).ravel() & np.isfinite(row_values))
         tracer = SpecialCurveTracer(
             *plane.axes,
-            special_points_of_rows(view, line, rows),
-            {int(number): float(rows[number]) for number in complete},
+            special_points_of_rows(view, line_parameter, row_values),
+            {int(number): float(row_values[number]) for number in complete},
         )
         low, high = self._line_limits
         return DiagramStages(
             tracer,
-            lambda number, values: special_points_of_row(values, line, number, rows[number]),
-            PlaneAxis(line, *extended_range(line, low, high)),
-            rows_with_leaving_branches(view, line, tracer.complete_rows, (low, high)),
+            lambda number, values: special_points_of_row(values, line_parameter, number, row_values[number]),
+            PlaneAxis(line_parameter, *extended_range(line_parameter, low, high)),
+            rows_with_leaving_branches(view, line_parameter, tracer.complete_rows, (low, high)),
         )
 
     @property
@@ -140,10 +141,10 @@ class DiagramCurves:
             return items.solve(item, partial(self._special_points, items), self._line_limits)
         if not isinstance(items, DetachedRows):
             return items.solve(item, partial(self._special_points, items), self.workspace)
-        number = items.row_of(item)
-        starts = items.starts_of_row(number)
-        row = self.task.coexistence_row(number, self.workspace, starts)
-        self.special_points_by_row[number, len(starts)] = row.special_points + row.folds_beyond
+        row_index = items.row_of(item)
+        starts = items.starts_of_row(row_index)
+        row = self.task.coexistence_row(row_index, self.workspace, starts)
+        self.special_points_by_row[row_index, len(starts)] = row.special_points + row.folds_beyond
         return row_result(row, self.task.coexistence_record(row))
 
     def empty_result(self, items: "Stage") -> dict[str, np.ndarray]:
@@ -164,23 +165,23 @@ class DiagramCurves:
         plane = self.plane
         if plane is None:
             return SweepWideResult(())
-        line, row = self.task.config.plane_parameters
-        names = (line, row)
+        line_parameter, row_parameter = self.task.config.plane_parameters
+        plane_names = (line_parameter, row_parameter)
         options = self.task.config.phase_diagram
-        traced = boundary_curves(plane, view, self.task.points.columns_by_name[row])
+        traced = boundary_curves(plane, view, self.task.points.columns_by_name[row_parameter])
         limit = {}
-        if names == CRUSHING_PARAMETERS and self.task.config.is_uniform_and_linear:
+        if plane_names == CRUSHING_PARAMETERS and self.task.config.is_uniform_and_linear:
             # The fold of the Hopf curve in the partial beam limit (Sec. VIII).
             from ...solve.changes.thresholds import filament_flutter_force
 
             Fc = filament_flutter_force()
             limit = {"filament_F_hopf": Fc, "partial_beam_k1": 4 * Fc, "partial_beam_F": 2 * Fc}
-        variables = boundary_curve_values(traced, names, **limit)
+        variables = boundary_curve_values(traced, plane_names, **limit)
         accuracy = self.task.config.accuracy
         needs_criticality = options.criticality or options.cycles
         criticalities = criticality_along(plane, traced, accuracy) if needs_criticality else []
         if options.criticality:
-            variables += criticality_record(criticalities, names, self.task.config.gamma1)
+            variables += criticality_record(criticalities, plane_names, self.task.config.gamma1)
         if options.bautin_parameter is not None:
             variables += generalised_hopf_curves(plane, criticalities, options.bautin_parameter, accuracy)
         stages = self._stages(view)
@@ -189,7 +190,7 @@ class DiagramCurves:
         unstored = unstored_special_count(view, self._is_row_finite)
         curves = with_hopf_ends(stages.curves(results), plane, criticalities, unstored)
         changed = rows_with_further_branches(view, stages.changed_rows(results))
-        variables += [*cycle_curve_values(curves, names), *curve_extremum_values(curves, names)]
+        variables += [*cycle_curve_values(curves, plane_names), *curve_extremum_values(curves, plane_names)]
         variables += detached_branch_values(view, changed)
         variables += curves_lost_beyond_values(stages.lost_beyond_count(results))
         messages = {number: row_message(result) for number, result in changed.items()}
@@ -205,8 +206,8 @@ class DiagramCurves:
         """Plane of the diagram's two parameters; None if fewer than two rows have a finite value."""
         from ...determinant.parameter_plane import ParameterPlane, PlaneAxis
 
-        line, row = self.task.config.plane_parameters
-        finite = self.task.points.columns_by_name[row][self._is_row_finite]
+        line_parameter, row_parameter = self.task.config.plane_parameters
+        finite = self.task.points.columns_by_name[row_parameter][self._is_row_finite]
         if len(finite) < 2:
             return None
         axes = self.task.config.parameters.axes
@@ -216,7 +217,7 @@ class DiagramCurves:
         }
         abscissa, ordinate = (
             PlaneAxis(name, float(values[0]), float(values[-1]), axes[name].is_logarithmic)
-            for name, values in ((line, self.task.line_values), (row, finite))
+            for name, values in ((line_parameter, self.task.line_values), (row_parameter, finite))
         )
         rod = Rod(**not_crushed, gamma1=self.task.config.gamma1, material=self.task.config.rod_material)
         return ParameterPlane(rod, (abscissa, ordinate))

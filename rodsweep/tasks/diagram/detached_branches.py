@@ -88,9 +88,9 @@ def rows_with_further_branches(
     }
 
 
-def curves_lost_beyond_values(count: int) -> list[FilledVariable]:
-    """Variable with the number `count` of ends of curves that were lost beyond the range; [] if it is 0."""
-    return [(CURVES_LOST_BEYOND, np.array(count))] if count else []
+def curves_lost_beyond_values(lost_end_count: int) -> list[FilledVariable]:
+    """Variable with the number `lost_end_count` of ends of curves lost beyond the range; [] for 0."""
+    return [(CURVES_LOST_BEYOND, np.array(lost_end_count))] if lost_end_count else []
 
 
 def detached_branch_values(view: ResultView, changed: Mapping[int, NamedArrays]) -> list[FilledVariable]:

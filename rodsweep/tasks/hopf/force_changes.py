@@ -54,32 +54,32 @@ def force_change_variables(points: Points, values: Mapping[str, Any]) -> tuple[F
     if len(np.unique(F[np.isfinite(F)])) < 2:
         return ()
     lines = _force_lines_of_grid(points, values) if points.is_grid else _force_lines_of_list(points, values)
-    kind = np.dtype([(v.name, v.dtype) for v in FORCE_CHANGE_VARIABLES])
+    record_dtype = np.dtype([(declared.name, declared.dtype) for declared in FORCE_CHANGE_VARIABLES])
     changes = (change for some_lines in lines for change in _thresholds_on_lines(some_lines))
     names = [variable.name for variable in FORCE_CHANGE_VARIABLES]
-    table = np.fromiter((tuple(change[name] for name in names) for change in changes), kind)
-    return tuple((v, table[v.name]) for v in FORCE_CHANGE_VARIABLES)
+    table = np.fromiter((tuple(change[name] for name in names) for change in changes), record_dtype)
+    return tuple((declared, table[declared.name]) for declared in FORCE_CHANGE_VARIABLES)
 
 
 def _force_lines_of_grid(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
     """Yields the lines of points along F in a grid, in groups of about MAX_POINTS_IN_MEMORY points. values:
     variables of the points by name, shape (points, own dimensions), arrays or HDF5 datasets."""
     F_axis = points.names.index("F")
-    others = [axis for axis in range(len(points.names)) if axis != F_axis]
-    longest_axis = max(others, key=lambda axis: points.shape[axis])
+    other_axes = [axis for axis in range(len(points.names)) if axis != F_axis]
+    longest_axis = max(other_axes, key=lambda axis: points.shape[axis])
     step = max(1, MAX_POINTS_IN_MEMORY * points.shape[longest_axis] // prod(points.shape))
     for start in range(0, points.shape[longest_axis], step):
         index: list[slice] = [slice(None)] * len(points.shape)
         index[longest_axis] = slice(start, start + step)
-        columns = [points.columns[axis][index[axis]] for axis in others]
+        columns = [points.columns[axis][index[axis]] for axis in other_axes]
         fixed = np.stack([table.ravel() for table in np.meshgrid(*columns, indexing="ij")], axis=-1)
         growth, frequency, unstable = (
-            np.moveaxis(values[name][tuple(index)], F_axis, len(others))
+            np.moveaxis(values[name][tuple(index)], F_axis, len(other_axes))
             for name in ("growth_rate", "frequency", "unstable_count")
         )
         shape = (len(fixed), points.shape[F_axis])
         eigenvalues = (growth + 1j * frequency).reshape(*shape, -1)
-        names = tuple(points.names[axis] for axis in others)
+        names = tuple(points.names[axis] for axis in other_axes)
         yield ForceLines(names, fixed, points.columns[F_axis], eigenvalues, unstable.reshape(shape))
 
 

@@ -50,18 +50,18 @@ class HopfLine:
         fixed = self.fixed_parameters
         ratio = self.material.relative_crushing_force(fixed.get("taper", 1.0))
         margin = 1 - CRUSHING_END_SETTINGS.crushing_margin
-        start = self.start
-        end = self.stop
+        start_value = self.start
+        end_value = self.stop
         if self.varied_parameter == "F":
-            end = min(end, ratio * fixed["k1"] * margin)
+            end_value = min(end_value, ratio * fixed["k1"] * margin)
         if self.varied_parameter == "k1":
-            start = max(start, fixed["F"] / (ratio * margin))
-        if not start < end:
+            start_value = max(start_value, fixed["F"] / (ratio * margin))
+        if not start_value < end_value:
             return None
-        start_values: dict[str, Any] = fixed | {self.varied_parameter: start}
+        start_values: dict[str, Any] = fixed | {self.varied_parameter: start_value}
         try:
             path = ParameterPath(Rod(**start_values, material=self.material), self.varied_parameter)
-            return find_axis_crossings(path, start, end)
+            return find_axis_crossings(path, start_value, end_value)
         except (*FAILURES, ValueError):  # ValueError: the search needs a rod outside the model's range
             return None
 
@@ -76,26 +76,28 @@ def _hopf_lines_along(points: Points, name: str, names: Sequence[str]) -> Iterat
     """Yields the lines along the parameter `name`, if at least two of its values are finite. Lines along F
     begin at 0, because the Hopf point may lie below the smallest force of the points. Arms with equal
     parameters and different profiles have no line, because a file cannot distinguish such arms."""
-    columns = {n: points.rod_values[n] for n in names}
-    others = [n for n in names if n != name]
+    columns = {parameter_name: points.rod_values[parameter_name] for parameter_name in names}
+    other_names = [parameter_name for parameter_name in names if parameter_name != name]
     if points.is_grid:
-        rods = np.array(list(product(*(np.unique(columns[n]) for n in others))))
-        ends = [_finite_range(columns[name])] * len(rods)
+        rods = np.array(
+            list(product(*(np.unique(columns[parameter_name]) for parameter_name in other_names)))
+        )
+        range_ends = [_finite_range(columns[name])] * len(rods)
         materials = [points.material] * len(rods)
     else:
         distinct_materials, numbers = points.materials_of_rods
-        table = np.stack([numbers, *(columns[n] for n in others)], axis=-1)
+        table = np.stack([numbers, *(columns[parameter_name] for parameter_name in other_names)], axis=-1)
         lines, line = np.unique(table, axis=0, return_inverse=True)
         order = np.argsort(line.ravel(), kind="stable")
         line_starts = np.cumsum(np.bincount(line.ravel()))[:-1]
-        ends = [_finite_range(values) for values in np.split(columns[name][order], line_starts)]
+        range_ends = [_finite_range(values) for values in np.split(columns[name][order], line_starts)]
         rods = lines[:, 1:]
         materials = [distinct_materials[int(number)] for number in lines[:, 0]]
     rod_counts = Counter(map(tuple, rods.tolist()))
-    for rod, (start, end), material in zip(map(tuple, rods.tolist()), ends, materials, strict=True):
+    for rod, (start, end), material in zip(map(tuple, rods.tolist()), range_ends, materials, strict=True):
         if start < end and rod_counts[rod] == 1:
             search_start = min(start, 0.0) if name == "F" else start
-            yield HopfLine(name, dict(zip(others, rod, strict=True)), search_start, end, material)
+            yield HopfLine(name, dict(zip(other_names, rod, strict=True)), search_start, end, material)
 
 
 def _finite_range(values: np.ndarray) -> tuple[float, float]:
@@ -113,8 +115,14 @@ def hopf_variables(
     proved = sum(result.proved_to_the_end for _, result in solved)
     counts = {"hopf_lines": len(lines), "hopf_lines_proved": proved}
     return tuple(
-        (v, np.array(counts[v.name] if v.name in counts else [row[v.name] for row in rows], v.dtype))
-        for v in hopf_point_variables(names)
+        (
+            variable,
+            np.array(
+                counts[variable.name] if variable.name in counts else [row[variable.name] for row in rows],
+                variable.dtype,
+            ),
+        )
+        for variable in hopf_point_variables(names)
     )
 
 

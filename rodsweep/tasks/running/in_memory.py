@@ -32,21 +32,23 @@ def solved_view(job: Job) -> ResultView:
     PETSc or SLEPc is missing.
     """
     require_solvers()
-    start = utc_time()
+    start_time = utc_time()
     solver = job.solver()
     plan = plan_of(job, solver, Shard(), blas_kernels())
     solver.warm_up()
-    count = job.points.count
-    columns = {name: np.repeat(value[None], count, axis=0) for name, value in plan.layout.empty_point.items()}
+    point_count = job.points.count
+    columns = {
+        name: np.repeat(value[None], point_count, axis=0) for name, value in plan.layout.empty_point.items()
+    }
     # One thread, as in the command: threads change the order of sums.
     with blas_pool().limit(limits=1, user_api="blas"):
-        for index in range(count):
+        for index in range(point_count):
             record = solver.record(index, solver.solve(index))
             for name, array in columns.items():
                 array[index] = record[name]
     values = {name: array.reshape(*job.points.shape, *array.shape[1:]) for name, array in columns.items()}
     view = view_in_memory(job, plan, values)
-    times = {"started": start, "finished": utc_time()}
+    times = {"started": start_time, "finished": utc_time()}
     return replace(view, attributes=view.attributes | plan.attributes | times)
 
 
@@ -67,7 +69,11 @@ def view_in_memory(
         {MISSING_STATUS: "missing", **dict(plan.flags)},
         journalled_count=0,
         arm_axes=plan.layout.arm_axes,
-        typed_units={v.name: v.typed_unit for v, _ in plan.quantities if v.typed_unit},
+        typed_units={
+            variable.name: variable.typed_unit
+            for variable, _ in plan.quantity_variables
+            if variable.typed_unit
+        },
     )
 
 
@@ -99,7 +105,7 @@ def _coordinates(plan: FilePlan) -> dict[str, StoredVariable]:
         coordinates["point"] = (("point",), rows, dimension_attributes("point"))
     for name, column in () if points.arm_axes else points.columns_by_name.items():
         coordinates[name] = ((name if points.is_grid else "point",), column, dimension_attributes(name))
-    for variable, values in plan.quantities:
+    for variable, values in plan.quantity_variables:
         coordinates[variable.name] = (variable.extra, values, variable.attributes)
     for name, length in plan.layout.extents.items():
         coordinate = plan.coordinates.get(name, np.arange(1, length + 1))

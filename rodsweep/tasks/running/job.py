@@ -65,7 +65,7 @@ class Job:
         return self.config.title or self.path.stem
 
     @property
-    def quantities(self) -> tuple[FilledVariable, ...]:
+    def quantity_variables(self) -> tuple[FilledVariable, ...]:
         """Quantities of the config's arm as coordinates of the points; empty if the config has no arm."""
         return arm_variables(self.config.parameters, self.points)
 
@@ -86,7 +86,7 @@ class Job:
         """The solver, with values in SI units and the validity of the model added to the results of a
         point."""
         layout = LAYOUT_MAKERS[self.config.task](self.resolved)
-        quantities = quantities_at_points(self.quantities, self.points)
+        quantities = quantities_at_points(self.quantity_variables, self.points)
         is_force = load_kind_of(self.resolved["parameters"]["arm"]) == "force"
         validity = ArmValidity(self.config, self.points, solver.statuses)
 
@@ -130,22 +130,24 @@ def job_of_config(
     None: the forces are computed here. Raises InputError if the axes do not fit into memory, or the results
     into a file, or if the results of one point exceed MAX_RECORD_BYTES.
     """
-    values = sum(axis.size for axis in config.parameters.axes.values())  # checked before arrays are made
-    if values * BYTES_PER_VALUE > machine_memory():
+    axis_value_count = sum(
+        axis.size for axis in config.parameters.axes.values()
+    )  # checked before arrays are made
+    if axis_value_count * BYTES_PER_VALUE > machine_memory():
         raise InputError(
-            f"the grid has {grid_size(config):.6g} points; the {values:.6g} values on its axes take "
-            f"{values * BYTES_PER_VALUE / 1e9:.3g} GB, more than the {machine_memory() / 1e9:.3g} GB of "
-            "memory of this machine; use fewer values"
+            f"the grid has {grid_size(config):.6g} points; the {axis_value_count:.6g} values on its axes "
+            f"take {axis_value_count * BYTES_PER_VALUE / 1e9:.3g} GB, more than the "
+            f"{machine_memory() / 1e9:.3g} GB of memory of this machine; use fewer values"
         )
-    count = grid_size(config)
+    point_count = grid_size(config)
     document = resolved_config(config)
     layout = layout_of(document)
     bytes_per_point = layout.bytes_per_point
-    if count * bytes_per_point > MAX_FILE_BYTES:
+    if point_count * bytes_per_point > MAX_FILE_BYTES:
         raise InputError(
-            f"parameters make a grid of {count:.6g} points, whose results take "
-            f"{count * bytes_per_point:.3g} bytes, more than a file can have ({MAX_FILE_BYTES:.3g}); use "
-            "fewer values"
+            f"parameters make a grid of {point_count:.6g} points, whose results take "
+            f"{point_count * bytes_per_point:.3g} bytes, more than a file can have ({MAX_FILE_BYTES:.3g}); "
+            "use fewer values"
         )
     if bytes_per_point > MAX_RECORD_BYTES:
         raise InputError(
@@ -182,7 +184,9 @@ def _plan(task: Task, document: dict[str, Any], layout: Layout) -> FilePlan:
 def plan_in_memory(job: Job, statuses: Sequence[PointStatus]) -> FilePlan:
     """Plan of the results of a job with these statuses, without the attributes of a file."""
     flags = tuple((int(status), status.name) for status in statuses)
-    return replace(_plan(job.task, job.resolved, job.layout), quantities=job.quantities, flags=flags)
+    return replace(
+        _plan(job.task, job.resolved, job.layout), quantity_variables=job.quantity_variables, flags=flags
+    )
 
 
 def plan_of(job: Job, solver: Solver, shard: Shard, kernels: str) -> FilePlan:

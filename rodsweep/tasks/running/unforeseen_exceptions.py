@@ -103,9 +103,9 @@ class _GuardedSolver:
         except Exception as error:
             destroy_pooled_solvers()
             self.note_exception(indices.tolist(), error)
-            count = len(indices)
-            empty = {name: np.stack([value] * count) for name, value in self.layout.empty_point.items()}
-            return GroupResult(empty, np.zeros(count, np.bool_))
+            point_count = len(indices)
+            empty = {name: np.stack([value] * point_count) for name, value in self.layout.empty_point.items()}
+            return GroupResult(empty, np.zeros(point_count, np.bool_))
 
 
 def describe_exception(error: Exception) -> str:
@@ -137,10 +137,12 @@ class TracebackLog:
 
     def __call__(self, indices: Sequence[int], error: Exception) -> None:
         """Appends the exception of points to the log, with their parameters."""
-        points = self.point_text(indices[0])
+        points_text = self.point_text(indices[0])
         if len(indices) > 1:
-            points = f"{len(indices)} points together, from {points} to {self.point_text(indices[-1])}"
-        self.append_exception(points, error)
+            points_text = (
+                f"{len(indices)} points together, from {points_text} to {self.point_text(indices[-1])}"
+            )
+        self.append_exception(points_text, error)
 
     def append_exception(self, place: str, error: Exception) -> None:
         """Appends the exception of points or of a work item to the log, unless this rank has logged

@@ -316,7 +316,10 @@ def test_states_of_a_row_are_known_from_the_pull_on_from_which_it_is_searched():
     rod = Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4)
     row = solve_coexistence(rod, request(np.array([-1e6, -1e3, 0.0, 39.0])), 8)
     assert row.status == CoexistenceStatus.ended_early
-    assert "the search begins at F = -1000: from F = -1000000 on, no a-priori bound" in row.message
+    assert (
+        "the search begins at F = -1000, because a search from F = -1000000 fails: no a-priori bound"
+        in row.message
+    )
     names = [StableStates(state).name for state in row.stable_states]
     assert names == ["undecided", "straight", "straight", "cycle"]
 

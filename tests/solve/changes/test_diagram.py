@@ -251,16 +251,26 @@ def test_a_force_that_is_k1_but_for_rounding_is_crushed(off):
 @pytest.mark.parametrize(
     ("k", "values", "undecided", "reason"),
     [
-        (1e4, [-1e6, -1e4, -1e3, 0.0, 40.0], 1, "from F = -1000000 on, no a-priori bound"),
+        (
+            1e4,
+            [-1e6, -1e4, -1e3, 0.0, 40.0],
+            1,
+            "because a search from F = -1000000 fails: no a-priori bound",
+        ),
         # The search from -5e3 ends within the pulls.
-        (1e8, [-5e3, -1e3, -100.0, 40.0], 1, "from F = -5000 on, .*the winding number counts"),
+        (
+            1e8,
+            [-5e3, -1e3, -100.0, 40.0],
+            1,
+            "because a search from F = -5000 fails: .*the winding number counts",
+        ),
     ],
 )
 def test_a_row_from_a_pull_that_cannot_be_searched_begins_at_a_smaller_pull(k, values, undecided, reason):
     rod = Rod(F=0.0, k1=k, k2=k, gamma3=1e-4 if k == 1e4 else 1e-3)
     row = solve_row(rod, RowRequest("F", np.array(values), 1e-8, True, 9))
     assert row.status == ThresholdStatus.ended_early
-    assert re.match(f"the search begins at F = {values[undecided]:.12g}: {reason}", row.message)
+    assert re.match(f"the search begins at F = {values[undecided]:.12g}, {reason}", row.message)
     pushed = solve_row(rod, RowRequest("F", np.array([0.0, 40.0]), 1e-8, True, 9)).thresholds.thresholds
     found = [c.value for c in row.thresholds.thresholds]
     assert found == pytest.approx([c.value for c in pushed], rel=1e-8)
@@ -274,5 +284,7 @@ def test_a_pull_whose_bound_almost_underflows_is_no_failure():
     rod = Rod(F=0.0, k1=1e7, k2=1e6, gamma3=1e-4)
     row = solve_row(rod, RowRequest("F", np.array([-9e5, 0.0, 100.0]), 1e-8, True, 9))
     assert row.status == ThresholdStatus.ended_early
-    assert row.message.startswith("the search begins at F = 0: from F = -900000 on, no a-priori bound")
+    assert row.message.startswith(
+        "the search begins at F = 0, because a search from F = -900000 fails: no a-priori bound"
+    )
     assert (row.rod_class[1:] != RodClass.undecided).all()

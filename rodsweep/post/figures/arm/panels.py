@@ -36,13 +36,15 @@ def _threshold_panels(view: ResultView) -> list[Panel]:
     # A threshold pressure is shown in the unit in which the user typed Young's modulus.
     load = view.load_kind
     si, unit_quantity = ("N", "force") if load == "force" else ("Pa", "young")
-    lines = {}
+    loads_by_threshold = {}
     for event in ("hopf", "onset", "restabilization"):
         loads = view.variables[f"{load}_{event}"]
-        lines[THRESHOLD_KIND_WORDS[event]], unit = in_typed_unit(view, unit_quantity, loads, si)
-    flutter = lines[THRESHOLD_KIND_WORDS["hopf"]]
+        loads_by_threshold[THRESHOLD_KIND_WORDS[event]], unit = in_typed_unit(view, unit_quantity, loads, si)
+    flutter = loads_by_threshold[THRESHOLD_KIND_WORDS["hopf"]]
     return [
-        Panel(f"{load} at flutter ({unit})", flutter, lines, "", f"{load} ({unit})", "no flutter"),
+        Panel(
+            f"{load} at flutter ({unit})", flutter, loads_by_threshold, "", f"{load} ({unit})", "no flutter"
+        ),
         Panel("frequency at flutter (Hz)", view.variables["frequency_hopf_hz"], empty_label="no flutter"),
     ]
 

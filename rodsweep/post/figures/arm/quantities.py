@@ -99,7 +99,10 @@ def replaced_parameters(view: ResultView, number: int) -> dict[str, float]:
     """Parameters at a point, by name, that differ from the parameters computed from the arm, because the
     config gives them. F is included if the arm has no load, and otherwise left out. number: number of the
     point, from 1."""
-    quantities: dict[str, Any] = {n: quantity_at_point(view, n, number) for n in given_quantities(view)}
+    quantities: dict[str, Any] = {
+        name_of_quantity: quantity_at_point(view, name_of_quantity, number)
+        for name_of_quantity in given_quantities(view)
+    }
     if "drag" in quantities:
         quantities["drag"] = DRAG_NAMES[int(quantities["drag"])]
     arm = _arm_of(view, quantities)

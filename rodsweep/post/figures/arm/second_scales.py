@@ -39,8 +39,8 @@ def add_arm_scales(figure: Figure, views: Sequence[ResultView]) -> None:
 
 def _add_si_scales(figure: Figure, views: Sequence[ResultView]) -> None:
     """Adds a scale in SI units to every axis of the follower force, if all files belong to one arm."""
-    load = "force" if all(view.load_kind == "force" for view in views) else "pressure"
-    factors = [view.quantities.get(SCALE_NAME[load]) for view in views]
+    load_word = "force" if all(view.load_kind == "force" for view in views) else "pressure"
+    factors = [view.quantities.get(SCALE_NAME[load_word]) for view in views]
     units = {float(unit) for values in factors if values is not None for unit in np.ravel(values)}
     if len(units) != 1 or any(values is None for values in factors):
         return
@@ -49,7 +49,7 @@ def _add_si_scales(figure: Figure, views: Sequence[ResultView]) -> None:
         for letter in ("x", "y"):
             label, scale = (getattr(axes, f"get_{letter}{what}")() for what in ("label", "scale"))
             if label in (LABELS["F"], CRITICAL_FORCE_LABEL) and scale in SCALES_WITH_SECOND_AXIS:
-                _add_second_scale(_outermost_panel(axes, letter), letter, unit, load)
+                _add_second_scale(_outermost_panel(axes, letter), letter, unit, load_word)
 
 
 def _add_poisson_scales(figure: Figure, view: ResultView) -> None:
@@ -77,7 +77,7 @@ def _add_poisson_scales(figure: Figure, view: ResultView) -> None:
 
 
 def _outermost_panel(axes: Axes, letter: str) -> Axes:
-    """The top panel of the column (which = "x") or the rightmost panel of the row (which = "y") of `axes`,
+    """The top panel of the column (letter = "x") or the rightmost panel of the row (letter = "y") of `axes`,
     among the panels that share this axis with `axes`; `axes` itself if it is in no grid of panels."""
     shared_axes = axes.get_shared_x_axes() if letter == "x" else axes.get_shared_y_axes()
     grid_cell = axes.get_subplotspec()

@@ -51,8 +51,8 @@ def _hatched_note(
     names = [name for name in views[0].parameters if is_alone and len(values[name]) > 1]
     word, sentence = NOTES[validity]
     if names and _hatch_points(figure, views[0], names, outside[0], HATCHES[validity]):
-        judged = ", judged at each row's first Hopf point or at rest"
-        return f"{word}: {sentence}{judged if 'crossing_at' in views[0].variables else ''}"
+        judged_clause = ", judged at each row's first Hopf point or at rest"
+        return f"{word}: {sentence}{judged_clause if 'crossing_at' in views[0].variables else ''}"
     return sentence if number == count else f"{sentence} at {number} of {count} points"
 
 

@@ -46,9 +46,9 @@ def write_animation(view: ResultView, points: Sequence[int], output: Path) -> st
     writer = _film_writer(output, max(1, round(frames / PERIOD_SECONDS)))
     figure, arms = prepared_animation(selection)
     with replaced_file(output) as partial, writer.saving(figure, str(partial), dpi=100):
-        for k in range(frames):
+        for frame_index in range(frames):
             for arm in arms:
-                arm.show_frame(k)
+                arm.show_frame(frame_index)
             writer.grab_frame()
     return f"one period in {frames} frames" + selection.omissions
 
@@ -99,17 +99,17 @@ class MovingArm:
         axes.set_xlabel(cycle.units.axis_label("x"))
         axes.set_title(cycle.heading(cycle.period_text))
 
-    def show_frame(self, k: int) -> None:
-        """Moves the arm to the shape with index `k`."""
+    def show_frame(self, frame_index: int) -> None:
+        """Moves the arm to the shape with index `frame_index`."""
         shapes = [self.cycle.values[name] for name in SHAPE_VARIABLES]
         ages = np.linspace(MAX_GHOST_AGE * self.frames, 0, GHOST_COUNT, endpoint=False)
         for ghost, steps in zip(self.ghosts, ages.round().astype(int), strict=True):
-            ghost.set_data(shapes[0][k - steps], shapes[1][k - steps])
-        x, y, theta = (values[k] for values in shapes)
+            ghost.set_data(shapes[0][frame_index - steps], shapes[1][frame_index - steps])
+        x, y, theta = (values[frame_index] for values in shapes)
         self.rod.set_data(x, y)
         self.arrow.remove()
         self.arrow = force_arrow(self.axes, x, y, theta, VERMILION, self.cycle.units.length)
-        time = self.cycle.period * k / self.frames
+        time = self.cycle.period * frame_index / self.frames
         decimals = max(0, TIME_DIGITS - 1 - floor(log10(self.cycle.period)))
-        unit = self.cycle.units.names[1]
-        self.text.set_text(f"$t$ = {time:.{decimals}f} {unit} = {k / self.frames:.2f} $T$")
+        time_unit = self.cycle.units.names[1]
+        self.text.set_text(f"$t$ = {time:.{decimals}f} {time_unit} = {frame_index / self.frames:.2f} $T$")

@@ -29,16 +29,18 @@ def draw_energy(view: ResultView, points: Sequence[int], is_narrow: bool = False
     cycles = selection.cycles
     figure = Figure(figsize=(3.6 * len(cycles) + 1.0, 6.4), layout="constrained")
     heights = (1, 1.6, 1)
-    rows = figure.subplots(3, len(cycles), squeeze=False, sharex="col", sharey="row", height_ratios=heights)
-    for column, cycle in zip(rows.T, cycles, strict=True):
-        _draw_budget(column, cycle)
-        column[0].set_title(cycle.heading(cycle.period_text, *_budget_words(cycle)))
-    rows[1, 0].set_ylim(bottom=min(0.0, rows[1, 0].get_ylim()[0]))
-    for axes, label in zip(rows[:, 0], cycles[0].units.energy_and_power_labels, strict=True):
+    panel_rows = figure.subplots(
+        3, len(cycles), squeeze=False, sharex="col", sharey="row", height_ratios=heights
+    )
+    for panels, cycle in zip(panel_rows.T, cycles, strict=True):
+        _draw_budget(panels, cycle)
+        panels[0].set_title(cycle.heading(cycle.period_text, *_budget_words(cycle)))
+    panel_rows[1, 0].set_ylim(bottom=min(0.0, panel_rows[1, 0].get_ylim()[0]))
+    for axes, label in zip(panel_rows[:, 0], cycles[0].units.energy_and_power_labels, strict=True):
         axes.set_ylabel(label)
-    handles = [handle for axes in rows[1:, 0] for handle in axes.get_legend_handles_labels()[0]]
+    handles = [handle for axes in panel_rows[1:, 0] for handle in axes.get_legend_handles_labels()[0]]
     legend_below(figure, handles, column_count=2 if is_narrow else min(3, 1 + len(cycles)))
-    figure.align_ylabels(rows[:, 0])
+    figure.align_ylabels(panel_rows[:, 0])
     figure.suptitle(selection.title)
     return figure, "energy, injection and dissipation over a cycle" + selection.omissions
 
@@ -46,27 +48,29 @@ def draw_energy(view: ResultView, points: Sequence[int], is_narrow: bool = False
 def _budget_words(cycle: StoredCycle) -> tuple[str, str]:
     """Returns (mean power of the force, relative energy imbalance) as text, the power in the unit of the
     panels, rounded according to its error."""
-    v = {name: float(cycle.values[name]) for name in ("injection_mean", "energy_imbalance")}
+    cycle_values = {name: float(cycle.values[name]) for name in ("injection_mean", "energy_imbalance")}
     error = relative_power_error(cycle.values)
-    mean_text = power_in_tex(rounded_text(v["injection_mean"], abs(v["injection_mean"]) * float(error)))
+    mean_text = power_in_tex(
+        rounded_text(cycle_values["injection_mean"], abs(cycle_values["injection_mean"]) * float(error))
+    )
     unit = cycle.units.names[3]
     power = f"mean power ${mean_text}$" + (f"{NO_BREAK}{unit}" if unit else "")
-    return power, f"imbalance {v['energy_imbalance']:.1e}"
+    return power, f"imbalance {cycle_values['energy_imbalance']:.1e}"
 
 
-def _draw_budget(column: Sequence[Axes], cycle: StoredCycle) -> None:
-    """Draws the three panels of a cycle over a period, from top to bottom in `column`: energy; injection and
+def _draw_budget(panels: Sequence[Axes], cycle: StoredCycle) -> None:
+    """Draws the three panels of a cycle over a period, from top to bottom: energy; injection and
     dissipation; and their difference, with the derivative of the energy."""
     from ....discretization.elements.trigonometric import (  # compiled code
         interpolate_samples,
         time_derivative,
     )
 
-    top, middle, bottom = column
+    top, middle, bottom = panels
     phase = np.linspace(0, 1, 401, dtype=np.float64)
     time = phase * cycle.period
-    samples = (cycle.values[name] for name in ENERGY_BUDGET_VARIABLES)
-    energy, injection, dissipation = (interpolate_samples(values, phase) for values in samples)
+    budget_samples = (cycle.values[name] for name in ENERGY_BUDGET_VARIABLES)
+    energy, injection, dissipation = (interpolate_samples(values, phase) for values in budget_samples)
     top.plot(time, energy, color="k", lw=1.5)
     mean_power = float(cycle.values["injection_mean"])
     middle.axhline(mean_power, color="0.6", lw=0.9, ls=":", label="mean injection", zorder=1)

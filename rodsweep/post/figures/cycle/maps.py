@@ -77,8 +77,8 @@ def draw_maps(view: ResultView, is_narrow: bool = False) -> tuple[Figure, str]:
         handles += _mark_unstable(axes, points, statuses == "unstable")
     label_maps(panels, points)
     if handles:
-        rows = -(-len(handles) // MAX_LEGEND_ROW_ENTRIES)
-        style.legend_below(figure, handles, column_count=-(-len(handles) // rows))
+        legend_row_count = -(-len(handles) // MAX_LEGEND_ROW_ENTRIES)
+        style.legend_below(figure, handles, column_count=-(-len(handles) // legend_row_count))
     figure.suptitle(style.heading_text(view, _common_parameters_text(view, points, units.in_si)))
     return figure, f"period and amplitude over {' and '.join(points.names)}{points.omissions}"
 
@@ -93,14 +93,16 @@ def _common_parameters_text(view: ResultView, points: PointMap, is_in_si: bool) 
     return shared_and_own_of_arms(view, numbers, {*points.names, *varied})[0]
 
 
-def map_panels(count: int, is_narrow: bool) -> tuple[Figure, list[Axes]]:
-    """Returns (figure, panels) with `count` panels that share axes, stacked if `is_narrow`, else side by
-    side."""
+def map_panels(panel_count: int, is_narrow: bool) -> tuple[Figure, list[Axes]]:
+    """Returns (figure, panels) with `panel_count` panels that share axes, stacked if `is_narrow`, else side
+    by side."""
     # Side by side, the first colour bar's label needs room.
     layout = ConstrainedLayoutEngine(wspace=0.0 if is_narrow else 0.06)
-    figure = Figure(figsize=(4.2, 3.2 * count) if is_narrow else (4.8 * count, 4.5), layout=layout)
-    shape = (count, 1) if is_narrow else (1, count)
-    return figure, list(figure.subplots(*shape, sharex=True, sharey=True, squeeze=False).ravel())
+    figure = Figure(
+        figsize=(4.2, 3.2 * panel_count) if is_narrow else (4.8 * panel_count, 4.5), layout=layout
+    )
+    grid_shape = (panel_count, 1) if is_narrow else (1, panel_count)
+    return figure, list(figure.subplots(*grid_shape, sharex=True, sharey=True, squeeze=False).ravel())
 
 
 def label_maps(panels: Sequence[Axes], points: PointMap) -> None:
@@ -137,8 +139,8 @@ def _mark_unstable(axes: Axes, points: PointMap, unstable: NDArray[np.bool_]) ->
         return []
     look: dict[str, Any] = {"marker": "o", "mfc": "white", "mec": CYCLE_HATCH_COLOUR, "ls": "", "mew": 0.6}
     row, column = np.nonzero(unstable)
-    size = float(np.clip(PANEL_WIDTH_POINTS / max(unstable.shape) / 2, *MARKER_SIZES))
-    axes.plot(points.x[column], points.y[row], ms=size, **look)
+    marker_size = float(np.clip(PANEL_WIDTH_POINTS / max(unstable.shape) / 2, *MARKER_SIZES))
+    axes.plot(points.x[column], points.y[row], ms=marker_size, **look)
     return [Line2D([], [], label="unstable cycle", ms=MARKER_SIZES[1], **look)]
 
 

@@ -38,8 +38,8 @@ def point_map(view: ResultView) -> PointMap:
     do not form a grid over two parameters with at least two finite values each."""
     names = list(varied_parameters_at_points(view))
     if len(names) != 2:
-        clause = _varied_parameters_clause(names)
-        raise InputError(f"{view.path}: a map is drawn over two parameters, and {clause}")
+        varied_clause = _varied_parameters_clause(names)
+        raise InputError(f"{view.path}: a map is drawn over two parameters, and {varied_clause}")
     columns = view.point_columns
     (x, column), (y, row) = (np.unique(columns[name], return_inverse=True) for name in names)
     indices = np.full((len(y), len(x)), -1)

@@ -62,30 +62,30 @@ def draw_portrait(view: ResultView, points: Sequence[int], is_narrow: bool = Fal
     """
     selection = chosen_cycles(view, points, SHAPE_VARIABLES)
     cycles = selection.cycles
-    figure, shapes, tips = _new_panels(cycles, is_narrow)
+    figure, shape_panels, tip_panels = _new_panels(cycles, is_narrow)
     has_transients = all(cycle.has_transient for cycle in cycles)
     end = DRAWN_TIP_PERIODS * max(cycle.period for cycle in cycles)
     shape_indices, step = drawn_shape_indices(len(cycles[0].values["shape_x"]))
     # Light to dark, so that colour-blind readers see the order.
     darkness = np.linspace(UNUSED_COLOUR_FRACTION, 1, len(shape_indices))
     colours = ListedColormap(matplotlib.colormaps["viridis_r"](darkness))
-    for axes, (upper, lower), cycle in zip(shapes, tips, cycles, strict=True):
+    for axes, (upper, lower), cycle in zip(shape_panels, tip_panels, cycles, strict=True):
         draw_tip_path(axes, cycle)
         draw_clamp(axes, cycle.units.length)
-        for k, frame in enumerate(shape_indices):
+        for number, frame in enumerate(shape_indices):
             x, y, theta = (cycle.values[name][frame] for name in SHAPE_VARIABLES)
-            axes.plot(x, y, color=colours(k), lw=1.8, solid_capstyle="round", zorder=2 + k / 100)
-            force_arrow(axes, x, y, theta, colours(k), cycle.units.length)
+            axes.plot(x, y, color=colours(number), lw=1.8, solid_capstyle="round", zorder=2 + number / 100)
+            force_arrow(axes, x, y, theta, colours(number), cycle.units.length)
         axes.set_xlabel(cycle.units.axis_label("x"))
         axes.set_title(cycle.heading(cycle.period_text, cycle.period_in_tau1))
         if has_transients:
             draw_start_of_motion(upper, lower, cycle)
         else:
             _draw_tip_motion(upper, lower, cycle, end)
-    set_frame(shapes, cycles)
-    shapes[0].set_ylabel(cycles[0].units.axis_label("y"))
-    label_tip_axes(*tips[0], cycles[0].units)
-    _draw_phase_bar(figure, shapes, colours, step, is_narrow)
+    set_frame(shape_panels, cycles)
+    shape_panels[0].set_ylabel(cycles[0].units.axis_label("y"))
+    label_tip_axes(*tip_panels[0], cycles[0].units)
+    _draw_phase_bar(figure, shape_panels, colours, step, is_narrow)
     figure.suptitle(selection.title)
     tip_text = "the tip from the start on" if has_transients else "the tip in time"
     return figure, f"shapes through the cycle and {tip_text}{selection.omissions}"
@@ -97,23 +97,23 @@ def _new_panels(
     """Returns (figure, one panel for the shapes of each cycle, two panels for the tip of each cycle). The
     panels of the tip are to the right of the shapes of a single cycle, and below the shapes of several
     cycles. A panel with shapes has the aspect ratio of its content, so no space is blank."""
-    count = len(cycles)
-    (left, right), (low, high) = limits_of_shapes(cycles)
-    if count == 1 and not is_narrow:
+    cycle_count = len(cycles)
+    (x_min, x_max), (y_min, y_max) = limits_of_shapes(cycles)
+    if cycle_count == 1 and not is_narrow:
         figure = Figure(figsize=(8.6, 4.4), layout="constrained")
-        places = [["shapes", "x"], ["shapes", "y"]]
-        table: dict[str, Axes] = figure.subplot_mosaic(places, width_ratios=(1, 1.25))
+        panel_names = [["shapes", "x"], ["shapes", "y"]]
+        table: dict[str, Axes] = figure.subplot_mosaic(panel_names, width_ratios=(1, 1.25))
         table["x"].sharex(table["y"])
         return figure, [table["shapes"]], [(table["x"], table["y"])]
-    shapes = SHAPES_WIDTH * (high - low) / (right - left)
+    shapes_height = SHAPES_WIDTH * (y_max - y_min) / (x_max - x_min)
     text_height = NARROW_TEXT_HEIGHT if is_narrow else TEXT_HEIGHT
-    size = SHAPES_WIDTH * count + 1.2, shapes + 2 * TIP_HEIGHT + text_height
-    figure = Figure(figsize=size, layout=ConstrainedLayoutEngine(w_pad=PANEL_PADDING))
-    heights = (shapes, TIP_HEIGHT, TIP_HEIGHT)
-    rows = figure.subplots(3, count, squeeze=False, sharey="row", height_ratios=heights)
-    for x, y in rows[1:].T:
+    figure_size = SHAPES_WIDTH * cycle_count + 1.2, shapes_height + 2 * TIP_HEIGHT + text_height
+    figure = Figure(figsize=figure_size, layout=ConstrainedLayoutEngine(w_pad=PANEL_PADDING))
+    heights = (shapes_height, TIP_HEIGHT, TIP_HEIGHT)
+    panel_rows = figure.subplots(3, cycle_count, squeeze=False, sharey="row", height_ratios=heights)
+    for x, y in panel_rows[1:].T:
         x.sharex(y)
-    return figure, list(rows[0]), list(zip(rows[1], rows[2], strict=True))
+    return figure, list(panel_rows[0]), list(zip(panel_rows[1], panel_rows[2], strict=True))
 
 
 def drawn_shape_indices(stored: int) -> tuple[range, float]:
@@ -128,9 +128,9 @@ def _draw_phase_bar(
 ) -> None:
     """Draws the colour bar with the times of the shapes. colours: colours of the shapes. step: time between
     two shapes, in periods."""
-    n = colours.N
-    norm = BoundaryNorm((np.arange(n + 1) - 0.5) * step, n)
-    ticks = [k * step for k in range(0, n, max(1, n // 4))]
+    colour_count = colours.N
+    norm = BoundaryNorm((np.arange(colour_count + 1) - 0.5) * step, colour_count)
+    ticks = [colour_index * step for colour_index in range(0, colour_count, max(1, colour_count // 4))]
     look: dict[str, Any] = {"location": "bottom" if is_below else "right", "shrink": 0.8, "ticks": ticks}
     look["format"] = FuncFormatter(lambda tick, _: f"{tick:.3g}")
     shades = ScalarMappable(norm, colours)
@@ -190,10 +190,10 @@ def limits_of_shapes(cycles: Sequence[StoredCycle]) -> tuple[tuple[float, float]
         x_parts += [x.ravel(), x[:, -1] + arrow * np.cos(theta[:, -1])]
         y_parts += [y.ravel(), y[:, -1] + arrow * np.sin(theta[:, -1])]
     coordinates = [np.concatenate(values) for values in (x_parts, y_parts)]
-    (left, right), (low, high) = ((x.min() - margin, x.max() + margin) for x in coordinates)
-    if not (left < right and low < high):
+    (x_min, x_max), (y_min, y_max) = ((x.min() - margin, x.max() + margin) for x in coordinates)
+    if not (x_min < x_max and y_min < y_max):
         raise ValueError("the shapes are too large for axes in floating-point numbers")
-    return (left, right), (low, high)
+    return (x_min, x_max), (y_min, y_max)
 
 
 def _draw_tip_motion(upper: Axes, lower: Axes, cycle: StoredCycle, end: float) -> None:

@@ -160,8 +160,8 @@ def _selected_cycles(
     available = np.flatnonzero(drawable)
     statuses = view.status_names
     if not available.size:
-        states = ", ".join(sorted({word.replace("_", " ") for word in statuses.tolist()}))
-        reason = f"the statuses of its points are: {states}"
+        statuses_text = ", ".join(sorted({word.replace("_", " ") for word in statuses.tolist()}))
+        reason = f"the statuses of its points are: {statuses_text}"
         raise InputError(f"{view.path} holds no {noun} that could be drawn; {reason}")
     numbers = list(points) or [int(index) + 1 for index in available[:MAX_CYCLES]]
     columns = view.point_columns
@@ -175,29 +175,36 @@ def _selected_cycles(
         period = float(values["period"])
         word = str(statuses[number - 1])
         cycles.append(StoredCycle(number, label, at_point, period, values, word, scales))
-    omissions = ""
+    omissions_clause = ""
     if not points and available.size > len(cycles):
-        omissions = f", the first {len(cycles)} of {available.size} {noun}s (--point chooses others)"
-    return CycleSelection(cycles, heading_text(view, common_text), omissions)
+        omissions_clause = f", the first {len(cycles)} of {available.size} {noun}s (--point chooses others)"
+    return CycleSelection(cycles, heading_text(view, common_text), omissions_clause)
 
 
 def _refuse_bad_points(view: ResultView, points: Sequence[int]) -> None:
     """Raises InputError if `points` has more than MAX_CYCLES numbers, or the number of a point that does not
     exist."""
-    count = view.variables["status"].size
+    point_count = view.variables["status"].size
     if len(points) > MAX_CYCLES:
-        most = f"one figure shows at most {MAX_CYCLES} points"
-        raise InputError(f"--point is given {len(points)} times; {most}")
+        limit_sentence = f"one figure shows at most {MAX_CYCLES} points"
+        raise InputError(f"--point is given {len(points)} times; {limit_sentence}")
     for number in points:
-        if not 1 <= number <= count:
-            raise InputError(f"--point {number}: {view.path} has the points 1 to {count}")
+        if not 1 <= number <= point_count:
+            raise InputError(f"--point {number}: {view.path} has the points 1 to {point_count}")
 
 
 def shared_and_own_texts(parameters: Sequence[dict[str, float]]) -> tuple[str, list[str]]:
     """Returns (shared, own): text of the parameters with equal values in all mappings, and text of the other
     parameters of each mapping."""
-    common = {n: v for n, v in parameters[0].items() if all(values[n] == v for values in parameters)}
-    labels = [parameter_text({n: v for n, v in each.items() if n not in common}) for each in parameters]
+    common = {
+        name: value
+        for name, value in parameters[0].items()
+        if all(values[name] == value for values in parameters)
+    }
+    labels = [
+        parameter_text({name: value for name, value in each.items() if name not in common})
+        for each in parameters
+    ]
     return parameter_text(common), labels
 
 
@@ -207,7 +214,9 @@ def shared_and_own_of_points(view: ResultView, numbers: Sequence[int]) -> tuple[
     if all(name in view.quantities for name in REQUIRED_QUANTITIES):
         return shared_and_own_of_arms(view, numbers)
     columns = view.point_columns
-    return shared_and_own_texts([{name: float(columns[name][n - 1]) for name in columns} for n in numbers])
+    return shared_and_own_texts(
+        [{name: float(columns[name][number - 1]) for name in columns} for number in numbers]
+    )
 
 
 def shared_and_own_of_arms(
@@ -219,12 +228,18 @@ def shared_and_own_of_arms(
     numbers: numbers of the points of the arms, from 1. omitted: quantities and parameters that are left out,
     for example because they are on axes.
     """
-    texts = []
+    texts_by_quantity = []
     names = given_quantities(view)
     for number in numbers:
         entry = {n: quantity_text(view, n, quantity_at_point(view, n, number)) for n in names}
         entry |= {n: parameter_text({n: value}) for n, value in replaced_parameters(view, number).items()}
-        texts.append({name: text for name, text in entry.items() if name not in omitted})
-    common = {name: text for name, text in texts[0].items() if all(entry[name] == text for entry in texts)}
-    labels = [", ".join(text for name, text in entry.items() if name not in common) for entry in texts]
+        texts_by_quantity.append({name: text for name, text in entry.items() if name not in omitted})
+    common = {
+        name: text
+        for name, text in texts_by_quantity[0].items()
+        if all(entry[name] == text for entry in texts_by_quantity)
+    }
+    labels = [
+        ", ".join(text for name, text in entry.items() if name not in common) for entry in texts_by_quantity
+    ]
     return ", ".join(common.values()), labels

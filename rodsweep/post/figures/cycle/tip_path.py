@@ -21,20 +21,20 @@ def smooth_tip_path(tips: Array, is_closed: bool) -> Array:
     if len(tips) < 3:
         return tips
     if is_closed:
-        p = np.concatenate([tips[-1:], tips, tips[:2]])
+        padded_tips = np.concatenate([tips[-1:], tips, tips[:2]])
     else:
         tip_before = 3 * (tips[0] - tips[1]) + tips[2]
         tip_after = 3 * (tips[-1] - tips[-2]) + tips[-3]
-        p = np.concatenate([[tip_before], tips, [tip_after]])
-    s = np.arange(PATH_SEGMENT_COUNT)[:, None] / PATH_SEGMENT_COUNT
-    slopes = (p[2:] - p[:-2]) / 2
-    start, end = p[1:-2, None], p[2:-1, None]
+        padded_tips = np.concatenate([[tip_before], tips, [tip_after]])
+    fraction = np.arange(PATH_SEGMENT_COUNT)[:, None] / PATH_SEGMENT_COUNT
+    slopes = (padded_tips[2:] - padded_tips[:-2]) / 2
+    start, end = padded_tips[1:-2, None], padded_tips[2:-1, None]
     start_slope, end_slope = slopes[:-1, None], slopes[1:, None]
-    remainder = 1 - s
+    remainder = 1 - fraction
     points = (
-        remainder**2 * (1 + 2 * s) * start
-        + s**2 * (1 + 2 * remainder) * end
-        + s * remainder * (remainder * start_slope - s * end_slope)
+        remainder**2 * (1 + 2 * fraction) * start
+        + fraction**2 * (1 + 2 * remainder) * end
+        + fraction * remainder * (remainder * start_slope - fraction * end_slope)
     )
-    path: Array = np.concatenate([points.reshape(-1, 2), p[-2:-1]])
+    path: Array = np.concatenate([points.reshape(-1, 2), padded_tips[-2:-1]])
     return path

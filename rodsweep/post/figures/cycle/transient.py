@@ -24,18 +24,18 @@ def draw_transients(view: ResultView, points: Sequence[int], is_narrow: bool = F
     is_narrow: whether the titles leave out the explanation of these lines.
     """
     selection = chosen_transients(view, points)
-    count = len(selection.cycles)
-    figure = Figure(figsize=(4.2 * count + 1.6, 5.0), layout="constrained")
-    rows = figure.subplots(2, count, squeeze=False, sharex="col", sharey="row")
-    for (upper, lower), cycle in zip(rows.T, selection.cycles, strict=True):
+    motion_count = len(selection.cycles)
+    figure = Figure(figsize=(4.2 * motion_count + 1.6, 5.0), layout="constrained")
+    panel_rows = figure.subplots(2, motion_count, squeeze=False, sharex="col", sharey="row")
+    for (upper, lower), cycle in zip(panel_rows.T, selection.cycles, strict=True):
         draw_start_of_motion(upper, lower, cycle)
         ends = [cycle.status_name.replace("_", " ")]
         if cycle.status_name in CYCLE_STATUSES:
             ends[0] += "" if is_narrow else " (extrema dashed)"
             ends.append(cycle.period_text)
         upper.set_title(cycle.heading(*ends))
-    label_tip_axes(rows[0, 0], rows[1, 0], selection.cycles[0].units)
-    figure.align_ylabels(rows[:, 0])
+    label_tip_axes(panel_rows[0, 0], panel_rows[1, 0], selection.cycles[0].units)
+    figure.align_ylabels(panel_rows[:, 0])
     figure.suptitle(selection.title)
     return figure, "the tip from the start on" + selection.omissions
 
@@ -44,12 +44,14 @@ def draw_start_of_motion(upper: Axes, lower: Axes, cycle: StoredCycle) -> None:
     """Draws x (upper panel) and y (lower panel) of the tip from the initial state on, with horizontal lines
     at the extrema of the cycle, if any."""
     time, *tip_values = (cycle.values[name] for name in TRANSIENT_VARIABLE_NAMES)
-    v = cycle.values
+    cycle_values = cycle.values
     levels = (("tip_x_min", 1), ("tip_x_max", 1)), (("tip_y_max", 1), ("tip_y_max", -1))
-    for axes, values, colour, pair in zip((upper, lower), tip_values, (BLUE, VERMILION), levels, strict=True):
+    for axes, values, colour, extrema in zip(
+        (upper, lower), tip_values, (BLUE, VERMILION), levels, strict=True
+    ):
         axes.plot(time, values, color=colour, lw=1.1)
-        for name, sign in pair if cycle.status_name in CYCLE_STATUSES else ():
-            axes.axhline(sign * float(v[name]), **EXTREMUM_LINE_LOOK)
+        for name, sign in extrema if cycle.status_name in CYCLE_STATUSES else ():
+            axes.axhline(sign * float(cycle_values[name]), **EXTREMUM_LINE_LOOK)
         axes.margins(x=0)
     label_time_axes(upper, lower, cycle)
 

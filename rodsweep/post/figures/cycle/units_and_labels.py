@@ -110,7 +110,10 @@ def units_at_points(view: ResultView, numbers: Sequence[int]) -> list[CycleUnits
     if not units.in_si:
         return [units] * len(numbers)
     scales = zip(units.length, units.time, units.energy, units.power, strict=True)
-    return [CycleUnits(float(a), float(t), float(e), float(p), True, units.names) for a, t, e, p in scales]
+    return [
+        CycleUnits(float(length), float(time), float(energy), float(power), True, units.names)
+        for length, time, energy, power in scales
+    ]
 
 
 def units_of_files(views: Sequence[ResultView], indices: Sequence[NDArray[np.int64]]) -> list[CycleUnits]:

@@ -88,11 +88,11 @@ def break_lines(text: Text, max_width: float, is_vertical: bool = False) -> bool
         box = text.get_window_extent()
         return float(box.height if is_vertical else box.width)
 
-    original = text.get_text()
-    if not original or length() <= max_width:
+    original_text = text.get_text()
+    if not original_text or length() <= max_width:
         return False
     lines: list[str] = []
-    for given_line in original.split("\n"):
+    for given_line in original_text.split("\n"):
         line = ""
         for word in WORD_PATTERN.findall(given_line):
             extended_line = f"{line} {word}" if line else word
@@ -104,7 +104,7 @@ def break_lines(text: Text, max_width: float, is_vertical: bool = False) -> bool
                 line = extended_line
         lines.append(line)
     text.set_text("\n".join(lines))
-    return text.get_text() != original
+    return text.get_text() != original_text
 
 
 def _break_texts(figure: Figure) -> bool:
@@ -115,10 +115,10 @@ def _break_texts(figure: Figure) -> bool:
     for axes in figure.axes:
         box = axes.get_window_extent()
         grid_cell = axes.get_subplotspec()
-        rows = 1 if grid_cell is None else ceil(grid_cell.get_gridspec().nrows / len(grid_cell.rowspan))
+        row_count = 1 if grid_cell is None else ceil(grid_cell.get_gridspec().nrows / len(grid_cell.rowspan))
         centred = min(box.x0 + box.x1, 2 * width - box.x0 - box.x1) - 2 * margin
         title_width = min(centred, _column_distance(axes, figure) - 2 * margin)
-        max_height = max(figure.bbox.height / rows - 2 * margin, box.height)
+        max_height = max(figure.bbox.height / row_count - 2 * margin, box.height)
         side_texts = [
             text for text in axes.get_children() if isinstance(text, Text) and text not in axes.texts
         ]
@@ -197,10 +197,10 @@ def _spare_height(figure: Figure, min_aspect: float) -> float:
         panel_box = axes.get_position(original=True)
         ratios = np.asarray(grid_cell.get_gridspec().get_height_ratios())
         row_fraction = ratios[grid_cell.rowspan.start : grid_cell.rowspan.stop].sum() / ratios.sum()
-        label = axes.yaxis.label.get_window_extent().height / figure.dpi
+        label_height = axes.yaxis.label.get_window_extent().height / figure.dpi
         scale = axes.get_aspect()  # panels with equal scales have the aspect ratio of their data
         data_ratio = 0.0 if scale == "auto" else float(axes.get_data_ratio() * scale)
-        shape = max(min_aspect, EQUAL_SCALE_HEIGHT_FACTOR * data_ratio)
-        min_height = max(shape * panel_box.width * width, label + TEXT_MARGIN, MIN_PANEL_HEIGHT)
+        aspect = max(min_aspect, EQUAL_SCALE_HEIGHT_FACTOR * data_ratio)
+        min_height = max(aspect * panel_box.width * width, label_height + TEXT_MARGIN, MIN_PANEL_HEIGHT)
         spares.append((panel_box.height * height - min_height) / row_fraction)
     return min(spares)

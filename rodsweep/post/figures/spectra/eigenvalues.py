@@ -27,14 +27,14 @@ MAX_NUMBERED = 8
 def draw_eigenvalues(view: ResultView) -> Figure:
     """Figure of the stored eigenvalues of the only point in a file, in the complex plane, with the numbers of
     the modes. Raises InputError if nothing can be drawn."""
-    modes = len(view.variables["mode"])
-    growth, frequency = (view.variables[name].reshape(modes) for name in ("growth_rate", "frequency"))
+    mode_count = len(view.variables["mode"])
+    growth, frequency = (view.variables[name].reshape(mode_count) for name in ("growth_rate", "frequency"))
     require_content(view, np.isfinite(growth).any(), "computed point")
     figure = Figure(figsize=(5.2, 4.0), layout="constrained")
     axes = figure.subplots()
     handles = _draw_markers(axes, growth, frequency, growth > 0)
     scale_if_spread(axes, growth, frequency)
-    for mode in range(min(modes, MAX_NUMBERED)):
+    for mode in range(min(mode_count, MAX_NUMBERED)):
         if np.isfinite(growth[mode]):
             eigenvalue = growth[mode], frequency[mode]
             axes.annotate(str(mode + 1), eigenvalue, (5, 5), textcoords="offset points", size=8)
@@ -81,7 +81,7 @@ def scale_if_spread(axes: Axes, x: np.ndarray | None, y: np.ndarray) -> None:
     """Makes an axis symmetric logarithmic if the ratio of its largest to smallest nonzero modulus is above
     SPREAD_RATIO. x, y: values on the axes, of any shape; None for an axis that stays unchanged."""
     for set_scale, values in ((axes.set_xscale, x), (axes.set_yscale, y)):
-        sizes = np.abs(values[np.isfinite(values) & (values != 0)]) if values is not None else np.zeros(0)
-        if sizes.size and sizes.max() > SPREAD_RATIO * sizes.min():
-            smallest = max(float(np.quantile(sizes, LINEAR_FRACTION)), sizes.max() * LINEAR_RANGE_FRACTION)
+        moduli = np.abs(values[np.isfinite(values) & (values != 0)]) if values is not None else np.zeros(0)
+        if moduli.size and moduli.max() > SPREAD_RATIO * moduli.min():
+            smallest = max(float(np.quantile(moduli, LINEAR_FRACTION)), moduli.max() * LINEAR_RANGE_FRACTION)
             set_scale("symlog", linthresh=10 ** np.floor(np.log10(smallest)))

@@ -62,10 +62,15 @@ def with_gaps_between_roots(x: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, n
     """Returns (x, w) with NaN inserted between points at which the followed roots are different roots. x:
     parameter, (n,). w: followed roots, (n, 2)."""
     step = np.abs(np.diff(w, axis=0)).max(axis=1)
-    size = np.abs(w).max(axis=1)
+    largest_moduli = np.abs(w).max(axis=1)
     # If roots are exchanged, the step is far larger than the neighbouring steps and comparable to the root.
     local_step = np.array([np.median(step[max(0, i - 3) : i + 4]) for i in range(len(step))])
-    jump = np.flatnonzero((step > 8 * local_step) & (step > 0.5 * np.minimum(size[1:], size[:-1]))) + 1
+    jump = (
+        np.flatnonzero(
+            (step > 8 * local_step) & (step > 0.5 * np.minimum(largest_moduli[1:], largest_moduli[:-1]))
+        )
+        + 1
+    )
     return np.insert(x, jump, np.nan), np.insert(w, jump, np.nan, axis=0)
 
 
@@ -88,7 +93,10 @@ def roots_to_follow(views: Sequence[ResultView], typed_roots: str | None) -> str
     def hides_growth(roots: str) -> bool:
         followed = (_followed_roots(view, roots).real.max(axis=1) for view in views)
         stored = (view.by_point("growth_rate").max(axis=1) for view in views)
-        return any(((own <= 0) & (all_ > 0)).any() for own, all_ in zip(followed, stored, strict=True))
+        return any(
+            ((followed_roots <= 0) & (stored_roots > 0)).any()
+            for followed_roots, stored_roots in zip(followed, stored, strict=True)
+        )
 
     return min(("smallest", "rightmost"), key=lambda roots: (hides_growth(roots), breaks(roots)))
 
@@ -146,9 +154,9 @@ def draw_roots(axes: Axes, view: ResultView, name: str, roots: str) -> Complex:
     axes.axhline(0, color="0.5", lw=0.6)
     style.scale_axis(axes, "x", x)
     axes.set(xlabel=style.LABELS[name], ylabel=r"$\omega\,\tau_2$", xlim=(x[0], x[-1]))
-    sizes = np.abs(w[np.isfinite(w)])
-    if sizes.max(initial=0.0) > LOGARITHMIC_ROOT_RATIO * np.median(sizes):
-        least_tick = 10 ** np.floor(np.log10(np.median(sizes) / 10))
+    moduli = np.abs(w[np.isfinite(w)])
+    if moduli.max(initial=0.0) > LOGARITHMIC_ROOT_RATIO * np.median(moduli):
+        least_tick = 10 ** np.floor(np.log10(np.median(moduli) / 10))
         axes.set_yscale("asinh", linear_width=least_tick / 3)  # asinh is smooth between linear and log
         axes.yaxis.set_major_locator(SymmetricalLogLocator(base=10, linthresh=least_tick))
         axes.yaxis.set_minor_locator(NullLocator())
@@ -164,8 +172,8 @@ def _draw_direction_arrow(axes: Axes, w: Complex, colour: str) -> None:
     lengths = np.hypot(np.diff(path.real) / ranges[0], np.diff(path.imag) / ranges[1])
     if not lengths.sum() > 0:
         return
-    k = int(np.searchsorted(np.cumsum(lengths), lengths.sum() / 2))
-    start, end = ((eigenvalue.real, eigenvalue.imag) for eigenvalue in path[k : k + 2])
+    middle_index = int(np.searchsorted(np.cumsum(lengths), lengths.sum() / 2))
+    start, end = ((eigenvalue.real, eigenvalue.imag) for eigenvalue in path[middle_index : middle_index + 2])
     arrow = {"arrowstyle": "-|>", "color": colour, "lw": 1.2, "mutation_scale": 14}
     axes.annotate("", xy=end, xytext=start, arrowprops=arrow)
 

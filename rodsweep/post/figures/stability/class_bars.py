@@ -39,23 +39,23 @@ THRESHOLD_DIGITS = 6
 def draw_class_bars(view: ResultView) -> Figure:
     """Figure of the stability classes over F: one bar for each rod, coloured by class; horizontal for a
     single rod. Raises InputError if nothing can be drawn."""
-    count = view.variables["status"].size
-    v = {name: view.variables[name] for name in ("F_end", "crossing_kind")}
-    style.require_content(view, np.isfinite(v["F_end"]).any(), "computed rod")
-    figure = Figure(figsize=(5.8, 2.2 if count == 1 else 4.0), layout="constrained")
+    rod_count = view.variables["status"].size
+    variables = {name: view.variables[name] for name in ("F_end", "crossing_kind")}
+    style.require_content(view, np.isfinite(variables["F_end"]).any(), "computed rod")
+    figure = Figure(figsize=(5.8, 2.2 if rod_count == 1 else 4.0), layout="constrained")
     axes = figure.subplots()
     drawn_classes = set[str]()
-    for rod in range(count):
-        drawn_classes |= draw_class_bar(axes, view, rod, is_vertical=count > 1)
+    for rod in range(rod_count):
+        drawn_classes |= draw_class_bar(axes, view, rod, is_vertical=rod_count > 1)
     handles: list = class_legend_entries(drawn_classes)
-    handles += mark_thresholds_on_bars(axes, view, is_vertical=count > 1)
-    end = float(np.nanmax(v["F_end"]))
-    if count == 1:
-        axes.set(xlim=(0, end), ylim=(-0.75, 0.75), yticks=[], xlabel=style.LABELS["F"])
+    handles += mark_thresholds_on_bars(axes, view, is_vertical=rod_count > 1)
+    largest_force = float(np.nanmax(variables["F_end"]))
+    if rod_count == 1:
+        axes.set(xlim=(0, largest_force), ylim=(-0.75, 0.75), yticks=[], xlabel=style.LABELS["F"])
         axes.spines["left"].set_visible(False)
     else:
-        axes.set(ylim=(0, end), ylabel=style.LABELS["F"])
-        label_point_numbers(axes, view, count)
+        axes.set(ylim=(0, largest_force), ylabel=style.LABELS["F"])
+        label_point_numbers(axes, view, rod_count)
     style.legend_below(figure, handles, column_count=2)
     set_heading(figure, view, style.parameter_text(shared_parameters(view)))
     return figure
@@ -67,7 +67,7 @@ def classes_over_force(view: ResultView, rod: int) -> Iterator[tuple[float, floa
     all crossings."""
     names = ("crossing_kind", "crossing_F", "unstable_after")
     kinds, F, counts = (view.by_point(name)[rod] for name in names)
-    end = float(view.variables["F_end"].ravel()[rod])
+    largest_force = float(view.variables["F_end"].ravel()[rod])
     crossing_count = int(view.variables["crossing_count"].ravel()[rod])
     start = 0.0
     word = "monotone"
@@ -77,8 +77,8 @@ def classes_over_force(view: ResultView, rod: int) -> Iterator[tuple[float, floa
         word = class_above_crossing(int(kinds[index]), int(counts[index]))
     if crossing_count > np.count_nonzero(kinds > 0):
         word = "not stored"
-    if np.isfinite(end):
-        yield start, end, word
+    if np.isfinite(largest_force):
+        yield start, largest_force, word
 
 
 def draw_class_bar(axes: Axes, view: ResultView, rod: int, is_vertical: bool) -> set[str]:
@@ -117,8 +117,8 @@ def mark_thresholds_on_bars(
         name = plural(word) if kind == FURTHER_HOPF and rods.size > 1 else word
         if unit:
             name = name.partition(" $")[0]
-        loads = ", ".join(f"{factor * force_value:#.{THRESHOLD_DIGITS}g}" for force_value in force)
-        label = name if is_vertical else f"{name} = {loads} {unit}".rstrip()
+        loads_text = ", ".join(f"{factor * force_value:#.{THRESHOLD_DIGITS}g}" for force_value in force)
+        label = name if is_vertical else f"{name} = {loads_text} {unit}".rstrip()
         look: dict[str, Any] = {"color": colour, "mec": "white", "mew": 0.6, "ms": 6, "clip_on": False}
         handles += axes.plot(x, y, marker, label=label, **look)
     return handles

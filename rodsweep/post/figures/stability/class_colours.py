@@ -70,12 +70,16 @@ class Palette:
         numbers = [number for number, _ in self.words]
         return {
             "cmap": ListedColormap([self.colours[word] for _, word in self.words]),
-            "norm": BoundaryNorm([*(n - 0.5 for n in numbers), numbers[-1] + 0.5], len(numbers)),
+            "norm": BoundaryNorm(
+                [*(number_of_word - 0.5 for number_of_word in numbers), numbers[-1] + 0.5], len(numbers)
+            ),
         }
 
     def legend_entries(self, table: Array) -> list[Patch]:
         """Legend entries for the words whose integers occur in `table`, (rows, columns)."""
-        return _legend_entries([w for number, w in self.words if (table == number).any()], self.colours)
+        return _legend_entries(
+            [class_word for number, class_word in self.words if (table == number).any()], self.colours
+        )
 
 
 CLASS_PALETTE = Palette("class", STABILITY_CLASSES, CLASS_COLOURS)

@@ -21,9 +21,9 @@ CRITICALITY_LOOKS = {
 def draw_criticality(axes: Axes, view: ResultView, line_parameter: str, row_parameter: str) -> list[Line2D]:
     """Draws Hopf curves with line styles by criticality, and generalised Hopf points; returns legend
     entries."""
-    v = view.variables
+    variables = view.variables
     drawn_criticalities = set()
-    for curve in np.unique(v["curve_number"][v["curve_kind"] == 1]):
+    for curve in np.unique(variables["curve_number"][variables["curve_kind"] == 1]):
         for criticality, points in parts_of_equal_criticality(
             view, int(curve), line_parameter, row_parameter
         ):
@@ -35,31 +35,36 @@ def draw_criticality(axes: Axes, view: ResultView, line_parameter: str, row_para
         for criticality, (word, width, style) in CRITICALITY_LOOKS.items()
         if criticality in drawn_criticalities
     ]
-    for i in range(len(v["bautin_curve"])):
-        x = v[f"bautin_{line_parameter}"][i]
-        y = v[f"bautin_{row_parameter}"][i]
+    for i in range(len(variables["bautin_curve"])):
+        x = variables[f"bautin_{line_parameter}"][i]
+        y = variables[f"bautin_{row_parameter}"][i]
         symbols = SYMBOLS[line_parameter], SYMBOLS[row_parameter]
         label = rf"generalised Hopf point: ${symbols[0]}$ = {x:.6g}, ${symbols[1]}$ = {y:.6g}"
         handles += axes.plot(x, y, "kD", mfc="white", ls="", ms=5, label=label)
     return handles + (
-        _bautin_curves(axes, view, line_parameter, row_parameter) if "bautin_along_curve" in v else []
+        _bautin_curves(axes, view, line_parameter, row_parameter) if "bautin_along_curve" in variables else []
     )
 
 
 def _bautin_curves(axes: Axes, view: ResultView, line_parameter: str, row_parameter: str) -> list[Line2D]:
     """Draws curves of generalised Hopf points; returns legend entries. line_parameter, row_parameter: see the
     module."""
-    v = view.variables
+    variables = view.variables
     curves = []
     third = next(
-        n for n in LINEAR_PARAMETERS if f"bautin_along_{n}" in v and n not in (line_parameter, row_parameter)
+        parameter_name
+        for parameter_name in LINEAR_PARAMETERS
+        if f"bautin_along_{parameter_name}" in variables
+        and parameter_name not in (line_parameter, row_parameter)
     )
-    for number in np.unique(v["bautin_along_curve"]):
-        mask = v["bautin_along_curve"] == number
-        third_values = v[f"bautin_along_{third}"][mask]
-        low, high = (number_text(float(end), 3) for end in (third_values.min(), third_values.max()))
-        label = rf"generalised Hopf points, ${SYMBOLS[third]}$ = ${low}$ to ${high}$"
-        x, y = (v[f"bautin_along_{name}"][mask] for name in (line_parameter, row_parameter))
+    for number in np.unique(variables["bautin_along_curve"]):
+        mask = variables["bautin_along_curve"] == number
+        third_values = variables[f"bautin_along_{third}"][mask]
+        lowest_text, highest_text = (
+            number_text(float(end), 3) for end in (third_values.min(), third_values.max())
+        )
+        label = rf"generalised Hopf points, ${SYMBOLS[third]}$ = ${lowest_text}$ to ${highest_text}$"
+        x, y = (variables[f"bautin_along_{name}"][mask] for name in (line_parameter, row_parameter))
         curves += axes.plot(x, y, "-.", color="tab:red", lw=1.2, label=label)
     return curves
 
@@ -68,15 +73,24 @@ def parts_of_equal_criticality(
     view: ResultView, curve: int, line_parameter: str, row_parameter: str
 ) -> list[tuple[int, np.ndarray]]:
     """(sign of Re c, points, (n, 2)) of parts of a Hopf curve between generalised Hopf points."""
-    v = view.variables
-    indices = np.flatnonzero(v["curve_number"] == curve)
-    bautin = np.flatnonzero(v["bautin_curve"] == curve)
-    places = np.searchsorted(indices, v["bautin_curve_point"][bautin] - 1, side="right")
+    variables = view.variables
+    indices = np.flatnonzero(variables["curve_number"] == curve)
+    bautin = np.flatnonzero(variables["bautin_curve"] == curve)
+    places = np.searchsorted(indices, variables["bautin_curve_point"][bautin] - 1, side="right")
     names = ((f"curve_{name}", f"bautin_{name}") for name in (line_parameter, row_parameter))
-    points = np.column_stack([np.insert(v[a][indices], places, v[b][bautin]) for a, b in names])
-    criticality = np.insert(np.nan_to_num(v["curve_criticality"][indices]), places, 0)
+    points = np.column_stack(
+        [
+            np.insert(variables[curve_name][indices], places, variables[bautin_name][bautin])
+            for curve_name, bautin_name in names
+        ]
+    )
+    criticality = np.insert(np.nan_to_num(variables["curve_criticality"][indices]), places, 0)
     # A segment has the sign of its ends; if the sign at one end is undecided, the sign of the other end.
     ends = criticality[:-1], criticality[1:]
     signs = np.where(ends[0] * ends[1] < 0, 0, np.sign(ends[0] + ends[1])).astype(int)
     cuts = [0, *(np.flatnonzero(np.diff(signs)) + 1), len(signs)]
-    return [(int(signs[a]), points[a : b + 1]) for a, b in zip(cuts[:-1], cuts[1:], strict=True) if b > a]
+    return [
+        (int(signs[curve_name]), points[curve_name : bautin_name + 1])
+        for curve_name, bautin_name in zip(cuts[:-1], cuts[1:], strict=True)
+        if bautin_name > curve_name
+    ]

@@ -64,5 +64,7 @@ def label_longest_curve(axes: Axes, paths: list[Array], name: str, length_fracti
 
 def _overlap(label: Annotation, other: Annotation) -> bool:
     """Whether two labels overlap, with a margin of half of their size, because panels shrink later."""
-    one, two = (each.get_window_extent().expanded(LABEL_MARGIN, LABEL_MARGIN) for each in (label, other))
-    return bool(one.overlaps(two))
+    first_box, second_box = (
+        annotation.get_window_extent().expanded(LABEL_MARGIN, LABEL_MARGIN) for annotation in (label, other)
+    )
+    return bool(first_box.overlaps(second_box))

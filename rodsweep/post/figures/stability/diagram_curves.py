@@ -40,19 +40,19 @@ def draw_boundary_curves(
     axes: Axes, view: ResultView, line_parameter: str, row_parameter: str, hopf_only: bool
 ) -> list[Line2D]:
     """Draws boundary curves and folds; if `hopf_only`, only Hopf curves. Returns legend entries."""
-    v = view.variables
-    has_criticality = "curve_criticality" in v
+    variables = view.variables
+    has_criticality = "curve_criticality" in variables
     handles = draw_criticality(axes, view, line_parameter, row_parameter) if has_criticality else []
     curve_looks = {0: DOUBLE_LOOK} if has_criticality else CURVE_LOOKS
     for number, (word, width, style) in curve_looks.items():
-        mask = v["curve_kind"] == number
+        mask = variables["curve_kind"] == number
         if hopf_only and number == 0:
             continue
-        curves = [v["curve_number"] == curve for curve in np.unique(v["curve_number"][mask])]
+        curves = [variables["curve_number"] == curve for curve in np.unique(variables["curve_number"][mask])]
         for curve in curves:
             axes.plot(
-                v[f"curve_{line_parameter}"][curve],
-                v[f"curve_{row_parameter}"][curve],
+                variables[f"curve_{line_parameter}"][curve],
+                variables[f"curve_{row_parameter}"][curve],
                 style,
                 color="k",
                 lw=width,
@@ -62,15 +62,17 @@ def draw_boundary_curves(
         if mask.any() and not has_criticality:
             named = boundaries_to_name(view, number, line_parameter, row_parameter)
             paths = [
-                np.column_stack([v[f"curve_{n}"][curve] for n in (line_parameter, row_parameter)])
+                np.column_stack(
+                    [variables[f"curve_{name}"][curve] for name in (line_parameter, row_parameter)]
+                )
                 for curve in named
             ]
             if paths and "F" in (line_parameter, row_parameter):
                 paths = lowest_parts(paths, 0 if line_parameter == "F" else 1)
-            name, position = CURVE_SYMBOLS[number]
+            symbol, position = CURVE_SYMBOLS[number]
             if paths:
                 label_longest_curve(
-                    axes, paths, name + constant_force_text(view, line_parameter, row_parameter), position
+                    axes, paths, symbol + constant_force_text(view, line_parameter, row_parameter), position
                 )
     return handles if hopf_only else handles + _mark_curve_folds(axes, view, line_parameter, row_parameter)
 
@@ -80,14 +82,14 @@ def boundaries_to_name(
 ) -> list[NDArray[np.bool_]]:
     """Masks, (curve_point,), of the curves of the kind `kind` that are labelled with a symbol: all curves of
     kind 0 (onsets); of the Hopf curves only those that bound the region of stable straight rods (F**)."""
-    v = view.variables
-    numbers = np.unique(v["curve_number"][v["curve_kind"] == kind])
+    variables = view.variables
+    numbers = np.unique(variables["curve_number"][variables["curve_kind"] == kind])
     bounds = (
         curves_bounding_stability(view, line_parameter, row_parameter)
         if kind
         else dict.fromkeys(numbers.tolist(), True)
     )
-    return [v["curve_number"] == number for number in numbers if bounds[int(number)]]
+    return [variables["curve_number"] == number for number in numbers if bounds[int(number)]]
 
 
 def constant_force_text(view: ResultView, line_parameter: str, row_parameter: str) -> str:
@@ -98,22 +100,28 @@ def constant_force_text(view: ResultView, line_parameter: str, row_parameter: st
 
 def _mark_curve_folds(axes: Axes, view: ResultView, line_parameter: str, row_parameter: str) -> list[Line2D]:
     """Marks the folds of Hopf curves, and the fold in the partial beam limit; returns legend entries."""
-    v = view.variables
+    variables = view.variables
     handles = []
-    for i in range(len(v["fold"])):
-        if v["fold_kind"][i] == 1 and v["fold_of"][i] == 1:  # a window of flutter closes at this fold
-            F = v[f"fold_{line_parameter}"][i]
-            k = v[f"fold_{row_parameter}"][i]
-            axes.plot(F, k, "ko", ms=4)
-            label = rf"fold ${SYMBOLS[line_parameter]} = {F:.6g}$, ${SYMBOLS[row_parameter]} = {k:.6g}$"
+    for i in range(len(variables["fold"])):
+        if (
+            variables["fold_kind"][i] == 1 and variables["fold_of"][i] == 1
+        ):  # a window of flutter closes at this fold
+            F = variables[f"fold_{line_parameter}"][i]
+            row_value = variables[f"fold_{row_parameter}"][i]
+            axes.plot(F, row_value, "ko", ms=4)
+            label = (
+                rf"fold ${SYMBOLS[line_parameter]} = {F:.6g}$, ${SYMBOLS[row_parameter]} = {row_value:.6g}$"
+            )
             handles.append(Line2D([], [], color="k", marker="o", ls="", ms=4, label=label))
-    if "partial_beam_k1" in v:
-        F, k = float(v["partial_beam_F"]), float(v["partial_beam_k1"])
-        x, y = (F, k) if line_parameter == "F" else (k, F)
+    if "partial_beam_k1" in variables:
+        F, row_value = float(variables["partial_beam_F"]), float(variables["partial_beam_k1"])
+        x, y = (F, row_value) if line_parameter == "F" else (row_value, F)
         rows = view.parameter_values[row_parameter]
-        if not (v[line_parameter][0] <= x <= v[line_parameter][-1] and rows[0] <= y <= rows[-1]):
+        if not (
+            variables[line_parameter][0] <= x <= variables[line_parameter][-1] and rows[0] <= y <= rows[-1]
+        ):
             return handles
-        label = rf"partial beam $2F_c = {F:.6g}$, $4F_c = {k:.6g}$"
+        label = rf"partial beam $2F_c = {F:.6g}$, $4F_c = {row_value:.6g}$"
         handles += axes.plot(x, y, "+", color="k", ls="", ms=10, mew=1.2, label=label)
     return handles
 
@@ -121,15 +129,15 @@ def _mark_curve_folds(axes: Axes, view: ResultView, line_parameter: str, row_par
 def draw_cycle_curves(axes: Axes, view: ResultView, line_parameter: str, row_parameter: str) -> list[Line2D]:
     """Draws curves of folds and torus points of cycles; returns legend entries. line_parameter,
     row_parameter: see the module."""
-    v = view.variables
+    variables = view.variables
     handles = []
     for kind, (word, colour) in CYCLE_CURVE_STYLES.items():
-        mask = v["cycle_curve_kind"] == SPECIAL_KINDS.index(kind)
-        for curve in np.unique(v["cycle_curve_number"][mask]):
-            curve_mask = v["cycle_curve_number"] == curve
+        mask = variables["cycle_curve_kind"] == SPECIAL_KINDS.index(kind)
+        for curve in np.unique(variables["cycle_curve_number"][mask]):
+            curve_mask = variables["cycle_curve_number"] == curve
             points = (
-                v[f"cycle_curve_{line_parameter}"][curve_mask],
-                v[f"cycle_curve_{row_parameter}"][curve_mask],
+                variables[f"cycle_curve_{line_parameter}"][curve_mask],
+                variables[f"cycle_curve_{row_parameter}"][curve_mask],
             )
             axes.plot(*points, color=colour, lw=1.8, zorder=1.9)  # below marks and Hopf curves
         if mask.any():
@@ -142,11 +150,11 @@ def mark_cycles_on_rows(
 ) -> list[Line2D]:
     """Marks the special points of cycles on rows that lie on no curve; returns legend entries."""
     handles: list[Line2D] = []
-    values = view.point_columns[row_parameter]
+    row_values = view.point_columns[row_parameter]
     kinds, positions = (view.by_point(f"cycle_special_{name}") for name in ("kind", line_parameter))
     for kind, (word, marker) in CYCLE_MARKS.items():
         rows, items = np.nonzero(kinds == SPECIAL_KINDS.index(kind))
-        x, y = positions[rows, items], values[rows]
+        x, y = positions[rows, items], row_values[rows]
         is_free = ~_is_on_curve(view, SPECIAL_KINDS.index(kind), line_parameter, row_parameter, x, y)
         if is_free.any():
             handles += axes.plot(
@@ -159,17 +167,17 @@ def _is_on_curve(
     view: ResultView, kind: int, line_parameter: str, row_parameter: str, x: Array, y: Array
 ) -> NDArray[np.bool_]:
     """Mask of the special points (x, y), (n,) each, that lie on a curve of their kind `kind`."""
-    v = view.variables
+    variables = view.variables
     is_near = np.zeros(len(x), dtype=bool)
-    if "cycle_curve_number" not in v:
+    if "cycle_curve_number" not in variables:
         return is_near
     row_values = view.point_columns[row_parameter]
-    plane = DrawnPlane(v[line_parameter], row_values[np.isfinite(row_values)])
+    plane = DrawnPlane(variables[line_parameter], row_values[np.isfinite(row_values)])
     points = plane.fractions_of_axes(x, y)
-    for curve in np.unique(v["cycle_curve_number"][v["cycle_curve_kind"] == kind]):
-        mask = v["cycle_curve_number"] == curve
+    for curve in np.unique(variables["cycle_curve_number"][variables["cycle_curve_kind"] == kind]):
+        mask = variables["cycle_curve_number"] == curve
         vertices = plane.fractions_of_axes(
-            *(v[f"cycle_curve_{name}"][mask] for name in (line_parameter, row_parameter))
+            *(variables[f"cycle_curve_{name}"][mask] for name in (line_parameter, row_parameter))
         )
         vertices = vertices[np.append(True, np.diff(vertices, axis=0).any(axis=1))]
         for start, chord in zip(vertices[:-1], np.diff(vertices, axis=0), strict=True):
@@ -181,7 +189,7 @@ def _is_on_curve(
 
 def stored_crossings_text(view: ResultView) -> str:
     """Text above a figure whose curves pass only through some of the crossings of the rows, because the file
-    has no room for all; else empty. Curves of crossings that are not stored_counts are missing."""
+    has no room for all; else empty. Curves of crossings that are not stored are missing."""
     crossing_counts = view.variables["crossing_count"].clip(min=0)
     stored_counts = (view.variables["crossing_kind"] > 0).sum(axis=-1)
     if "curve_number" not in view.variables or not (crossing_counts > stored_counts).any():

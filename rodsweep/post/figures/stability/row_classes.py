@@ -86,8 +86,8 @@ def class_above_crossing(kind: int, unstable: int) -> str:
 def pixel_classes_of_row(
     view: ResultView, variable: str, line_parameter: str, row_parameter: str, index: int, pixel_edges: Array
 ) -> NDArray[np.intp]:
-    """Class of each pixel of a row of a diagram, (n,). variable: `class` or `stable_states`. line, row:
-    parameters along and across rows. pixel_edges: edges of the pixels, (n + 1,).
+    """Class of each pixel of a row of a diagram, (n,). variable: `class` or `stable_states`. line_parameter,
+    row_parameter: parameters along a row, and constant on a row. pixel_edges: edges of the pixels, (n + 1,).
 
     A pixel has the class of the nearest computed point between the same two changes of class; "undecided" if
     there is no such point.
@@ -118,15 +118,15 @@ def _class_changes(view: ResultView, variable: str, line_parameter: str, index: 
     """Positions of the changes of class along a row, in increasing order, (m,). variable: `class` or
     `stable_states`."""
     names = ("crossing_at", "crossing_kind", f"cycle_special_{line_parameter}")
-    v = {name: view.by_point(name)[index] for name in names if name in view.variables}
-    positions = v["crossing_at"]
-    kinds = v["crossing_kind"]
+    values_by_name = {name: view.by_point(name)[index] for name in names if name in view.variables}
+    positions = values_by_name["crossing_at"]
+    kinds = values_by_name["crossing_kind"]
     if variable == "class":
         change_positions = [positions[kinds > 0]]
     else:
         change_positions = [
             positions[np.isin(kinds, HOPF_CROSSING_CODES)],
-            v[f"cycle_special_{line_parameter}"],
+            values_by_name[f"cycle_special_{line_parameter}"],
         ]
     row_ends = view.variables[line_parameter][[0, -1]]
     ends = np.array(_uncrushed_row(view, material_of_rods(view), line_parameter, index))

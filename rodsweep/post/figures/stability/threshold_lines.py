@@ -44,25 +44,25 @@ def draw_lines_of_grid(view: ResultView, names: list[str], search: str) -> tuple
     a line for each value of the other parameter. names: the one or two parameters with several
     values. search: clause on the searched range. Raises InputError if nothing can be drawn."""
     x_name = max(names, key=lambda name: np.count_nonzero(np.isfinite(view.parameter_values[name])))
-    other = next((name for name in names if name != x_name), None)
+    second_name = next((name for name in names if name != x_name), None)
     figure = Figure(figsize=(5.6, 4.2), layout="constrained")
     axes = figure.subplots()
-    table = _first_force_table(view, x_name, other)
+    table = _first_force_table(view, x_name, second_name)
     x = _abscissa_values(view, x_name)
     style.require_content(view, np.isfinite(x).sum() > 1, f"two finite values of {x_name}")
     shades = matplotlib.colormaps["viridis"](np.linspace(DARKEST_SHADE, LIGHTEST_SHADE, len(table)))
     for values, shade in zip(table, shades, strict=True):
-        handles = _draw_threshold_lines(axes, x, values, {"color": shade} if other else {"ls": "-"})
-    if other:
+        handles = _draw_threshold_lines(axes, x, values, {"color": shade} if second_name else {"ls": "-"})
+    if second_name:
         handles = _kind_entries(table)
-        for value, shade in zip(view.parameter_values[other].tolist(), shades, strict=True):
-            label = f"${style.SYMBOLS[other]} = {style.number_in_tex(value)}$"
+        for value, shade in zip(view.parameter_values[second_name].tolist(), shades, strict=True):
+            label = f"${style.SYMBOLS[second_name]} = {style.number_in_tex(value)}$"
             handles.append(Line2D([], [], color=shade, lw=2, label=label))
     _label_axes(axes, view, x_name, table)
     axes.set_ylabel(style.CRITICAL_FORCE_LABEL)
     style.legend_below(figure, handles, column_count=3)
     set_heading(figure, view, style.constant_parameters_text(view, *names), search)
-    caption = f"critical forces against {x_name}" + (f" for every {other}" if other else "")
+    caption = f"critical forces against {x_name}" + (f" for every {second_name}" if second_name else "")
     return figure, caption + _infinite_values_clause(view, [x_name])
 
 
@@ -95,13 +95,13 @@ def draw_selected_lines(
     """Returns (figure, description). As in the paper's Fig. 3, the figure has a panel for each of the two
     parameters `names` as abscissa, with curves for some values of the second parameter. search: clause on the
     searched range."""
-    rows, columns = (2, 1) if is_narrow else (1, 2)
-    figure = Figure(figsize=(4.6 * columns + 0.4, 4.0 * rows), layout="constrained")
-    panels = figure.subplots(rows, columns, sharey=True, squeeze=False).ravel()
+    row_count, column_count = (2, 1) if is_narrow else (1, 2)
+    figure = Figure(figsize=(4.6 * column_count + 0.4, 4.0 * row_count), layout="constrained")
+    panels = figure.subplots(row_count, column_count, sharey=True, squeeze=False).ravel()
     texts = []
-    for panel, x_name, other in zip(panels, names, reversed(names), strict=True):
-        count = len(view.parameter_values[other])
-        texts.append(f"{_some_lines(panel, view, x_name, other)} of {count} values of {other}")
+    for panel, x_name, second_name in zip(panels, names, reversed(names), strict=True):
+        count = len(view.parameter_values[second_name])
+        texts.append(f"{_some_lines(panel, view, x_name, second_name)} of {count} values of {second_name}")
         if is_narrow or panel is panels[0]:
             panel.set_ylabel(style.CRITICAL_FORCE_LABEL)
     handles = [
@@ -112,37 +112,37 @@ def draw_selected_lines(
     style.legend_below(figure, handles, column_count=3)
     set_heading(figure, view, style.constant_parameters_text(view, *names), search)
     lines = f"lines for {' and '.join(texts)} (--what map: all)"
-    omissions = _infinite_values_clause(view, names)
-    return figure, f"critical forces against {' and '.join(names)}, {lines}{omissions}"
+    omissions_clause = _infinite_values_clause(view, names)
+    return figure, f"critical forces against {' and '.join(names)}, {lines}{omissions_clause}"
 
 
-def _some_lines(panel: Axes, view: ResultView, x_name: str, other: str) -> int:
+def _some_lines(panel: Axes, view: ResultView, x_name: str, second_name: str) -> int:
     """Draws thresholds against the parameter `x_name` for up to three different values of the parameter
-    `other`, see `_label_line_indices`; returns the number of values."""
-    table = _first_force_table(view, x_name, other)
+    `second_name`, see `_label_line_indices`; returns the number of values."""
+    table = _first_force_table(view, x_name, second_name)
     indices = _label_line_indices(table)
     groups = _groups_of_equal_lines({index: table[index] for index in indices})
     for line, group in zip(LINE_STYLES, groups, strict=False):
         _draw_threshold_lines(panel, _abscissa_values(view, x_name), table[group[0]], {"ls": line, "ms": 2})
-        values_of_group = view.parameter_values[other][group]
-        values = ", ".join(style.number_in_tex(float(value), 3) for value in values_of_group)
-        text = f"${style.SYMBOLS[other]} = {values}$" + (" (one line)" if len(group) > 1 else "")
+        values_of_group = view.parameter_values[second_name][group]
+        values_text = ", ".join(style.number_in_tex(float(value), 3) for value in values_of_group)
+        text = f"${style.SYMBOLS[second_name]} = {values_text}$" + (" (one line)" if len(group) > 1 else "")
         panel.plot([], [], line, color="0.3", label=text)
     _label_axes(panel, view, x_name, table[indices])
     panel.legend(frameon=False, loc="lower left", bbox_to_anchor=(0.0, 1.0))
     return len(indices)
 
 
-def _first_force_table(view: ResultView, x_name: str, other: str | None) -> Array:
-    """First forces of the three kinds of thresholds, (values of `other`, 3, values of `x_name`); NaN for a
-    missing threshold. x_name, other: parameters; `other` is None if there is no second parameter."""
+def _first_force_table(view: ResultView, x_name: str, second_name: str | None) -> Array:
+    """First forces of the three threshold kinds, (values of `second_name`, 3, values of `x_name`); NaN for
+    a missing threshold. x_name, second_name: parameters; `second_name` is None without a second parameter."""
     names = list(view.parameter_values)
-    kept_axes = [names.index(name) for name in (other, x_name) if name]
+    kept_axes = [names.index(name) for name in (second_name, x_name) if name]
     other_axes = tuple(axis for axis in range(len(names)) if axis not in kept_axes)
     tables = []
     for force, *_ in CRITICAL_FORCES:
         values = view.variables[force].squeeze(other_axes)
-        values = values if other and kept_axes[0] < kept_axes[1] else values.T
+        values = values if second_name and kept_axes[0] < kept_axes[1] else values.T
         tables.append(np.atleast_2d(values))
     return np.stack(tables, axis=1)
 

@@ -91,11 +91,13 @@ def _threshold_lines(view: ResultView, rods: np.ndarray) -> tuple[Lines, Lines]:
     """Returns (lines about flutter, lines about extreme arms, effect of drag, onset of oscillation and return
     to stability)."""
     load = view.load_kind
-    v = view.variables
-    flutter, end, rate = (v[name][rods] for name in (f"{load}_hopf", f"{load}_end", "frequency_hopf_hz"))
+    variables = view.variables
+    flutter, ends, rates = (
+        variables[name][rods] for name in (f"{load}_hopf", f"{load}_end", "frequency_hopf_hz")
+    )
     lines = [*_extreme_arm_lines(view, rods, flutter), *flutter_force_line(view, rods)]
-    onset = v[f"{load}_onset"][rods]
-    restabilized = v[f"{load}_restabilization"][rods]
+    onset = variables[f"{load}_onset"][rods]
+    restabilized = variables[f"{load}_restabilization"][rods]
     if len(flutter) > 1 and np.isfinite(onset).any():
         lines.append(f"decaying disturbances oscillate from {load_range_text(view, onset)} on")
     if len(flutter) > 1 and np.isfinite(restabilized).any():
@@ -103,7 +105,7 @@ def _threshold_lines(view: ResultView, rods: np.ndarray) -> tuple[Lines, Lines]:
         lines.append(
             f"the straight arm is stable again at {points}, from {load_range_text(view, restabilized)} on"
         )
-    return _flutter_lines(view, flutter, end, rate), lines
+    return _flutter_lines(view, flutter, ends, rates), lines
 
 
 def _extreme_arm_lines(view: ResultView, rods: np.ndarray, loads: np.ndarray) -> Lines:
@@ -111,8 +113,8 @@ def _extreme_arm_lines(view: ResultView, rods: np.ndarray, loads: np.ndarray) ->
     fewer than two loads. loads: flutter loads of the points in the mask `rods`, (n,)."""
     if np.isfinite(loads).sum() < 2:
         return []
-    extremes = extreme_arms_text(view, rods, loads, "smallest flutter load")
-    lines = [extremes] if extremes else []
+    extremes_text = extreme_arms_text(view, rods, loads, "smallest flutter load")
+    lines = [extremes_text] if extremes_text else []
     indices = np.flatnonzero(rods)
     numbers = {"flutter": loads, "its frequency": view.variables["frequency_hopf_hz"][rods]}
     on_all_points = {name: np.full(rods.size, np.nan) for name in numbers}
@@ -123,10 +125,10 @@ def _extreme_arm_lines(view: ResultView, rods: np.ndarray, loads: np.ndarray) ->
 
 def _crossing_lines(view: ResultView, rods: np.ndarray) -> tuple[Lines, Lines]:
     """Returns (lines about loads and frequencies at the first Hopf points, [])."""
-    v = view.variables
+    variables = view.variables
     load = view.load_kind
     loads, frequency = _at_first_hopf(view, rods, f"crossing_{load}")
-    return _flutter_lines(view, loads, v[f"{load}_end"][rods], frequency), []
+    return _flutter_lines(view, loads, variables[f"{load}_end"][rods], frequency), []
 
 
 def _count_clause(mask: np.ndarray, rods: np.ndarray) -> str:
@@ -140,10 +142,10 @@ def _flutter_lines(view: ResultView, loads: np.ndarray, end: np.ndarray, frequen
     search = f"up to {load_range_text(view, end)}" if np.isfinite(end).any() else ""
     if not flutters.any():
         return [f"does not flutter {search}".rstrip()]
-    count = f" at {int(flutters.sum())} of {len(loads)} points" if not flutters.all() else ""
-    sentence = f"flutter begins{count} at {load_range_text(view, loads)}"
+    count_clause = f" at {int(flutters.sum())} of {len(loads)} points" if not flutters.all() else ""
+    sentence = f"flutter begins{count_clause} at {load_range_text(view, loads)}"
     lines = [f"{sentence}; there the arm beats at {range_text(view, frequency, 'Hz')}"]
-    if count:
+    if count_clause:
         lines.append(f"does not flutter at {int((~flutters).sum())} of {len(loads)} points {search}".rstrip())
     return lines
 
@@ -152,15 +154,15 @@ def _cycle_lines(view: ResultView, rods: np.ndarray) -> Lines:
     """Lines about frequency, amplitude and effect of drag of limit cycles; if there is no cycle, about the
     outcomes. rods: mask of the points to which the rod model applies."""
     names = {"frequency_hz": "frequency", "tip_y_max_si": "tip_y_max"}
-    v = {name: view.variables[name][rods] for name in names}
-    errors = {name: errors_in_si(view.variables, own, name)[rods] for name, own in names.items()}
+    values = {name: view.variables[name][rods] for name in names}
+    errors = {name: errors_in_si(view.variables, source, name)[rods] for name, source in names.items()}
     cycles = rods & view.has_status("cycle")
     if not cycles.any():  # if some arms beat, another line of the summary counts all outcomes
         masks = {phrase: rods & view.has_status(status) for status, phrase in NO_CYCLE_WORDS.items()}
         return [f"{phrase}{_count_clause(mask, rods)}" for phrase, mask in masks.items() if mask.any()]
     is_cycle = cycles[rods]
     height, frequency = (
-        range_text(view, v[name][is_cycle], unit, errors[name][is_cycle])
+        range_text(view, values[name][is_cycle], unit, errors[name][is_cycle])
         for name, unit in (("tip_y_max_si", "m"), ("frequency_hz", "Hz"))
     )
     motion = f"beats{_count_clause(cycles, rods)} at {frequency}, its tip by {height} to either side"
@@ -181,8 +183,8 @@ def _drag_outcome_line(view: ResultView, rods: np.ndarray) -> Lines:
     never = sum(not mask.any() for mask in by_arm)
     some = len(by_arm) - always - never
     numbers = {"for every drag": always, "for part of the range of drag": some, "for no drag": never}
-    counts = ", ".join(f"{phrase} at {count}" for phrase, count in numbers.items() if count)
-    return [f"of {counted(len(by_arm), 'combination')} of arm and load: beats {counts}"]
+    counts_text = ", ".join(f"{phrase} at {count}" for phrase, count in numbers.items() if count)
+    return [f"of {counted(len(by_arm), 'combination')} of arm and load: beats {counts_text}"]
 
 
 def _mode_lines(view: ResultView, rods: np.ndarray) -> Lines:
@@ -208,16 +210,16 @@ def _branch_lines(view: ResultView, rods: np.ndarray) -> tuple[Lines, Lines]:
     if not np.isfinite(loads).any():
         return ["has no branch of cycles from a Hopf point in the range searched"], []
     frequency = 1 / view.variables["period_si"][rods]
-    rate = range_text(view, frequency, "Hz", errors=frequency * view.variables["period_error"][rods])
-    return [f"cycles, stable or not, exist at {load_range_text(view, loads)}; they beat at {rate}"], []
+    rate_text = range_text(view, frequency, "Hz", errors=frequency * view.variables["period_error"][rods])
+    return [f"cycles, stable or not, exist at {load_range_text(view, loads)}; they beat at {rate_text}"], []
 
 
 def _row_lines(view: ResultView, rods: np.ndarray) -> tuple[Lines, Lines]:
     """Returns (lines about loads and frequencies at the first Hopf points, [])."""
-    v = view.variables
-    scale = np.broadcast_to(v[SCALE_NAME[view.load_kind]], rods.shape)[rods]
+    variables = view.variables
+    scale = np.broadcast_to(variables[SCALE_NAME[view.load_kind]], rods.shape)[rods]
     forces, frequency = _at_first_hopf(view, rods, "crossing_at")
-    last_force = np.minimum(v["F"][-1], view.point_columns["k1"].reshape(rods.shape)[rods])
+    last_force = np.minimum(variables["F"][-1], view.point_columns["k1"].reshape(rods.shape)[rods])
     return _flutter_lines(view, forces * scale, last_force * scale, frequency), []
 
 
@@ -228,7 +230,9 @@ def _at_first_hopf(view: ResultView, rods: np.ndarray, name: str) -> tuple[np.nd
     first_hopf = np.arange(len(is_hopf)), np.argmax(is_hopf, axis=-1)
     has_hopf = is_hopf.any(axis=-1)
     names = (name, "crossing_frequency_hz")
-    values, frequency = (np.where(has_hopf, view.variables[n][rods][first_hopf], np.nan) for n in names)
+    values, frequency = (
+        np.where(has_hopf, view.variables[variable_name][rods][first_hopf], np.nan) for variable_name in names
+    )
     return values, frequency
 
 

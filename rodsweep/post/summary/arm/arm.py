@@ -55,7 +55,14 @@ def printing_unit(view: ResultView, si: str, largest: float) -> tuple[float, str
     """Returns (factor, unit): unit for printing numbers given in the SI unit `si`, and the factor that
     converts the numbers to this unit. The unit is typed by the user, else, for energies, powers and short
     times, it has a prefix suitable for numbers up to `largest`, else it is `si`."""
-    unit = next((view.typed_units[n] for n in TYPED_UNIT_SOURCES.get(si, ()) if n in view.typed_units), si)
+    unit = next(
+        (
+            view.typed_units[quantity_name]
+            for quantity_name in TYPED_UNIT_SOURCES.get(si, ())
+            if quantity_name in view.typed_units
+        ),
+        si,
+    )
     if unit != si:
         return value_in_unit(1.0, unit, si), unit
     if si == "s" and largest < SHORT_TIME or si in PREFIXED_UNITS:
@@ -152,8 +159,8 @@ def arm_lines(view: ResultView, computed: np.ndarray) -> list[str]:
         variable = printed[name]
         factor, unit = printing_unit(view, variable.units, largest[variable.units])
         errors = errors_in_si(view.variables, name, variable.name)[computed]
-        numbers = _numbers_text(factor * column, factor * errors)
-        rows.append(f"{variable.name.removesuffix('_si').removesuffix('_hz')} = {numbers} {unit}")
+        numbers_text = _numbers_text(factor * column, factor * errors)
+        rows.append(f"{variable.name.removesuffix('_si').removesuffix('_hz')} = {numbers_text} {unit}")
     if not rows:
         return []
     return ["in the arm's units:", *wrapped_lines("; ".join(row.replace(" ", "\xa0") for row in rows))]
@@ -176,12 +183,14 @@ def wrapped_lines(text: str) -> list[str]:
     return ["  " + line.replace("\xa0", " ") for line in lines]
 
 
-def errors_in_si(v: Mapping[str, np.ndarray], name: str, si_name: str) -> np.ndarray:
+def errors_in_si(variables: Mapping[str, np.ndarray], name: str, si_name: str) -> np.ndarray:
     """Absolute errors of the variable `si_name`, in SI units, from the errors of the dimensionless variable
     `name`; 0 where `name` is 0 or infinite. The errors have the shape of the two variables."""
-    is_nonzero = np.isfinite(v[name]) & (v[name] != 0)
-    scale = np.divide(v[si_name], v[name], out=np.zeros_like(v[si_name]), where=is_nonzero)
-    return np.asarray(np.abs(scale) * absolute_errors(v, name))
+    is_nonzero = np.isfinite(variables[name]) & (variables[name] != 0)
+    scale = np.divide(
+        variables[si_name], variables[name], out=np.zeros_like(variables[si_name]), where=is_nonzero
+    )
+    return np.asarray(np.abs(scale) * absolute_errors(variables, name))
 
 
 def load_range_text(view: ResultView, F: np.ndarray, points: np.ndarray) -> str:
@@ -196,9 +205,11 @@ def crossings_of_arm(view: ResultView) -> list[str]:
     list for a rod."""
     if not view.quantities:
         return []
-    v = view.variables
+    variables = view.variables
     rod = np.zeros(1, int)
-    kinds, forces, frequencies = (v[f"crossing_{name}"].ravel() for name in ("kind", "F", "frequency"))
+    kinds, forces, frequencies = (
+        variables[f"crossing_{name}"].ravel() for name in ("kind", "F", "frequency")
+    )
     lines = []
     for i in np.flatnonzero(kinds > 0):
         kind = CROSSING_KINDS[int(kinds[i])]
@@ -219,12 +230,12 @@ def thresholds_of_arm(
         return []
     points = np.concatenate([points for _, points in thresholds])
     counts = [len(points) for _, points in thresholds]
-    load = load_range_text(view, np.repeat([point.position for point, _ in thresholds], counts), points)
+    load_text = load_range_text(view, np.repeat([point.position for point, _ in thresholds], counts), points)
     frequency = np.repeat([point.frequency for point, _ in thresholds], counts)
-    rate = ""
+    rate_clause = ""
     if np.isfinite(frequency).any():
-        rate = f", where the arm begins to beat at {_in_hertz(view, frequency, points)}"
-    return [THRESHOLD_SENTENCES[kind].format(load=load, rate=rate)]
+        rate_clause = f", where the arm begins to beat at {_in_hertz(view, frequency, points)}"
+    return [THRESHOLD_SENTENCES[kind].format(load=load_text, rate=rate_clause)]
 
 
 def _in_hertz(view: ResultView, frequency: np.ndarray, points: np.ndarray) -> str:

@@ -33,8 +33,10 @@ def arms_of_drags(view: ResultView) -> np.ndarray | None:
     columns = given_columns(view)
     if columns.pop("drag", None) is None:
         return None
-    count = view.variables["status"].size
-    table = np.stack([np.zeros(count), *(np.nan_to_num(column) for column in columns.values())], axis=-1)
+    point_count = view.variables["status"].size
+    table = np.stack(
+        [np.zeros(point_count), *(np.nan_to_num(column) for column in columns.values())], axis=-1
+    )
     return np.unique(table, axis=0, return_inverse=True)[1].ravel()
 
 

@@ -15,7 +15,7 @@ COMPRESSION_VERDICTS = {
     DOUBTFUL_RATIO: f"is more than {DOUBTFUL_RATIO:g} times its limit, and the model is doubtful",
     1.0: "exceeds its limit, and the model does not apply",
 }
-"""Verdict on the model, by the share of the limit of compression above which it holds."""
+"""Verdict on the model, by the compression above which the verdict holds, as a fraction of its limit."""
 
 
 def flutter_force_line(view: ResultView, rods: np.ndarray) -> list[str]:
@@ -27,9 +27,9 @@ def flutter_force_line(view: ResultView, rods: np.ndarray) -> list[str]:
     forces = (view.variables["F_hopf"] * view.variables[SCALE_NAME["force"]])[rods]
     if view.load_kind == "force" or not np.isfinite(forces).any():
         return []
-    extremes = extreme_arms_text(view, rods, forces, "smallest")
+    extremes_text = extreme_arms_text(view, rods, forces, "smallest")
     text = range_in_unit(view, forces, "N", 0.0, ANSWER_DIGITS)
-    return [f"flutter as a force at the tip: {text}{f', {extremes}' if extremes else ''}"]
+    return [f"flutter as a force at the tip: {text}{f', {extremes_text}' if extremes_text else ''}"]
 
 
 def extreme_arms_text(view: ResultView, rods: np.ndarray, loads: np.ndarray, smallest: str) -> str:

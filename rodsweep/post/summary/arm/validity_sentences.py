@@ -50,23 +50,26 @@ def validity_sentence(validity: Mapping[str, np.ndarray], condition: str = "", n
     is_unknown = validities == VALIDITY_NOT_KNOWN
     preposition = "on" if noun == "row" else "at"
     count = len(validities)
-    everywhere = f" {preposition} all {counted(count, noun)}" if count > 1 else ""
+    everywhere_text = f" {preposition} all {counted(count, noun)}" if count > 1 else ""
     if is_unknown.all():
-        return f"whether the model applies is not known{everywhere}{condition}: {MISSED_MOTION}"
-    unknown = f"; not known {preposition} {count_of_total(int(is_unknown.sum()), count, noun)}"
-    rest = unknown if is_unknown.any() else ""
+        return f"whether the model applies is not known{everywhere_text}{condition}: {MISSED_MOTION}"
+    unknown_clause = f"; not known {preposition} {count_of_total(int(is_unknown.sum()), count, noun)}"
+    rest_clause = unknown_clause if is_unknown.any() else ""
     worst_validity = Validity(int(validities.max()))
     is_affected = validities == worst_validity
-    somewhere = f" {preposition} {count_of_total(int(is_affected.sum()), count, noun)}"
-    place = everywhere if is_affected.all() else somewhere
+    somewhere_text = f" {preposition} {count_of_total(int(is_affected.sum()), count, noun)}"
+    place_text = everywhere_text if is_affected.all() else somewhere_text
     if worst_validity == Validity.applies:
-        return f"the model applies{place}{condition}{rest}"
-    verdict = "does not apply" if worst_validity == Validity.does_not_apply else "is doubtful"
+        return f"the model applies{place_text}{condition}{rest_clause}"
+    verdict_text = "does not apply" if worst_validity == Validity.does_not_apply else "is doubtful"
     index = int(np.flatnonzero(is_affected)[np.argmax(excesses[is_affected])])
     name = NEGLECTED_EFFECTS[int(effects[index])].replace("_", " ")
-    size = f"{'up to ' * int(is_affected.sum() > 1)}{excesses[index]:.2g}"
+    size_text = f"{'up to ' * int(is_affected.sum() > 1)}{excesses[index]:.2g}"
     limit_text = f", more than {DOUBTFUL_RATIO:g}" if worst_validity == Validity.doubtful else ""
-    return f"the model {verdict}{place}{condition}: {name} is {size} times its limit{limit_text}{rest}"
+    return (
+        f"the model {verdict_text}{place_text}{condition}: {name} is {size_text} times its "
+        f"limit{limit_text}{rest_clause}"
+    )
 
 
 def row_clause(view: ResultView, rows: np.ndarray) -> str:
@@ -82,10 +85,12 @@ def row_clause(view: ResultView, rows: np.ndarray) -> str:
     if not rows.any():
         return ""
     hopf = np.isin(view.variables["crossing_kind"][rows], HOPF_CROSSING_CODES).any(axis=-1)
-    at_rest = "at rest" if "F" in view.parameters else "at rest without load"
+    at_rest_text = "at rest" if "F" in view.parameters else "at rest without load"
     if not hopf.any():
-        return f", judged {at_rest}"
+        return f", judged {at_rest_text}"
     if len(hopf) == 1:
         return ", judged at the first Hopf point"
-    remaining = "" if hopf.all() else f", and {at_rest} on {counted(int((~hopf).sum()), 'row')} without"
-    return f", judged at the first Hopf point of each row{remaining}"
+    remaining_clause = (
+        "" if hopf.all() else f", and {at_rest_text} on {counted(int((~hopf).sum()), 'row')} without"
+    )
+    return f", judged at the first Hopf point of each row{remaining_clause}"

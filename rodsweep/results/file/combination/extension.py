@@ -118,8 +118,11 @@ def extension_of(header: ResultHeader, points: Points, plan: FilePlan) -> Extens
         else:
             _refuse_difference(header, config_difference(value, new_value, f"parameters.{key}"))
     _refuse_difference(header, config_difference(in_file.get("arm"), requested.get("arm"), "parameters.arm"))
-    others = {*in_file, *requested} - {"task", "parameters", "arm", task, "together"}
-    stored, new_rest = ({k: v for k, v in each.items() if k in others} for each in (in_file, requested))
+    other_keys = {*in_file, *requested} - {"task", "parameters", "arm", task, "together"}
+    stored, new_rest = (
+        {option: option_value for option, option_value in each.items() if option in other_keys}
+        for each in (in_file, requested)
+    )
     _refuse_difference(header, config_difference(stored, new_rest))
     longer = []
     for name, value in in_file[task].items():
@@ -156,15 +159,17 @@ def _stored_point_map(header: ResultHeader, old: Points, plan: FilePlan) -> Stor
     """Map from the stored points `old` to the points of the plan; InputError if the plan lacks a point."""
     new_points = plan.points
     if tuple(old.axes) != tuple(new_points.axes) or old.names != new_points.names:
-        kinds = kind_of_points(old), kind_of_points(new_points)
-        _refuse_difference(header, config_difference(*kinds, "parameters"))
+        kinds_of_points = kind_of_points(old), kind_of_points(new_points)
+        _refuse_difference(header, config_difference(*kinds_of_points, "parameters"))
     if not old.axes:
         return StoredPointMap(old.shape, new_points.shape, (_positions_in_list(header, old, new_points),))
-    positions = [_positions_on_axis(header, n, values, new_points.axes[n]) for n, values in old.axes.items()]
+    positions = [
+        _positions_on_axis(header, name, values, new_points.axes[name]) for name, values in old.axes.items()
+    ]
     if chains := plan.chains:
-        count = new_points.shape[chains.axis]
-        kept = _positions_before_first_change(positions[chains.axis], count, chains.is_upward)
-        positions[chains.axis] = kept
+        new_length = new_points.shape[chains.axis]
+        kept_positions = _positions_before_first_change(positions[chains.axis], new_length, chains.is_upward)
+        positions[chains.axis] = kept_positions
     if plan.groups:
         axis = plan.groups.axis
         old_groups = groups_along_longest_axis(old.shape, old.varying_parameters)
@@ -190,20 +195,20 @@ def _positions_on_axis(header: ResultHeader, name: str, old: Array, new: Array) 
     return np.where(is_equal, nearest_indices, -1).astype(np.int64)
 
 
-def _positions_before_first_change(positions: Indices, count: int, upward: bool) -> Indices:
+def _positions_before_first_change(positions: Indices, new_length: int, upward: bool) -> Indices:
     """Positions `positions` of the values along a chain, (n,), with -1 from the first changed position of the
-    chain on. count: number of values on the new axis. upward: direction of the chains."""
-    forward_positions = positions if upward else np.where(positions < 0, -1, count - 1 - positions)[::-1]
+    chain on. new_length: number of values on the new axis. upward: direction of the chains."""
+    forward_positions = positions if upward else np.where(positions < 0, -1, new_length - 1 - positions)[::-1]
     is_kept = np.logical_and.accumulate(forward_positions == np.arange(len(forward_positions)))
     return np.where(is_kept if upward else is_kept[::-1], positions, -1)
 
 
-def _is_stretch_unchanged(positions: Indices, count: int) -> NDArray[np.bool_]:
+def _is_stretch_unchanged(positions: Indices, new_length: int) -> NDArray[np.bool_]:
     """Whether the group of each old value, (n,), is unchanged on the new axis. positions: new position of
-    each old value, (n,). count: number of values on the new axis."""
+    each old value, (n,). new_length: number of values on the new axis."""
     indices = np.arange(len(positions))
     stretch_ends = (indices // GROUP_POINTS + 1) * GROUP_POINTS
-    same_length = np.minimum(stretch_ends, len(positions)) == np.minimum(stretch_ends, count)
+    same_length = np.minimum(stretch_ends, len(positions)) == np.minimum(stretch_ends, new_length)
     has_moved = np.logical_or.reduceat(positions != indices, np.arange(0, len(positions), GROUP_POINTS))
     return same_length & ~has_moved[indices // GROUP_POINTS]
 

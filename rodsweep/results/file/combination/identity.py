@@ -48,7 +48,7 @@ def config_change_text(stored: dict[str, Any], given: dict[str, Any]) -> str:
     equal = {name for name in common if np.array_equal(axes[0][name].array(), axes[1][name].array())}
     omitted = {*equal, "points"}
     sections = (config["parameters"] for config in (stored, given))
-    written = [{n: value for n, value in each.items() if n not in omitted} for each in sections]
+    written = [{key: value for key, value in section.items() if key not in omitted} for section in sections]
     kinds = [_point_set_kind(config.parameters) for config in configs]
     return (
         config_difference(kinds[0], kinds[1], "parameters")
@@ -73,7 +73,7 @@ def config_difference(
     key: full name of the key of `stored` and `given`. origins: names of the origins of `stored` and `given`.
     """
     if isinstance(stored, dict) and isinstance(given, dict):
-        for name in [*given, *(n for n in stored if n not in given)]:
+        for name in [*given, *(stored_key for stored_key in stored if stored_key not in given)]:
             path = f"{key}.{name}" if key else name
             difference = config_difference(stored.get(name), given.get(name), path, origins)
             if difference:
@@ -90,8 +90,13 @@ def config_difference(
 
 def _list_difference(stored: list[Any], given: list[Any], origins: tuple[str, str]) -> str:
     """Difference of two lists that are too long to show: their lengths, and the first pair that differs."""
-    sizes = f"{len(stored)} values in {origins[0]} and {len(given)} in {origins[1]}"
-    pairs = enumerate(zip_longest(stored, given), 1)
-    number, values = next((i, pair) for i, pair in pairs if pair[0] != pair[1])
-    stored_text, requested_text = ("missing" if v is None else json.dumps(v)[:LONGEST_VALUE] for v in values)
-    return f"{sizes}; value {number} is {stored_text} in {origins[0]} and {requested_text} in {origins[1]}"
+    lengths_text = f"{len(stored)} values in {origins[0]} and {len(given)} in {origins[1]}"
+    numbered_pairs = enumerate(zip_longest(stored, given), 1)
+    number, values = next((i, pair) for i, pair in numbered_pairs if pair[0] != pair[1])
+    stored_text, requested_text = (
+        "missing" if value is None else json.dumps(value)[:LONGEST_VALUE] for value in values
+    )
+    return (
+        f"{lengths_text}; value {number} is {stored_text} in {origins[0]} and {requested_text} in "
+        f"{origins[1]}"
+    )

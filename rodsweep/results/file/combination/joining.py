@@ -71,7 +71,9 @@ class JoinedFile:
         if not len(records):
             return
         stored_records = records_at(path, records["index"], self.plan.layout)
-        for name in (v.name for v in self.plan.layout.variables if v.name != SECONDS.name):
+        for name in (
+            variable.name for variable in self.plan.layout.variables if variable.name != SECONDS.name
+        ):
             old_values = stored_records[name]
             new_values = records[name]
             is_equal = (old_values == new_values) | (np.isnan(old_values) & np.isnan(new_values))
@@ -109,13 +111,13 @@ def _point_text(points: Points, index: int) -> str:
 
 def joined_file_of(sources: Sequence[ResultHeader], planner: FilePlanMaker) -> JoinedFile:
     """The `JoinedFile` of sources with different points; raises InputError if the files cannot be joined."""
-    first, *others = sources
+    first, *other_sources = sources
     settings = config_from_resolved(first.config).settings_of_results
     grids = [points_of_file(source.path, source.layout) for source in sources]
-    for header, points in zip(others, grids[1:], strict=True):
-        other = config_from_resolved(header.config).settings_of_results | {"together": None}
+    for header, points in zip(other_sources, grids[1:], strict=True):
+        other_settings = config_from_resolved(header.config).settings_of_results | {"together": None}
         names = (first.path.name, header.path.name)
-        difference = config_difference(settings | {"together": None}, other, "", names)
+        difference = config_difference(settings | {"together": None}, other_settings, "", names)
         if difference:
             raise InputError(
                 f"{header.path} was made from another config than {first.path} ({difference}); leave one of "
@@ -148,9 +150,10 @@ def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]
         axis = np.unique(np.concatenate([grid.columns_by_name[name] for grid in grids]))
         close = np.flatnonzero(np.diff(axis) <= ROUNDING_TOLERANCE * np.abs(axis[:-1]))
         if len(close):
-            values = " and ".join(repr(float(value)) for value in axis[close[0] : close[0] + 2])
+            equal_values_text = " and ".join(repr(float(value)) for value in axis[close[0] : close[0] + 2])
             raise InputError(
-                f"the files have {name} = {values}, which differ by rounding only; make these values equal"
+                f"the files have {name} = {equal_values_text}, which differ by rounding only; make "
+                "these values equal"
             )
         axes.append(axis)
     union = Points(grids[0].names, tuple(axes), is_grid=True)
@@ -180,7 +183,9 @@ def _joined_list(lists: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]
         all_rows[point_map] = table
     union = Points(lists[0].names, tuple(np.ascontiguousarray(all_rows.T)), is_grid=False)
     shapes = (points.shape for points in lists)
-    return union, [StoredPointMap(shape, union.shape, (p,)) for shape, p in zip(shapes, maps, strict=True)]
+    return union, [
+        StoredPointMap(shape, union.shape, (row_map,)) for shape, row_map in zip(shapes, maps, strict=True)
+    ]
 
 
 def _joined_config(header: ResultHeader, settings: dict[str, Any], points: Points) -> Config:
@@ -198,11 +203,11 @@ def _joined_config(header: ResultHeader, settings: dict[str, Any], points: Point
     return config_from_resolved(header.config | {"parameters": parameters, task: options})
 
 
-def _axis_from_values(own: Axis, values: Array) -> Axis:
-    """An axis with the given values, (n,): `own` or a range if its values are equal bit by bit, otherwise a
-    list."""
-    if np.array_equal(own.array(), values):
-        return own
+def _axis_from_values(own_axis: Axis, values: Array) -> Axis:
+    """An axis with the given values, (n,): `own_axis` or a range if its values are equal bit by bit,
+    otherwise a list."""
+    if np.array_equal(own_axis.array(), values):
+        return own_axis
     if len(values) > 2 and np.isfinite(values).all():
         spacings: tuple[Literal["linear", "log"], ...] = ("linear", "log") if values[0] > 0 else ("linear",)
         for spacing in spacings:
@@ -223,7 +228,7 @@ def _refuse_broken_chains(sources: Sequence[ResultHeader], grids: Sequence[Point
         if not np.array_equal(grid.columns_by_name[name], plan.points.columns_by_name[name]):
             raise InputError(
                 f"{source.path} differs from the other files in {name}, along which each point starts from "
-                "its neighbour; parts of chains cannot be merged; use run --extend"
+                "its neighbour; parts of such a line of points cannot be merged; use run --extend"
             )
 
 
@@ -239,5 +244,7 @@ def _with_attributes(plan: FilePlan, header: ResultHeader, config: Config) -> Fi
         described = file["status"].attrs
         pairs = zip(described["flag_values"], str(described["flag_meanings"]).split(), strict=True)
         flags = tuple((int(value), word) for value, word in pairs if value != MISSING_STATUS)
-    kept = {n: value for n, value in header.attributes.items() if n not in NOT_INHERITED_ATTRIBUTES}
-    return replace(plan, attributes=kept | {"config": text}, flags=flags)
+    inherited = {
+        name: value for name, value in header.attributes.items() if name not in NOT_INHERITED_ATTRIBUTES
+    }
+    return replace(plan, attributes=inherited | {"config": text}, flags=flags)

@@ -49,8 +49,8 @@ def merge(output: Path, paths: Sequence[Path], planner: FilePlanMaker) -> MergeR
     try:
         with disk_refusals(output, lambda: "; the shards are untouched"):
             if output.exists():  # the file may have appeared while another run held the lock
-                others = [path for path in paths if not os.path.samefile(output, path)]
-                sources = _read_headers([output, *others])
+                other_paths = [path for path in paths if not os.path.samefile(output, path)]
+                sources = _read_headers([output, *other_paths])
             if all(_has_same_fingerprint(sources[0], source) for source in sources):
                 return _merge(replacement, sources, planner)
             return _write_joined_file(replacement, joined_file_of(sources, planner))

@@ -124,7 +124,7 @@ def require_equal_unknowns(form: StressForm, orbit: Orbit) -> None:
         raise Unsolvable(
             f"the solver changes its unknowns at a rotational drag of {settings.min_eliminated_drag:.0e} "
             f"gamma2 L^2 and at an axial drag of {settings.min_eliminated_axial_drag:.0e} gamma2, and one of "
-            "them lies between the two cycles: choose a range on one side of it"
+            "these values lies between the two cycles: choose a range on one side of it"
         )
 
 

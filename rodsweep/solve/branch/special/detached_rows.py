@@ -37,7 +37,7 @@ class DetachedRows:
     row parameter, and its value by index of the row. crossings: all points known so far at which curves cross
     a row without a special point of its own, by index of the row."""
 
-    outcome: ClassVar[str] = "row solved again with the branches that only these curves lead to"
+    outcome: ClassVar[str] = "row solved again with branches found from curves of folds and torus points"
     progress_noun: ClassVar[str] = "rows"
 
     first_item: int

@@ -103,7 +103,7 @@ class BoundaryCurveProblem:
         no point is found."""
         solution = self.boundary.point_near(guess, normal)
         if solution is None:
-            raise Unsolvable("no point of the boundary is near")
+            raise Unsolvable("Newton's method finds no point of the curve near the prediction")
         return solution
 
     def margins(self, point: BoundaryPoint) -> Array:
@@ -127,7 +127,7 @@ class BoundaryCurveProblem:
         solution = self.boundary.point_near(inner + fraction * (outer.v - inner), np.eye(3)[axis])
         tolerance = BOUNDARY_CURVE_SETTINGS.edge_tolerance
         if solution is None or not -tolerance <= solution.v[1 - axis] <= 1 + tolerance:
-            raise Unsolvable("no point of the curve was found on the edge")
+            raise Unsolvable("no point of the curve was found on the edge of the diagram")
         return BoundaryPoint.oriented(solution, previous[-1].tangent)
 
     def is_closed_by(self, previous: Sequence[BoundaryPoint], point: BoundaryPoint) -> bool:

@@ -62,8 +62,8 @@ def thresholds_of_solvable_part(
     result = last_attempt.result or first_attempt.result
     assert result is not None
     message = (
-        f"the search begins at F = {starts[solved_index]:.12g}: from F = {starts[failed_index]:.12g} on, "
-        f"{failure}"
+        f"the search begins at F = {starts[solved_index]:.12g}, because a search from "
+        f"F = {starts[failed_index]:.12g} fails: {failure}"
     )
     return replace(result, ended_early=True, doubt_text="; ".join(filter(None, (message, result.doubt_text))))
 

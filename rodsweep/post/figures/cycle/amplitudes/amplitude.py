@@ -56,7 +56,11 @@ def draw_amplitude(views: Sequence[ResultView], is_narrow: bool = False) -> tupl
     coloured = zip(branches, colours, strict=False)
     marks = [(point, colour) for branch, colour in coloured for point in branch.hopf]
     handles += mark_hopf_points(panels, marks)
-    laws = [law for each in branches for law in square_root_laws(each.x, each.amplitude_y, each.hopf)]
+    laws = [
+        law
+        for branch_of_file in branches
+        for law in square_root_laws(branch_of_file.x, branch_of_file.amplitude_y, branch_of_file.hopf)
+    ]
     handles += draw_square_root_laws(panels[1], laws, units[0].names[0] * units[0].in_si)
     _label_axes(panels, name, units[0].panel_labels)
     for panel in panels:
@@ -138,9 +142,11 @@ def _common_and_own_texts(branches: Sequence[AmplitudeSeries], name: str) -> tup
     axis."""
     view = branches[0].view
     if branches[0].units.in_si and all(branch.view is view for branch in branches):
-        names = [quantity for quantity, changed_name in CHANGED_PARAMETER.items() if changed_name == name]
+        axis_names = [
+            quantity for quantity, changed_name in CHANGED_PARAMETER.items() if changed_name == name
+        ]
         numbers = [branch.first_number for branch in branches]
-        return shared_and_own_of_arms(view, numbers, {name, *names})
+        return shared_and_own_of_arms(view, numbers, {name, *axis_names})
     return shared_and_own_texts([branch.parameters for branch in branches])
 
 

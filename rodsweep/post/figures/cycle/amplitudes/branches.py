@@ -57,9 +57,9 @@ class AmplitudeSeries:
 def abscissa_parameter(view: ResultView) -> str:
     """Name of the parameter on the horizontal axis: F, or the parameter with the most values if F is
     constant. Raises InputError for a file with one point."""
-    sizes = {name: len(np.unique(column)) for name, column in view.point_columns.items()}
-    name = "F" if sizes["F"] > 1 else max(sizes, key=sizes.__getitem__)
-    if sizes[name] < 2:
+    value_counts = {name: len(np.unique(column)) for name, column in view.point_columns.items()}
+    name = "F" if value_counts["F"] > 1 else max(value_counts, key=value_counts.__getitem__)
+    if value_counts[name] < 2:
         raise InputError(f"{view.path} holds one point; amplitudes need several values of a parameter")
     return name
 
@@ -68,16 +68,16 @@ def amplitude_branches(view: ResultView, name: str, units: CycleUnits = PLAIN_UN
     """Curves of a file against the parameter `name`, one for each combination of the other parameters. units:
     units of the drawn quantities."""
     statuses = view.status_names
-    v = view.variables
+    variables = view.variables
     straight = statuses == "straight"
     cycle = np.isin(statuses, CYCLE_STATUSES)
-    x_amplitudes = (v["tip_x_max"] - v["tip_x_min"]).ravel() / 2
+    x_amplitudes = (variables["tip_x_max"] - variables["tip_x_min"]).ravel() / 2
     x_values, y_values = (
         units.length * np.where(straight, 0.0, np.where(cycle, values, np.nan))
-        for values in (x_amplitudes, v["tip_y_max"].ravel())
+        for values in (x_amplitudes, variables["tip_y_max"].ravel())
     )
-    period = units.time * np.where(cycle, v["period"].ravel(), np.nan)
-    power = units.power * np.where(cycle, v["injection_mean"].ravel(), np.nan)
+    period = units.time * np.where(cycle, variables["period"].ravel(), np.nan)
+    power = units.power * np.where(cycle, variables["injection_mean"].ravel(), np.nan)
     branches = []
     stored_thresholds = StoredThresholds(view, "F")
     for line in lines_along(view.point_columns, name):

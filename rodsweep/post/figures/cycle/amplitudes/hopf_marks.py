@@ -42,7 +42,7 @@ def mark_hopf_points(panels: Sequence[Axes], marks: Sequence[tuple[LocatedThresh
         points: list[tuple[LocatedThreshold, set[str]]] = []
         for point, colour in marks_of_kind:
             colours_here = next(
-                (colours for other, colours in points if other.equals_within_errors(point)), None
+                (colours for known_point, colours in points if known_point.equals_within_errors(point)), None
             )
             if colours_here is None:
                 points.append((point, {colour}))
@@ -72,10 +72,10 @@ def draw_square_root_laws(axes: Axes, laws: Sequence[SquareRootLaw], unit: str =
         keywords: dict[str, Any] = {"color": LAW_COLOUR, "lw": 1.0, "ls": (0, (5, 2.5))}
         for law in chosen_laws:
             axes.plot(*law.curve(), zorder=1.5, **keywords)
-        difference = rf"\tilde F - {HOPF_SYMBOL}" if is_above else rf"{HOPF_SYMBOL} - \tilde F"
+        difference_in_tex = rf"\tilde F - {HOPF_SYMBOL}" if is_above else rf"{HOPF_SYMBOL} - \tilde F"
         coefficients = f"$a$ = {_coefficients_text(chosen_laws)} {unit}".rstrip()
-        formula = rf"$a\sqrt{{({difference})/{HOPF_SYMBOL}}}$, {coefficients}"
-        handles.append(Line2D([], [], label=formula, **keywords))
+        formula_in_tex = rf"$a\sqrt{{({difference_in_tex})/{HOPF_SYMBOL}}}$, {coefficients}"
+        handles.append(Line2D([], [], label=formula_in_tex, **keywords))
     return handles
 
 

@@ -68,34 +68,34 @@ def _law_on_side(F: Array, amplitude: Array, point: LocatedThreshold, side: int)
     # If two cycles exist at one F, only the smaller cycle can shrink to zero at the Hopf point.
     order = np.lexsort((np.where(amplitude > 0, amplitude, np.inf), distance))
     distance, indices = np.unique(distance[order], return_index=True)
-    size = amplitude[order][indices]
+    amplitudes = amplitude[order][indices]
     is_certain = distance > MIN_ERRORS_AWAY * point.error / abs(point.position)
     distance = distance[is_certain]
-    size = size[is_certain]
-    zero_indices = np.flatnonzero(~(size > 0))  # another branch begins behind a gap
+    amplitudes = amplitudes[is_certain]
+    zero_indices = np.flatnonzero(~(amplitudes > 0))  # another branch begins behind a gap
     distance = distance[: zero_indices[0] if zero_indices.size else None]
-    size = size[: zero_indices[0] if zero_indices.size else None]
-    if len(size) < 2 or distance[1] > MAX_FITTED_DISTANCE:
+    amplitudes = amplitudes[: zero_indices[0] if zero_indices.size else None]
+    if len(amplitudes) < 2 or distance[1] > MAX_FITTED_DISTANCE:
         return None
-    square_over_distance = size[:2] ** 2 / distance[:2]
+    square_over_distance = amplitudes[:2] ** 2 / distance[:2]
     coefficient_square = square_over_distance[0] - distance[0] * (
         square_over_distance[1] - square_over_distance[0]
     ) / (distance[1] - distance[0])
     if coefficient_square <= 0:
         return None
-    is_on_law = np.abs(np.sqrt(coefficient_square * distance) / size - 1) <= MAX_LAW_DEVIATION
+    is_on_law = np.abs(np.sqrt(coefficient_square * distance) / amplitudes - 1) <= MAX_LAW_DEVIATION
     if not is_on_law[:2].all():
         return None
-    law_end = len(size) if is_on_law.all() else int(np.argmin(is_on_law))
-    end = point.position + side * abs(point.position) * float(distance[law_end - 1])
-    three_quotients = size[:3] ** 2 / distance[:3]
+    law_end = len(amplitudes) if is_on_law.all() else int(np.argmin(is_on_law))
+    law_end_position = point.position + side * abs(point.position) * float(distance[law_end - 1])
+    three_quotients = amplitudes[:3] ** 2 / distance[:3]
     extrapolated_square = (
         _parabola_at_zero(distance[:3], three_quotients)
         if len(three_quotients) > 2 and distance[2] <= MAX_FITTED_DISTANCE
         else square_over_distance[0]
     )
     error = ERROR_SAFETY_FACTOR * abs(sqrt(max(extrapolated_square, 0.0)) - sqrt(coefficient_square))
-    return SquareRootLaw(point.position, sqrt(coefficient_square), side > 0, end, error)
+    return SquareRootLaw(point.position, sqrt(coefficient_square), side > 0, law_end_position, error)
 
 
 def _parabola_at_zero(x: Array, values: Array) -> float:
