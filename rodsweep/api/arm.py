@@ -177,6 +177,10 @@ class Arm(SlenderArm):
                 )
         options = dict(options)
         progress = options.pop("progress", None)
+        try:
+            CONFIGS[task].refuse_options_of_arm(options)
+        except ValueError as error:
+            raise InputError(str(error)) from None
         needs_load = "F" in CONFIGS[task].rod_parameters_used(options)
         if needs_load and self.load is None:
             raise InputError(

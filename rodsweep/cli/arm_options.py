@@ -5,6 +5,7 @@ from typing import Any
 
 import click
 
+from ..config.values import overflows_float, short_repr
 from ..model.arm.quantities import QUANTITIES, UNITS
 from ..model.arm.segments import EXAMPLE_SEGMENT
 from ..model.parameters import NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS
@@ -32,6 +33,22 @@ MATERIAL_OPTIONS: dict[str, dict[str, Any]] = {
     },
 }
 """Arguments of `click.option` for the options of shape and material that are not quantities, by option."""
+
+
+class FloatNumberType(click.types.FloatParamType):
+    """Type of options that are numbers. A number too large for a float is refused; `float` would return
+    inf."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        """Number from the text `value`; fails as click's own types for another text."""
+        if isinstance(value, str) and overflows_float(value.strip()):
+            self.fail(f"{short_repr(value)} is too large for a floating-point number.", param, ctx)
+        number: float = super().convert(value, param, ctx)
+        return number
+
+
+NUMBER = FloatNumberType()
+"""Type of options that are numbers."""
 CommandFunction = Callable[..., Any]
 """Function of a command."""
 Decorator = Callable[[CommandFunction], CommandFunction]
@@ -70,7 +87,7 @@ def parameter_options(command: CommandFunction) -> CommandFunction:
         meaning = f"{parameter.meaning[0].upper()}{parameter.meaning[1:]}"
         unit = "" if parameter.unit == "1" else f", in {parameter.unit}"
         default_clause = "" if parameter.default is None else f"; by default {parameter.default:g}"
-        command = click.option(f"--{name}", name, type=float, help=f"{meaning}{unit}{default_clause}.")(
+        command = click.option(f"--{name}", name, type=NUMBER, help=f"{meaning}{unit}{default_clause}.")(
             command
         )
     return command

@@ -47,6 +47,8 @@ def print_job_check(job: Job) -> None:
         f"may compile for up to three minutes more), {cost.memory_bytes / 1e6:.0f} MB of memory per rank, "
         f"{job.points.count * job.layout.bytes_per_point / 1e6:.3g} MB of results"
     )
+    if cost.uncounted_work:
+        console.print(f"not counted, because only the run shows them: {cost.uncounted_work}")
     if cost.underestimated_rods:
         console.print(
             f"this estimate is uncertain: {cost.underestimated_rods} may take a hundred times as long, and "

@@ -3,13 +3,27 @@
 import errno
 import os
 from pathlib import Path
+from typing import Any
 
 import click
 
 from ..errors import InputError
 from ..results import RESULT_ENDINGS
 
-FILE_TYPE = click.Path(path_type=Path)
+
+class FileNameType(click.Path):
+    """Type of arguments and options that name a file. An empty text, such as the value of an unset variable
+    of the shell, is refused; `Path` would read it as the working directory."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Path of the text `value`. Raises InputError for an empty text."""
+        if value == "" and param is not None:
+            name = param.human_readable_name if isinstance(param, click.Argument) else param.opts[-1]
+            raise InputError(f"{name.strip('.[]')} is empty; give the name of a file")
+        return super().convert(value, param, ctx)
+
+
+FILE_TYPE = FileNameType(path_type=Path)
 """Type of arguments and options that name a file."""
 OUTPUT = ("-o", "--output")
 """Names of the option for the file that a command writes."""

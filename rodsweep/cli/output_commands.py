@@ -10,7 +10,7 @@ from ..config.values import printable
 from ..errors import InputError
 from ..model.arm.quantities import UNITS
 from ..model.parameters import PARAMETERS
-from .arm_options import arm_options, parameter_options
+from .arm_options import NUMBER, arm_options, parameter_options
 from .file_names import FILE_TYPE, OUTPUT, link_target, with_suffix_replaced
 from .portrait_rod import QUANTITIES_WITHOUT_OPTION, rod_of_options, solve_with_progress
 
@@ -125,11 +125,13 @@ def report(files: tuple[Path, ...], output: Path | None) -> None:
 @click.command()
 @parameter_options
 @arm_options(QUANTITIES_WITHOUT_OPTION, is_required=False)
-@click.option("--poisson", type=float, help="Poisson's ratio of the arm; by default 0.5.")
+@click.option("--poisson", type=NUMBER, help="Poisson's ratio of the arm; by default 0.5.")
 @click.option("--profile", metavar="FILE", help="A CSV file with factors along the rod, as material.profile.")
-@click.option("--F-max", "F_max", type=float, default=DEFAULT_F_MAX, show_default=True, help="Largest force.")
 @click.option(
-    "--accuracy", type=float,
+    "--F-max", "F_max", type=NUMBER, default=DEFAULT_F_MAX, show_default=True, help="Largest force."
+)
+@click.option(
+    "--accuracy", type=NUMBER,
     help="Relative accuracy; by default 1e-5 on branches, and the accuracy of each other task.",
 )  # fmt: skip
 @click.option(

@@ -134,6 +134,11 @@ class Config(StrictConfigSection):
             settings["parameters"] |= {name: first_values.get(name) for name in names}
         return settings | {"arm": self.parameters.arm.settings_of_results}
 
+    @classmethod
+    def refuse_options_of_arm(cls, options: Mapping[str, Any]) -> None:
+        """Raises ValueError for options of the task that no arm can have, before a missing load is refused;
+        by default there are none. options: options of the task, not validated."""
+
     def refuse_solved_parameter(self, name: str, reason: str) -> None:
         """Raises ValueError, with the reason `reason`, if the config gives the parameter `name`, for which
         the task solves."""

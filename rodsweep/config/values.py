@@ -32,7 +32,7 @@ def as_float(value: Any) -> float:
 def overflows_float(text: str) -> bool:
     """Whether a text is a decimal number that is too large for a float, such as 1e400."""
     try:
-        return any(c.isdigit() for c in text) and not text.lstrip("+-").isdigit() and isinf(float(text))
+        return any(c.isdigit() for c in text) and isinf(float(text))
     except ValueError:
         return False
 
@@ -50,7 +50,8 @@ def short_repr(value: Any) -> str:
     try:
         text = repr(value)
     except (ValueError, RecursionError):  # an integer of thousands of digits, or a tree too deep
-        return f"a {type(value).__name__} too large to be shown"
+        article = "an" if isinstance(value, int) else "a"
+        return f"{article} {type(value).__name__} too large to be shown"
     return text if len(text) <= 60 else text[:57] + "..."
 
 

@@ -132,17 +132,20 @@ class Page:
         try:
             rod_or_arm = state.subject()
             state.largest_force()
-            if (F := rod_of(rod_or_arm).get("F")) is None:
+            F = None if state.has_relative_load else rod_of(rod_or_arm).get("F")
+            if F is None and not state.has_relative_load:
                 section = "parameters.arm" if state.tab == "arm" else "parameters"
                 raise InputError(f"{section}.{state.load} is missing; give the load")
         except InputError as error:
             self._show_error(str(error))
             return
-        for kind in (*kinds.TIP_KINDS, *kinds.MANUAL_KINDS):
+        for kind in (kinds.LOAD_KIND, *kinds.TIP_KINDS, *kinds.MANUAL_KINDS):
             self._cancel_request(kind)
-        for kind in kinds.INSTANT_KINDS:
+        for kind in (*((kinds.LOAD_KIND,) if F is None else ()), *kinds.INSTANT_KINDS):
             self._send_request(kind)
-        self.contents.show_point(state, F)
+        self.contents.show_point(state)
+        if F is not None:
+            self.contents.move_load_lines(state, F)
         self._show_solving()
         self.pause_timer.restart()
 
@@ -150,7 +153,7 @@ class Page:
         """Cancels all solves and shows the error message `sentence` in place of all pictures except a drawn
         diagram."""
         self.pause_timer.cancel()
-        for kind in (*kinds.TIP_KINDS, *kinds.MANUAL_KINDS):
+        for kind in (kinds.LOAD_KIND, *kinds.TIP_KINDS, *kinds.MANUAL_KINDS):
             self._cancel_request(kind)
         for kind in (*kinds.INSTANT_KINDS, *kinds.IDLE_KINDS):
             if kind != "diagram" or kind in self.solving:
@@ -228,7 +231,7 @@ class Page:
         self._show_solving()
 
     def _show_solving(self) -> None:
-        shown_kinds = (*kinds.INSTANT_KINDS, *kinds.IDLE_KINDS, *kinds.MANUAL_KINDS)
+        shown_kinds = (kinds.LOAD_KIND, *kinds.INSTANT_KINDS, *kinds.IDLE_KINDS, *kinds.MANUAL_KINDS)
         solving = [kind for kind in shown_kinds if kind in self.solving]
         is_stoppable = any(kind in kinds.STOPPABLE_KINDS for kind in solving)
         text = solving_text(solving, self.progress)

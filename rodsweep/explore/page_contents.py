@@ -90,22 +90,35 @@ class PageContents:
         document.template = template_text("page.html")
         document.template_variables["page_css"] = template_text("page.css")
 
-    def show_point(self, state: PageState, F: float) -> None:
-        """Marks the parameters of `state` in all pictures, and updates address, config and Python lines. F:
-        the load, in k3/L^2."""
-        axis = load_axis(state)
-        self.controls.show_largest_load(state, axis)
-        self.growth.move_load_line(F * axis.factor)
-        self.branches.move_load_line(F * axis.factor)
+    def show_point(self, state: PageState) -> None:
+        """Marks the second parameter and the load of `state` in the diagram, and updates controls, address,
+        config and Python lines."""
+        self.controls.show_largest_load(state, load_axis(state))
         x, y = (SCALES[state.tab][name].value(state.values[name]) for name in (state.load, state.second))
         if x is not None and y is not None:
             self.diagram.move_point(x, y)
         self.buttons["cycles"].visible = can_follow_cycle_curves(state)
         self.sharing.update_exported_texts(state)
 
+    def move_load_lines(self, state: PageState, F: float) -> None:
+        """Marks the load of `state` in the pictures over the load. F: the load, in k3/L^2."""
+        axis = load_axis(state)
+        self.growth.move_load_line(F * axis.factor)
+        self.branches.move_load_line(F * axis.factor)
+
+    def show_solved_load(self, answer: dict[str, Any], state: PageState) -> None:
+        """Marks the load of `state` in all pictures. answer: answer to the request "load"."""
+        self.move_load_lines(state, answer["F"])
+        y = SCALES[state.tab][state.second].value(state.values[state.second])
+        if y is not None:
+            self.diagram.move_point(answer["F"] * load_axis(state).factor, y)
+
     def show(self, kind: str, answer: dict[str, Any], state: PageState) -> None:
         """Draws the answer `answer` to a request of the kind `kind` in all pictures that show this answer,
         and updates the table of numbers; the answer "film" is saved as a file."""
+        if kind == "load":
+            self.show_solved_load(answer, state)
+            return
         if kind == "spectrum":
             self.spectrum.show(answer)
             self.mode.show(answer)
@@ -133,6 +146,8 @@ class PageContents:
     def show_message(self, kind: str, sentence: str) -> None:
         """Shows a sentence in place of the pictures for requests of the kind `kind`; for requests on cycle
         curves, drags and films, above the picture."""
+        if kind == "load":  # the pictures of the other kinds state why there is no load
+            return
         self.numbers.show(kind, None)
         if kind == "cycle":
             self.beating.remove_all_shapes()

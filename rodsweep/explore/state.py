@@ -15,6 +15,7 @@ from ..config.tasks import CONFIGS
 from ..config.values import overflows_float, short_repr
 from ..errors import InputError
 from ..model.parameters import OPTIONAL_PARAMETERS
+from ..model.units import load_over_flutter
 
 MATERIAL_CHOICES: dict[str, dict[str, str]] = {
     "linear": {},
@@ -106,6 +107,11 @@ class PageState:
         is returned as text."""
         values = {name: float_or_text(text) for name, text in self.rod.items()}
         return {name: value for name, value in values.items() if name != "taper" or value != 1}
+
+    @property
+    def has_relative_load(self) -> bool:
+        """Whether the load of the arm is relative to its flutter threshold, which must be solved first."""
+        return self.tab == "arm" and load_over_flutter(self.arm[self.load].strip()) is not None
 
     def largest_force(self) -> float:
         """`F_max` as a number. Raises InputError unless the number is finite and positive."""

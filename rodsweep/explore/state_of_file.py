@@ -35,6 +35,8 @@ from .state import (
 
 HIDDEN_QUANTITIES = ("density_difference", "fluid_density", "law", "section")
 """Keys of an arm that are ignored or have a control outside the tab of the arm."""
+RELATIVE_PRESSURE = "pressure_over_flutter"
+"""Key of an arm's pressure relative to flutter; the page has it as text in the control of the pressure."""
 
 
 def page_state_of_file(path: Path) -> tuple[PageState, AnswersFromFile | None]:
@@ -111,6 +113,7 @@ def _state_of_arm(config: Config, path: Path) -> PageState:
     section: Any = config.parameters.arm
     quantities = {name: getattr(section, name) for name in type(section).model_fields}
     quantities = {name: value for name, value in quantities.items() if value is not None}
+    shares = quantities.pop(RELATIVE_PRESSURE, None)
     omitted = [name for name in quantities if name not in (*DEFAULT_ARM, *HIDDEN_QUANTITIES)]
     if omitted:
         reason = f"the page cannot show an arm with {omitted[0]}"
@@ -121,6 +124,8 @@ def _state_of_arm(config: Config, path: Path) -> PageState:
         scale = SCALES["arm"][name]
         value = scale.factor * float(values[len(values) // 2])
         texts[name] = scale.text(value) if len(values) > 1 else f"{_exact_number_text(value)} {scale.unit}"
+    if shares is not None:
+        texts["pressure"] = f"{_middle_value_text(shares.array())} of flutter"
     return PageState(tab="arm", arm=texts, law=_law_key(config, path), across=_second_parameter("arm", axes))
 
 

@@ -23,6 +23,8 @@ POWER_OF_POWER_PATTERN = re.compile(r"[\d²³⁴]\s*(?:\*\*|\^)")
 """Pattern of the start of a power of a power, like 2**2**2, which pint would evaluate."""
 MAX_UNIT_LENGTH = 40
 """Maximum number of characters of a unit. Longer units are refused."""
+MAX_SHOWN_LENGTH = 60
+"""Maximum number of characters of a quantity in a message. Longer texts are cut."""
 CONVERSION_CACHE_SIZE = 1000
 """Maximum number of cached conversion factors. A config has about ten different units."""
 COMMON_UNITS = ("cm", "mm", "kPa", "MPa", "GPa", "Pa s", "mPa s", "kPa s", "mN", "kg/m^3", "g/cm^3", "mbar")
@@ -63,18 +65,28 @@ def quantity_in_si(name: str, quantity: GivenQuantity, si_unit: str, example: st
     """Value, in the SI unit `si_unit`, of the quantity `name`, which the user wrote as `quantity`. example: a
     valid text, for messages. Raises InputError, beginning with the name, for an invalid quantity."""
     allowed_text = f"a number with a unit, as in '{example}'"
+    shown_text = _shortened_text(quantity)
     if not isinstance(quantity, str):
         value = _number_in_si(name, quantity, si_unit, allowed_text)
     else:
         number, unit_text = split_quantity(quantity)
         if math.isnan(number):
-            raise InputError(f"{name} = '{quantity}' is not {allowed_text}")
+            raise InputError(f"{name} = '{shown_text}' is not {allowed_text}")
         if not unit_text:
-            raise InputError(f"{name} = '{quantity}' has no unit; write {allowed_text}")
-        value = number * conversion_factor(f"{name} = '{quantity}'", unit_text, si_unit, allowed_text)
+            raise InputError(f"{name} = '{shown_text}' has no unit; write {allowed_text}")
+        value = number * conversion_factor(f"{name} = '{shown_text}'", unit_text, si_unit, allowed_text)
     if not math.isfinite(value):
-        raise InputError(f"{name} = '{quantity}' is not a finite number")
+        raise InputError(f"{name} = '{shown_text}' is not a finite number")
     return value
+
+
+def _shortened_text(quantity: Any) -> str:
+    """The quantity as text on one line for a message, cut to MAX_SHOWN_LENGTH characters."""
+    try:
+        text = " ".join(str(quantity).split())
+    except ValueError:  # an integer of thousands of digits
+        return "an integer too large to be shown"
+    return text if len(text) <= MAX_SHOWN_LENGTH else f"{text[: MAX_SHOWN_LENGTH - 3]}..."
 
 
 def _number_in_si(name: str, quantity: Any, si_unit: str, allowed_text: str) -> float:
@@ -89,9 +101,9 @@ def _number_in_si(name: str, quantity: Any, si_unit: str, allowed_text: str) -> 
             raise TypeError
         return float(quantity)
     except (TypeError, ValueError, OverflowError):
-        text = " ".join(str(quantity).split())
         raise InputError(
-            f"{name} = {text:.60} is not one quantity; write {allowed_text}, or one number in {si_unit}"
+            f"{name} = {_shortened_text(quantity)} is not one quantity; write {allowed_text}, or one number "
+            f"in {si_unit}"
         ) from None
 
 

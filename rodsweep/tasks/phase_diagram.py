@@ -26,6 +26,14 @@ if TYPE_CHECKING:
     from ..solve.orbit.matrix.workspace import NewtonWorkspace
 
 
+UNCOUNTED_WORK_OF_CYCLES = (
+    "branches beyond the range, curves of folds and torus points, and rows that such a curve shows to have a "
+    "detached branch"
+)
+"""Work of a diagram with cycles that only the solved rows show; of small diagrams it can take most of the
+time: 30 s beside 2 s of a diagram of three rows with a detached branch."""
+
+
 @dataclass(frozen=True, slots=True)
 class PhaseDiagramTask(CertifiedTask):
     """The task phase_diagram. A point of the task is a row: a line of rods along the first parameter."""
@@ -112,6 +120,7 @@ class PhaseDiagramTask(CertifiedTask):
             branches,
             seconds=rows_cost.seconds + branches.seconds,
             underestimated_rods=branches.underestimated_rods or rows_cost.underestimated_rods,
+            uncounted_work=UNCOUNTED_WORK_OF_CYCLES,
         )
 
     def _with_soft_and_pulled_rows(self, rows_cost: CostEstimate, is_varying: bool) -> CostEstimate:

@@ -6,6 +6,7 @@ import pytest
 
 import rodsweep as rs
 from rodsweep.api.argument_hints import ARM_ADVICE, ROD_ADVICE
+from rodsweep.explore.state import PageState
 from rodsweep.model.parameters import PARAMETERS
 
 ROD = {"k1": 200, "k2": 1e4, "gamma3": 1e-4}
@@ -106,3 +107,43 @@ def test_what_a_rod_does_not_have_is_refused_with_what_to_write(name, advice):
 def test_advice_is_for_what_is_no_argument(word):
     known = {field.name for field in fields(rs.Arm)} if word in ARM_ADVICE else set(PARAMETERS)
     assert word not in known
+
+
+@pytest.mark.parametrize("along", ["pressure", "length", "k1", "fo", ["F"], None])
+def test_advice_on_the_parameter_of_an_arms_branches_works(along):
+    """A load was asked for first; with a load, the same parameter was refused again."""
+    with pytest.raises(rs.InputError) as refused:
+        rs.Arm(**ARM).branch(along=along)
+    sentence = str(refused.value)
+    if along == "k1":
+        assert sentence.startswith("branch.along: k1 is not allowed with parameters.arm, which gives k1; ")
+        assert rs.Arm(**ARM).branch(along="F", stop=30).status == "ok"
+        return
+    assert sentence == (
+        f"branch.along = {along!r} is not allowed for an arm; leave along out, and the branches follow the "
+        "load of the arm, as F, from start to stop"
+    )
+    assert rs.Arm(**ARM).branch(start=0, stop=30).status == "ok"
+
+
+NUMBERS = {"nines": "9" * 5000, "negative": "-" + "9" * 400, "integer": 10**5000, "power": -(10**400)}
+
+
+@pytest.mark.parametrize("number", NUMBERS.values(), ids=NUMBERS)
+def test_a_number_too_large_for_a_float_is_refused_in_one_short_sentence(number):
+    """The page said "F = inf", and an integer of thousands of digits ended with a traceback."""
+    state = PageState().with_values(F=number if isinstance(number, str) else "1e400")
+    calls = [
+        lambda: rs.Rod(F=number, **ROD),
+        lambda: rs.Arm(**ARM | {"length": number}),
+        lambda: rs.sweep("spectrum", F=[1, number], **ROD),
+        state.subject,
+    ]
+    sentences = []
+    for call in calls:
+        with pytest.raises(rs.InputError) as refused:
+            call()
+        sentences.append(str(refused.value))
+        assert len(sentences[-1]) < 200 and "\n" not in sentences[-1] and "inf" not in sentences[-1]
+    assert sentences[-1].startswith("parameters.F: ")
+    assert sentences[-1].endswith(" is too large for a floating-point number")

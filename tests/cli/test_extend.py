@@ -246,7 +246,7 @@ RUBBER = "material: {law: neo_hookean, section: swelling}\n"
 @pytest.mark.parametrize(
     ("stored", "asked", "sentence"),
     [
-        (THRESHOLDS, THRESHOLDS + RUBBER, "material is null in the file"),
+        (THRESHOLDS, THRESHOLDS + RUBBER, "material is not given in the file"),
         (THRESHOLDS + RUBBER, THRESHOLDS.replace("200]", "200, 300]"), "material"),
         (THRESHOLDS + RUBBER, THRESHOLDS + PROFILE, "material.law"),
         (THRESHOLDS, THRESHOLDS.replace("}", ", taper: 0.8}", 1), "parameters"),

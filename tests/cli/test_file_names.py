@@ -48,6 +48,12 @@ def results(loaded, tmp_path_factory):
         (("plot", ".."), ".. is a directory; name a file"),
         (("snapshot", "."), ". is a directory; name a file"),
         (("show", "."), ". is not a file"),
+        (("run", ""), "CONFIG is empty; give the name of a file"),
+        (("run", "c.yaml", "--output", ""), "--output is empty; give the name of a file"),
+        (("run", "c.yaml", "-o", ""), "--output is empty; give the name of a file"),
+        (("show", ""), "FILE is empty; give the name of a file"),
+        (("plot", "c.h5", ""), "FILE is empty; give the name of a file"),
+        (("explore", ""), "FILE | CONFIG is empty; give the name of a file"),
         (
             ("run", "c.csv"),
             "c.csv is a table, not a config; name the table in a config, as parameters.points",

@@ -27,6 +27,7 @@ from rodsweep.explore.solving.request_inputs import INSTANT_KINDS
 from rodsweep.explore.solving.requests import Reply, SolveRequest, answer_to, answer_variables
 from rodsweep.explore.state import PageState
 from rodsweep.explore.state_of_file import page_state_of_file
+from rodsweep.verdict import relative_load
 
 PLANE = """task: phase_diagram
 parameters: {F: {start: 0, stop: 60, num: 31}, k1: [100, 200, 400], k2: 1.0e4, gamma3: 1.0e-4}
@@ -452,3 +453,37 @@ def test_the_numbers_of_an_arm_stand_below_the_validity_of_the_model(viscosity, 
     table.show("thresholds", answer_variables(arm.thresholds()))
     assert table.root.text.startswith(f'<p class="caveat">{caveat}' if caveat else "<table>")
     assert "flutters from" in table.root.text
+
+
+def test_the_flutter_threshold_of_a_relative_load_is_solved_by_a_solver_process(monkeypatch):
+    """The page searched for the threshold itself, and no other page was answered meanwhile."""
+    state = PageState(tab="arm").with_values(pressure="1.2 of flutter")
+    flutter_kPa = rs.Arm(**state.arm).replace(pressure="1.2 of flutter").loaded.si.pressure / 1e3
+    solvers = ImmediateSolvers(kinds=())
+    with monkeypatch.context() as patch:
+        patch.setattr(relative_load, "first_hopf_force", lambda rod: pytest.fail("solved in the page"))
+        page = page_with(solvers, state=state)
+        page.change({"pressure": "1.3 of flutter"})
+        page.change({"pressure": "1.2 of flutter"})
+    request = [request for request in solvers.requests if request.kind == "load"][-1]
+    assert page.contents.sign.text.startswith("solving load, ")
+    page._on_answer(request, Reply("answer", answer_to(request), 0.0))
+    for picture in (page.contents.growth, page.contents.branches):
+        assert picture.load_line.location == pytest.approx(flutter_kPa, rel=1e-8)
+    assert page.contents.diagram.point_source.data["x"] == pytest.approx([flutter_kPa], rel=1e-8)
+    solvers.requests.clear()
+    page.change({"pressure": "3 kPa"})
+    assert "load" not in {request.kind for request in solvers.requests}
+    assert page.contents.growth.load_line.location == pytest.approx(3.0)
+
+
+def test_a_config_with_a_relative_load_opens_with_this_load(tmp_path):
+    """It was refused, though the control of the pressure takes such a load."""
+    config = tmp_path / "c.yaml"
+    arm = "length: 10 cm, radius: 5 mm, young: 100 kPa, viscosity: 12 Pa s"
+    config.write_text(
+        f"task: limit_cycle\nparameters: {{arm: {{{arm}, pressure: [1.1 of flutter, 1.2 of flutter]}}}}\n"
+    )
+    state, stored = page_state_of_file(config)
+    assert (state.arm["pressure"], stored) == ("1.2 of flutter", None)
+    assert "1.2 of flutter" in state.yaml("limit_cycle")

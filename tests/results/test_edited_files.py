@@ -5,6 +5,8 @@ Eight random edits of a file of each task here; RODSWEEP_CASES=N asks for N time
 
 import os
 import shutil
+import subprocess
+import sys
 from random import Random
 
 import h5py
@@ -141,3 +143,18 @@ def test_a_dimension_that_refers_to_nothing_is_refused(results, tmp_path):
         data.attrs.create("DIMENSION_LIST", nowhere, dtype=kind)
     with pytest.raises(InputError, match="the dimensions of status were changed after rodsweep wrote them"):
         read_view(path)
+
+
+def test_a_file_that_another_process_writes_is_named_as_such(results, tmp_path):
+    """The sentence said that the content differs from the checksum, though the file is whole."""
+    path = tmp_path / "open.h5"
+    shutil.copy(results / "spectrum.h5", path)
+    code = "import h5py, sys; f = h5py.File(sys.argv[1], 'r+'); print('open', flush=True); sys.stdin.read()"
+    with subprocess.Popen(
+        [sys.executable, "-c", code, path], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    ) as writer:
+        assert writer.stdout.readline() == "open\n"
+        with pytest.raises(InputError, match="another process has it open for writing; close it there"):
+            open_result(path)
+        writer.stdin.close()
+    assert open_result(path).sizes

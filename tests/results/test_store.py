@@ -287,7 +287,7 @@ def test_two_runs_on_one_file_are_refused(tmp_path, monkeypatch):
 def test_difference_names_the_first_key_that_differs():
     assert config_difference({"a": {"b": 1}}, {"a": {"b": 1}}) == ""
     assert config_difference({"a": {"b": 1}}, {"a": {"b": 2}}) == "a.b is 1 in the file and 2 in the config"
-    assert config_difference({"a": 1, "c": 2}, {"a": 1}) == "c is 2 in the file and null in the config"
+    assert config_difference({"a": 1, "c": 2}, {"a": 1}) == "c is 2 in the file and not given in the config"
     assert (
         config_difference({"a": [1, 2]}, {"a": [1, 3]}) == "a is [1, 2] in the file and [1, 3] in the config"
     )

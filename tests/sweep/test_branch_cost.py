@@ -44,3 +44,18 @@ def test_check_of_a_diagram_with_cycles_says_when_its_time_is_not_known(tmp_path
     print_job_check(job_of_file(path, ()))
     text = " ".join(capsys.readouterr().out.split())
     assert ("this estimate is uncertain: branches of rubber" in text) is not known
+    assert "not counted, because only the run shows them: branches beyond the range, curves of folds" in text
+    assert "rows that such a curve shows to have a detached branch" in text
+
+
+@pytest.mark.parametrize(("F", "known"), [("[60, 300]", True), ("[60, 400]", False)])
+def test_check_says_that_cycles_far_above_flutter_may_take_longer(tmp_path, capsys, F, known):
+    """0.2 s were foreseen for rods whose motion does not repeat; it took more than 60 s."""
+    path = tmp_path / "c.yaml"
+    path.write_text(f"task: limit_cycle\nparameters: {{F: {F}, k1: 1.0e4, k2: 1.0e4, gamma3: 1.0e-4}}\n")
+    print_job_check(job_of_file(path, ()))
+    text = " ".join(capsys.readouterr().out.split())
+    assert (
+        "this estimate is uncertain: rods far above flutter, whose motion may not repeat, may" in text
+    ) is (not known)
+    assert "not counted" not in text

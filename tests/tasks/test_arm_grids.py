@@ -260,8 +260,12 @@ def test_extension_gives_the_file_of_the_larger_grid(command, config, old, new, 
             "radius: 4 mm",
             "parameters.arm.radius is 0.005 in the file and 0.004 in the config",
         ),
-        ("spectrum: {", "  gamma3: 0.001\nspectrum: {", "parameters.gamma3 is null in the file"),
-        ("radius: 5 mm", "radius: [5 mm, 6 mm]", "arm.radius is 0.005 in the file and null in the config"),
+        ("spectrum: {", "  gamma3: 0.001\nspectrum: {", "parameters.gamma3 is not given in the file"),
+        (
+            "radius: 5 mm",
+            "radius: [5 mm, 6 mm]",
+            "radius is 0.005 in the file and variable in the config",
+        ),
     ],
 )
 def test_what_is_no_extension_is_refused_in_a_sentence(command, old, new, sentence):

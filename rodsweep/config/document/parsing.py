@@ -119,5 +119,6 @@ def _refuse_scalar(event: ScalarEvent) -> None:
         raise InputError(f"{short_repr(text)} has characters that cannot be printed")
     if event.style is None and text == "<<":
         raise InputError("merge keys (<<) are not allowed in a config")
-    if event.style is None and overflows_float(text):
+    is_integer = text.lstrip("+-").isdigit()  # refused later, with its key
+    if event.style is None and overflows_float(text) and not is_integer:
         raise InputError(f"{short_repr(text)} is too large for a floating-point number")

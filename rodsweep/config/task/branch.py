@@ -14,7 +14,7 @@ from ...model.parameters import (
 )
 from ..base_config import Config
 from ..parameters_section import DEFAULT_VALUES_OF_PARAMETERS, NonlinearParametersSection
-from ..values import Number, StrictConfigSection
+from ..values import Number, StrictConfigSection, short_repr
 
 
 class BranchOptions(StrictConfigSection):
@@ -82,6 +82,20 @@ class BranchConfig(Config):
     def rod_parameters_used(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
         return parameter_names_except(options.get("along", "F"), NONLINEAR_PARAMETERS)
 
+    @classmethod
+    def refuse_options_of_arm(cls, options: Mapping[str, Any]) -> None:
+        along = options.get("along", "F")
+        if along != "F" and along in TRANSVERSE_PARAMETERS:
+            raise ValueError(
+                f"branch.along: {along} is not allowed with parameters.arm, which gives {along}; follow F, "
+                "or give the parameters without an arm"
+            )
+        if along != "F":
+            raise ValueError(
+                f"branch.along = {short_repr(along)} is not allowed for an arm; leave along out, and the "
+                "branches follow the load of the arm, as F, from start to stop"
+            )
+
     @model_validator(mode="before")
     @classmethod
     def _without_default_of_followed(cls, section: Any) -> Any:
@@ -106,10 +120,7 @@ class BranchConfig(Config):
             f"follows {parameter}; remove it and set branch.start and branch.stop, or another branch.along"
         )
         self.refuse_solved_parameter(parameter, reason)
-        if self.parameters.arm is not None and parameter != "F":
-            raise ValueError(
-                f"branch.along: {parameter} is not allowed with parameters.arm, which gives {parameter}; "
-                "follow F, or give the parameters without an arm"
-            )
+        if self.parameters.arm is not None:
+            self.refuse_options_of_arm({"along": parameter})
         self.parameters.require_points(self.parameter_names)
         return self

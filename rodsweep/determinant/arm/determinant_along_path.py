@@ -209,17 +209,27 @@ class ArmAlongPath:
         """Returns (stencil, step) of a difference by p. stencil: pairs (offset in steps, weight times step).
         step: at most `max_step`.
 
-        The step is shortened, at most `max_step_divisions` times, until both neighbouring arms are valid: not
-        crushed, no negative compliance or drag. The stencil is one-sided at p = 0, unless p is the force.
+        The step is shortened, at most `max_step_divisions` times, until all neighbouring arms are valid: not
+        crushed, no negative compliance or drag. The stencil is one-sided at p = 0, and where p is so small
+        that no shortened step keeps p - step positive, unless p is the force.
         """
-        step = min(ROOT_NEWTON_SETTINGS.jacobian_step_ratio * max(abs(p), 1.0), max_step)
+        first_step = min(ROOT_NEWTON_SETTINGS.jacobian_step_ratio * max(abs(p), 1.0), max_step)
         if p == 0 and self.path.name != "F":
-            return FORWARD_DIFFERENCE_STENCIL, step
+            return FORWARD_DIFFERENCE_STENCIL, first_step
+        central_step = self._valid_step(p, first_step, CENTRAL_DIFFERENCE_STENCIL)
+        if central_step is not None:
+            return CENTRAL_DIFFERENCE_STENCIL, central_step
+        forward_step = self._valid_step(p, first_step, FORWARD_DIFFERENCE_STENCIL)
+        return FORWARD_DIFFERENCE_STENCIL, forward_step or first_step
+
+    def _valid_step(self, p: float, step: float, stencil: tuple[tuple[int, float], ...]) -> float | None:
+        """The difference step `step` at p, shortened until all neighbours of `stencil` are valid arms; None
+        if the shortest allowed step has an invalid neighbour."""
         for _ in range(ARM_DOUBLE_EIGENVALUE_SETTINGS.max_step_divisions):
-            if self._is_valid_at(p + step) and self._is_valid_at(p - step):
-                break
+            if all(self._is_valid_at(p + offset * step) for offset, _ in stencil):
+                return step
             step /= ARM_DOUBLE_EIGENVALUE_SETTINGS.step_divisor
-        return CENTRAL_DIFFERENCE_STENCIL, step
+        return None
 
     def _is_valid_at(self, p: float) -> bool:
         """Whether the arm at p is valid."""

@@ -1,4 +1,4 @@
-"""Dense matrices of the mixed form about a straight arm whose elements differ from each other.
+"""Sparse matrices of the mixed form about a straight arm whose elements differ from each other.
 
 `WholeRodMatrices` has the same methods as `StraightElements` of `rodsweep.discretization.straight.elements`,
 which uses the equal elements of a uniform rod.
@@ -9,11 +9,13 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csc_array, diags_array
+from scipy.sparse.linalg import SuperLU, splu
 
 from ...arrays import Array, Complex
 from ...model.balance import Values
 from ..state_layout import PLANE_COMPONENT_COUNT
-from .elements import LU, StraightElements, lu_factorisation, solve_factorised
+from .elements import StraightElements
 from .mixed_form import MixedForm
 
 
@@ -34,9 +36,10 @@ class WholeRodMatrices:
         return np.flatnonzero(self.form.layout.state(mask, mask))
 
     @cached_property
-    def A(self) -> Array:
-        """Rows and columns of the matrix A for the n unknowns of `components`, (n, n)."""
-        return self.form.A[np.ix_(self.state_indices, self.state_indices)]
+    def A(self) -> csc_array:
+        """Rows and columns of the matrix A for the n unknowns of `components`, (n, n). Unknowns of different
+        elements are coupled only at the nodes between elements."""
+        return csc_array(self.form.A[np.ix_(self.state_indices, self.state_indices)])
 
     @cached_property
     def M(self) -> Array:
@@ -54,11 +57,11 @@ class WholeRodMatrices:
     def product_magnitude(self, p: Values, q: Values) -> float:
         """The number |p| |A| |q|, with the modulus of every entry. The rounding error of p A q is about
         machine epsilon times this number. p, q: (unknowns,)."""
-        return float(np.abs(p[self.state_indices]) @ (np.abs(self.A) @ np.abs(q[self.state_indices])))
+        return float(np.abs(p[self.state_indices]) @ (abs(self.A) @ np.abs(q[self.state_indices])))
 
     def lu_factors(self, shift: complex) -> "WholeRodFactors":
         """LU factorisation of A - shift M."""
-        return WholeRodFactors(self, lu_factorisation(self.A - np.diag(shift * self.M).astype(complex)))
+        return WholeRodFactors(self, splu(csc_array(self.A - diags_array(shift * self.M), dtype=complex)))
 
     def _scatter(self, values: Values) -> Values:
         """A state, (unknowns,), with `values`, (n,), in the unknowns of `components`, 0 in all others."""
@@ -69,15 +72,16 @@ class WholeRodMatrices:
 
 @dataclass(frozen=True, eq=False)
 class WholeRodFactors:
-    """LU factorisation of the dense matrix K = A - shift M."""
+    """LU factorisation of the sparse matrix K = A - shift M."""
 
     matrices: WholeRodMatrices
-    factors: LU
+    factors: SuperLU
 
     def solve(self, b: Values, adjoint: bool = False) -> Complex:
         """The solution x, (unknowns,), of K x = b or, if `adjoint`, of K^H x = b; b: (unknowns,)."""
         matrices = self.matrices
-        x: Complex = matrices._scatter(solve_factorised(self.factors, b[matrices.state_indices], adjoint))
+        right_side = b[matrices.state_indices].astype(complex)
+        x: Complex = matrices._scatter(self.factors.solve(right_side, trans="H" if adjoint else "N"))
         return x
 
 

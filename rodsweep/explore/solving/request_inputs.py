@@ -16,6 +16,9 @@ AnswerInputs = tuple[PageState, TipPosition | None]
 """Part of the page's state, and position of the dragged tip, on which an answer depends."""
 INSTANT_KINDS = ("spectrum", "cycle", "thresholds", "growth")
 """Kinds of requests that are sent after every change of the controls."""
+LOAD_KIND = "load"
+"""Kind of the request for the load of an arm. The request is sent after a change of the controls if the load
+is relative to flutter, because only a solver process may search for the flutter threshold."""
 IDLE_KINDS = ("branch", "diagram")
 """Kinds of requests that take seconds; they are sent once the controls have not changed for
 `PAUSE_MILLISECONDS`."""
@@ -33,7 +36,7 @@ def inputs_of_request(request: SolveRequest) -> AnswerInputs:
     answer are blank. tip: position of the tip if the answer depends on the tip, else None."""
     kind = request.kind
     state = request.state
-    if kind in ("spectrum", "cycle", "film", *TIP_KINDS):
+    if kind in ("spectrum", "cycle", "film", LOAD_KIND, *TIP_KINDS):
         return replace(state, across="", F_max=""), request.tip
     blank = {state.load: ""}
     if kind in ("diagram", "cycles"):

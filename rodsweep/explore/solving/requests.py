@@ -109,6 +109,11 @@ def cycle_answer(state: PageState) -> AnswerVariables:
     return answer_variables(cycle) | dragged_equilibrium(state, None)
 
 
+def load_answer(state: PageState) -> AnswerVariables:
+    """The load F in k3/L^2. For a load relative to flutter the flutter threshold is solved first."""
+    return {"F": rod_of(state.subject())["F"]}
+
+
 def film_answer(state: PageState) -> AnswerVariables:
     """Film of the limit cycle, as made by `rodsweep plot`: the content of a GIF file, under the name `gif`.
     Raises InputError if the rod has no cycle."""
@@ -141,6 +146,7 @@ def crushing_force(rod: Mapping[str, float]) -> float:
 
 
 STATE_SOLVERS: dict[str, Callable[[PageState], AnswerVariables]] = {
+    "load": load_answer,
     "spectrum": spectrum_answer,
     "thresholds": thresholds_answer,
     "growth": growth_answer,

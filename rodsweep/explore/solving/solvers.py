@@ -31,7 +31,7 @@ def ignore_progress(reply: Reply) -> None:
 PROCESS_GROUPS = {
     "spectrum": "spectrum", "thresholds": "thresholds", "growth": "thresholds", "cycle": "cycle",
     "branch": "branch", "diagram": "diagram", "bent": "spectrum", "motion": "cycle", "film": "film",
-    "cycles": "diagram",
+    "cycles": "diagram", "load": "spectrum",
 }  # fmt: skip
 """Process group of each kind of request, chosen so that fast requests do not wait for slow requests."""
 GROUP_NICENESS = {"spectrum": 0, "cycle": 10, "thresholds": 12, "branch": 15, "diagram": 15, "film": 15}

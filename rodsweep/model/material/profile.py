@@ -83,12 +83,16 @@ class Profile:
             coefficients.append(np.stack([from_lower, from_upper], axis=1))
         return np.ascontiguousarray(np.concatenate(coefficients, axis=2).transpose(0, 3, 1, 2))
 
-    def with_factors_above(self, name: str, min_factor: float) -> "Profile":
-        """The profile whose factors of the stiffness or drag `name` are raised to at least `min_factor` in
-        every row, and thus everywhere, because factors between two rows lie between the factors of the
-        rows."""
+    def with_factors_above(self, name: str, min_factor: float, taper: float = 1.0) -> "Profile":
+        """The profile that makes the stiffness or drag `name` of an arm at least `min_factor` times its value
+        at the base in every row; between two rows factors lie between the factors of the rows. taper: tip
+        radius over base radius of the arm."""
         column = FACTOR_NAMES.index(name)
-        rows = (row[:column] + (max(row[column], min_factor),) + row[column + 1 :] for row in self.rows)
+        exponent = RADIUS_POWERS.get(name, 0)
+        rows = []
+        for u, row in zip(self.u, self.rows, strict=True):
+            factor = max(row[column], min_factor / (1 - (1 - taper) * u) ** exponent)
+            rows.append(row[:column] + (factor,) + row[column + 1 :])
         return Profile(self.u, tuple(rows))
 
     def factors_at(self, u: Array) -> Array:

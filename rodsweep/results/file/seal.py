@@ -6,6 +6,7 @@ invisible to other programs. A flipped bit in the structures can make HDF5 loop 
 checksum is therefore compared before HDF5 reads the file. A program that changes the file by HDF5 removes the
 checksum."""
 
+import fcntl
 import json
 import os
 import zlib
@@ -33,6 +34,10 @@ MAX_INCLUDED_BYTES = 1 << 16
 """Size of a variable, in bytes, up to which the checksum of HDF5's structures includes its numbers."""
 ByteRange = tuple[int, int]
 """Byte range of a file: (offset, size), in bytes."""
+
+
+OPEN_FOR_WRITING = "another process has it open for writing; close it there and try again"
+"""Clause about a file on which HDF5 holds its lock for writing."""
 
 
 class ChecksumMismatch(ValueError):
@@ -74,14 +79,28 @@ def has_valid_structure_checksum(path: Path) -> bool:
         try:
             stored_checksums = json.loads(data[len(CHECKSUM_HEAD) :])
             ranges = [(int(start), int(length)) for start, length in stored_checksums["pieces"]]
+            is_locked = _is_locked_for_writing(stream)
             is_valid = stored_checksums["end"] == end and stored_checksums["frame"] == _checksum(
                 stream, _left_out_pieces(ranges, end)
             )
         except (LookupError, TypeError, ValueError, OverflowError, RecursionError, OSError):
             raise ChecksumMismatch("its checksum cannot be read") from None
+    if not is_valid and is_locked:
+        raise ChecksumMismatch(OPEN_FOR_WRITING)
     if not is_valid:
         raise ChecksumMismatch("its content differs from its checksum")
     return True
+
+
+def _is_locked_for_writing(stream: BinaryIO) -> bool:
+    """Whether HDF5 holds its lock for writing on the open file, in any process. Such a file has a mark that
+    its checksum does not cover."""
+    try:
+        fcntl.flock(stream, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return True
+    fcntl.flock(stream, fcntl.LOCK_UN)
+    return False
 
 
 def _hdf5_end(stream: BinaryIO) -> int:

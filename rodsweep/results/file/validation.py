@@ -18,7 +18,7 @@ from ..layouts.variables import Layout
 from .combination.identity import fingerprint_of
 from .content_digests import refuse_changed
 from .points import points_of_open_file
-from .seal import HDF5_SIGNATURE, has_valid_structure_checksum
+from .seal import HDF5_SIGNATURE, OPEN_FOR_WRITING, has_valid_structure_checksum
 
 PROGRAM = "rodsweep"
 """Value of the attribute `program` of result files."""
@@ -36,6 +36,10 @@ DAMAGE_EXCEPTIONS = (OSError, LookupError, ValueError, TypeError, RuntimeError, 
 """Exceptions that h5py, or the use of the data it reads, raises for a damaged file."""
 
 
+HDF5_LOCK_MESSAGE = "unable to lock file"
+"""Part of the message with which HDF5 refuses a file that another process has open for writing."""
+
+
 class InvalidResultFile(InputError):
     """Raised for a file that is not a rodsweep result, is damaged, or was changed."""
 
@@ -47,9 +51,8 @@ def damage_refusals(path: Path) -> Iterator[None]:
     try:
         yield
     except DAMAGE_EXCEPTIONS as error:
-        raise InvalidResultFile(
-            f"{path} cannot be read as a result of rodsweep: {one_line_message(error)}"
-        ) from None
+        reason = OPEN_FOR_WRITING if HDF5_LOCK_MESSAGE in str(error) else one_line_message(error)
+        raise InvalidResultFile(f"{path} cannot be read as a result of rodsweep: {reason}") from None
 
 
 def one_line_message(error: Exception) -> str:

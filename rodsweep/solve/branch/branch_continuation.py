@@ -18,7 +18,7 @@ from .branch_mesh_choice import is_measurement_due
 from .branch_record import BranchRecord, branch_end_point
 from .computing_time import fraction_done
 from .mirror_image_end import end_at_mirror_image, reaches_mirror_image
-from .range_end import cycle_at_zero_coordinate, cycle_within_range, range_end_condition
+from .range_end import cycle_at_end_beside_zero, cycle_within_range, range_end_condition
 from .special.detection import fold_and_breaking_between, lie_on_one_branch, special_points_between
 from .special.locating import special_point_between
 from .special.special_point import SpecialKind, SpecialPoint
@@ -160,8 +160,8 @@ def _append_next_cycle(
     if len(curve.points) >= limits.max_cycles:
         return BranchEnd(branch_end_point(start, BranchEndReason.list_full), complete=False, list_full=True)
     try:
-        cycle_at_zero = cycle_at_zero_coordinate(start, limits.coordinate_range[0], limits.accuracy)
-        end = cycle_at_zero or next_cycle(start, limits.accuracy)
+        cycle_at_end = cycle_at_end_beside_zero(start, limits.coordinate_range[0], limits.accuracy)
+        end = cycle_at_end or next_cycle(start, limits.accuracy)
         next_length = end.next_arc_length
         if (replacement := _end_or_shorter_step(start, end, limits)) is not None:
             return replacement

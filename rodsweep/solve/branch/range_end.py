@@ -1,6 +1,7 @@
 """The last cycle of a branch, at an end of the parameter range."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from numpy.polynomial import Polynomial
 
@@ -67,21 +68,24 @@ def _length_within_range(beyond: Callable[[float], float], step: float) -> float
     return 0.0
 
 
-def cycle_at_zero_coordinate(start: BranchCycle, low: float, accuracy: float) -> BranchCycle | None:
-    """The cycle at the coordinate 0, for a parameter that cannot be negative, so that no step can overshoot
-    this end. None unless the range begins at 0 and the tangent at `start` reaches 0 within the next step;
-    also None if no cycle is found there, for example because the branch has a fold before 0. low: smallest
-    coordinate of the range. Raises WorkLimitReached."""
+def cycle_at_end_beside_zero(start: BranchCycle, low: float, accuracy: float) -> BranchCycle | None:
+    """The cycle at the smallest coordinate `low` of the range, for a parameter that cannot be negative, if
+    the next step could pass the coordinate 0, where no rod is. None unless the tangent at `start` reaches 0
+    within the next step; also None if no cycle is found, as when the branch folds before `low`. Raises
+    WorkLimitReached."""
     rate = float(start.tangent[-1])
-    may_be_negative = PARAMETERS[start.scale.parameter_name].allowed.contains(-1.0)
-    if may_be_negative or low != 0 or rate >= 0 or -start.parameter_coordinate / rate > start.next_arc_length:
+    coordinate = start.parameter_coordinate
+    name = start.scale.parameter_name
+    may_be_negative = PARAMETERS[name].allowed.contains(-1.0)
+    if may_be_negative or low < 0 or rate >= 0 or -coordinate / rate > start.next_arc_length:
         return None
-    length = -start.parameter_coordinate / rate
+    length = (low - coordinate) / rate
     change = length * start.tangent
-    change[-1] = -start.parameter_coordinate  # exactly to 0
+    change[-1] = low - coordinate
     try:
-        predicted = moved_orbit(start.orbit, start.scale.parameter_name, change)
-        return _solved_at_range_end(start, predicted, length, range_end_condition(start, 0.0), accuracy)
+        predicted = moved_orbit(start.orbit, name, change)
+        predicted = replace(predicted, form=predicted.form.with_coordinate(name, low))  # without rounding
+        return _solved_at_range_end(start, predicted, length, range_end_condition(start, low), accuracy)
     except WorkLimitReached:
         raise
     except Unsolvable:

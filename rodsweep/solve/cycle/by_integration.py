@@ -17,7 +17,6 @@ from ...arrays import Array
 from ...discretization.elements.mesh import mesh_with_edges
 from ...discretization.explicit_system import ExplicitSystem
 from ...discretization.stress.form import StressForm
-from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 from ...solve_progress import SolvePosition, report
 from ..motion.integrator import RunLimit, Trajectory, destroy_integrators, integrator, relax_fast_components
@@ -215,15 +214,7 @@ class _IntegrationUntilSettled:
     ) -> CycleErrors:
         """`errors` plus the error of integrating a nearby rod instead of a limiting rod; raises
         NoCycleFound."""
-        integrated_rod = cycle.orbit.form.rod
-        limit = self.limiting_rod
-        limit_names = [name for name in PARAMETERS if integrated_rod.values[name] != limit.values[name]]
-        # The coordinate of a limit is 0, so twice the coordinate is twice the distance from the limit.
-        coordinates = {
-            name: INTEGRATION_SETTINGS.second_rod_distance_ratio * integrated_rod.coordinate(name)
-            for name in limit_names
-        }
-        self.rod = limit.with_values(**{n: PARAMETERS[n].value(c) for n, c in coordinates.items()})
+        self.rod = integrable_rod(self.limiting_rod, INTEGRATION_SETTINGS.second_rod_distance_ratio)
         self.system = ExplicitSystem(self.rod, self.mesh)
         z = relax_fast_components(self.system, settled.state, self.leading_mode.period)
         limit_errors = errors_of_two_integrations(

@@ -225,7 +225,7 @@ def orbit_in_steps(
             solved_orbit, length = advance(step, min(length, 1.0 - fraction), PARAMETER_STEP_CONTROL)
         except Unsolvable as reason:
             raise Unsolvable(
-                "the branch of cycles cannot be followed: the branch ends or has a fold"
+                "the branch of cycles cannot be followed: it ends, has a fold, or needs shorter steps"
             ) from reason
         fraction += length
         if fraction >= 1.0:

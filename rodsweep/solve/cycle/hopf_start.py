@@ -7,6 +7,7 @@ close to the Hopf point, because the mesh may displace the Hopf point beyond the
 """
 
 from dataclasses import dataclass, replace
+from functools import partial
 from math import isfinite, isnan
 
 import numpy as np
@@ -20,7 +21,7 @@ from ..changes.arm.path import path_problem
 from ..changes.path_problem import PathProblem
 from ..hopf.normal_form import NormalForm, normal_form_by_mesh_rule
 from ..orbit.matrix.workspace import NewtonWorkspace
-from ..orbit.newton import newton, with_matrix_within_distance
+from ..orbit.newton import ConvergedOrbit, newton, with_matrix_within_distance
 from ..orbit.orbit import Orbit, node_times
 from ..orbit.symmetry import REFLECTION
 from ..spectrum.candidates import CANDIDATE_SETTINGS
@@ -130,8 +131,7 @@ def orbit_from_hopf(form: StressForm, hopf: HopfPointBelow, workspace: NewtonWor
     starts towards smaller forces or cannot be followed.
     """
     rod = form.rod
-    hopf_rod = replace(rod, F=hopf.F)
-    normal = _normal_form(replace(form, rod=hopf_rod), 1j * hopf.frequency)
+    normal = _normal_form(replace(form, rod=replace(rod, F=hopf.F)), 1j * hopf.frequency)
     if not normal.amplitude_coefficient > 0:
         reason = "starts towards smaller forces: follow it with the task `branch`"
         raise Unsolvable(f"the branch from the Hopf point at F = {hopf.F:g} {reason}")
@@ -139,11 +139,14 @@ def orbit_from_hopf(form: StressForm, hopf: HopfPointBelow, workspace: NewtonWor
     if is_near and normal.squared_y_and_frequency(rod.F)[0] <= HOPF_START_SETTINGS.max_direct_y**2:
         return orbit_by_normal_form(normal, replace(form, mesh=normal.form.mesh))
     coarse_form = replace(form, mesh=coarse_mesh_along_branch(rod))
-    for force_distance in HOPF_START_SETTINGS.start_force_distances:
+    forces = [min(rod.F, hopf.F * (1 + distance)) for distance in HOPF_START_SETTINGS.start_force_distances]
+    attempts = [partial(_orbit_along_force, normal, F, coarse_form, workspace) for F in forces]
+    fine_form = replace(form, mesh=normal.form.mesh)
+    distances = [(y / normal.amplitude_coefficient) ** 2 for y in HOPF_START_SETTINGS.start_amplitudes]
+    attempts += [partial(_orbit_in_stages, normal, each, fine_form, workspace) for each in distances]
+    for attempt in attempts:
         try:
-            return _orbit_along_force(
-                normal, min(rod.F, hopf.F * (1 + force_distance)), coarse_form, workspace
-            )
+            return attempt()
         except Unsolvable as error:
             failure = error
     raise failure
@@ -182,23 +185,47 @@ def _normal_form(form: StressForm, w: complex) -> NormalForm:
 
 
 def _orbit_along_force(normal: NormalForm, F: float, form: StressForm, workspace: NewtonWorkspace) -> Orbit:
-    """Orbit of the rod in `form`, followed along the force from the orbit of the normal form at the force F;
-    raises Unsolvable if the first solved orbit is far from the normal form's, or the branch cannot be
-    followed."""
+    """Orbit of the rod in `form`, followed along the force from the normal form's orbit at the force F;
+    raises Unsolvable if the first orbit is far from the normal form or the branch cannot be followed."""
+    solved_orbit = _orbit_near_normal_form(normal, F, form, workspace)
+    if form.rod.F == F:
+        return solved_orbit.orbit
+    tolerance = HOPF_START_SETTINGS.intermediate_orbit_tolerance
+    return orbit_in_steps(predictor_from(solved_orbit, None, "F"), form, "F", tolerance, workspace).orbit
+
+
+def _orbit_in_stages(
+    normal: NormalForm, distance: float, form: StressForm, workspace: NewtonWorkspace
+) -> Orbit:
+    """Orbit of the rod in `form`, followed along the force from the normal form's orbit at the relative
+    distance `distance` above the Hopf point, in stages that grow with the distance: near the Hopf point y is
+    the square root of the distance. Raises Unsolvable for the reasons of `_orbit_along_force`."""
+    F = min(form.rod.F, normal.F * (1 + distance))
+    tolerance = HOPF_START_SETTINGS.intermediate_orbit_tolerance
+    solved_orbit = _orbit_near_normal_form(normal, F, form, workspace)
+    while form.rod.F > F:
+        distance *= HOPF_START_SETTINGS.stage_ratio
+        F = min(form.rod.F, normal.F * (1 + distance))
+        end_form = replace(form, rod=replace(form.rod, F=F))
+        end = orbit_in_steps(predictor_from(solved_orbit, None, "F"), end_form, "F", tolerance, workspace)
+        solved_orbit = with_matrix_within_distance(end, tolerance, "F")
+    return solved_orbit.orbit
+
+
+def _orbit_near_normal_form(
+    normal: NormalForm, F: float, form: StressForm, workspace: NewtonWorkspace
+) -> ConvergedOrbit:
+    """Orbit of the rod in `form` at the force F, with its tangent, near the normal form's orbit; raises
+    Unsolvable."""
     start = orbit_by_normal_form(normal, replace(form, rod=replace(form.rod, F=F)))
     tolerance = HOPF_START_SETTINGS.intermediate_orbit_tolerance
     solved_orbit = with_matrix_within_distance(newton(start, tolerance, workspace, "F"), tolerance, "F")
-    squared_y = normal.squared_y_and_frequency(F)[0]
+    orbit = solved_orbit.orbit
+    tip_y = orbit.form.tip_coordinates(orbit.start_state)[1]
     min_ratio, max_ratio = HOPF_START_SETTINGS.squared_amplitude_ratios
-    if (
-        not min_ratio
-        < solved_orbit.orbit.form.tip_coordinates(solved_orbit.orbit.start_state)[1] ** 2 / squared_y
-        < max_ratio
-    ):
+    if not min_ratio < tip_y**2 / normal.squared_y_and_frequency(F)[0] < max_ratio:
         raise Unsolvable(f"the orbit is not near the prediction from the Hopf point at F = {normal.F:g}")
-    if form.rod.F == F:
-        return solved_orbit.orbit
-    return orbit_in_steps(predictor_from(solved_orbit, None, "F"), form, "F", tolerance, workspace).orbit
+    return solved_orbit
 
 
 def orbit_by_normal_form(normal: NormalForm, form: StressForm) -> Orbit:

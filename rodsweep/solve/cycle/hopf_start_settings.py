@@ -38,6 +38,14 @@ class HopfStartSettings:
     form's orbit, tried in this order until Newton's method succeeds. For most rods the amplitude of the
     normal form has an error of 25 percent at the first distance, of 10 percent at the second. The last two
     are for rods of small axial drag, whose cycles may grow ten times as fast."""
+    start_amplitudes: tuple[float, ...] = (0.3, 0.15, 0.08, 0.04)
+    """Largest y, in L, of normal form's orbits from which the branch is followed in stages, tried in this
+    order if Newton's method fails from all `start_force_distances`. Rods of small axial drag have y = 0.6 at
+    a relative distance of 1e-3 above the Hopf point; 14 of 16 such rods reach their cycle from one of these
+    orbits. The other two have y > 1 already at 3e-4 by the normal form, which then fails everywhere."""
+    stage_ratio: float = 3.0
+    """Relative distance of the force from the Hopf point at the end of a stage, divided by that at its
+    start."""
     squared_amplitude_ratios: tuple[float, float] = 0.3, 3.0
     """Smallest and largest allowed ratio of the squared largest y of the solved orbit to the squared largest
     y of the normal form."""

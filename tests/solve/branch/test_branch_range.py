@@ -74,6 +74,30 @@ def test_cycles_are_the_same_whether_omega_is_an_unknown_or_eliminated():
     assert abs(one.tip_y_max - other.tip_y_max) <= one.tip_y_max_error + other.tip_y_max_error < 1e-5
 
 
+@pytest.mark.parametrize("stop", [1e9, 1e14, 1e300])
+def test_a_branch_along_a_stiffness_ends_almost_at_infinity(stop):
+    """Steps beyond the end of the range reached negative compliances: "stopped" at k1 = -6e9."""
+    rod = Rod(F=40.0, k1=1e4, k2=255.4, gamma3=7.3e-4, gamma1=0.654)
+    ends = []
+    for end in (1e5, 2e5, stop):
+        found = solve_branches(rod, BranchRequest("k1", 50.0, end, 1e-6, False, 100, 10))
+        assert found.status == BranchStatus.ok
+        (curve,) = found.curves
+        ends.append(curve.special_points[-1])
+        assert ends[-1].reason == BranchEndReason.range_end
+        assert curve.points[-1].parameter_value == pytest.approx(end, rel=1e-12)
+    # Linear in 1/k1: from 1e5 to infinity y changes by 1e-3, so that squares are 1e-6.
+    y = [end.tip_y_max for end in ends]
+    assert y[2] == pytest.approx(2 * y[1] - y[0], rel=1e-5)
+
+
+def test_a_branch_of_a_cone_begins_at_almost_infinite_stiffness():
+    """Differences between determinants of neighbouring arms took negative compliances: a traceback."""
+    rod = Rod(F=80.0, k1=1e5, k2=11.94, gamma3=6.7e-4, gamma1=0.337, taper=0.5)
+    found = solve_branches(rod, BranchRequest("k1", 8704.0, 1e300, 1e-6, False, 100, 10))
+    assert found.status == BranchStatus.ok
+
+
 def test_a_branch_along_the_rotational_drag_ends_at_zero():
     """No rod has a negative drag, so that no step passes this end of the range."""
     rod = Rod(

@@ -14,6 +14,7 @@ from rodsweep.solve.branch.branch_request import BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
 from rodsweep.solve.branch.special.special_point import SpecialKind
 from rodsweep.solve.branch.status import BranchStatus
+from rodsweep.solve.cycle.by_integration import solve_by_integration
 from rodsweep.solve.cycle.cycle_outcome import CycleRequest
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
 from rodsweep.solve.cycle.status import CycleStatus
@@ -133,3 +134,59 @@ def test_a_fast_growing_branch_is_followed_from_its_hopf_point(distance):
     from_hopf, from_mode = (solve_cycle(rod, replace(REQUEST, start=start)) for start in ("hopf", "mode"))
     assert from_hopf.status == from_mode.status == CycleStatus.cycle
     assert from_hopf.measures.tip_y_max == pytest.approx(from_mode.measures.tip_y_max, rel=2e-5)
+
+
+@pytest.mark.parametrize(
+    ("gamma3", "factor", "taper"), [(1e-3, 1e-9, 1.0), (1e-2, 1e-5, 0.2), (0.0, 1.0, 1.0)]
+)
+def test_no_row_of_an_integrated_arm_has_less_rotational_drag_than_can_be_integrated(gamma3, factor, taper):
+    """The drag of the base alone was raised: the integrator found no time step with an acceptable error."""
+    rows = [[1.0] * len(FACTOR_NAMES) for _ in range(4)]
+    for row in rows[2:]:
+        row[FACTOR_NAMES.index("gamma3")] = factor
+    material = RodMaterial(profile=Profile((0.0, 0.5, 0.5, 1.0), tuple(map(tuple, rows))))
+    integrated = integrable_rod(replace(ROD, gamma3=gamma3, taper=taper, material=material))
+    column = FACTOR_NAMES.index("gamma3")
+    drags, given = (
+        [
+            drag * row[column] * (1 - (1 - taper) * u) ** 2
+            for u, row in zip(profile.u, profile.rows, strict=True)
+        ]
+        for drag, profile in ((integrated.gamma3, integrated.material.profile), (gamma3, material.profile))
+    )
+    least = MOTION_MESH_SETTINGS.min_drag
+    assert drags == pytest.approx([max(drag, least) for drag in given], rel=1e-12)
+
+
+def test_an_arm_with_hardly_any_rotational_drag_near_its_tip_is_integrated():
+    """Both ways to the cycle agree; the integrator found no time step with an acceptable error."""
+    rows = [[1.0] * len(FACTOR_NAMES) for _ in range(4)]
+    for row in rows[2:]:
+        row[FACTOR_NAMES.index("gamma3")] = 1e-6
+    material = RodMaterial(profile=Profile((0.0, 0.5, 0.5, 1.0), tuple(map(tuple, rows))))
+    arm = Rod(F=45.0, k1=1e4, k2=1e2, gamma3=1e-3, material=material)
+    integrated = solve_by_integration(arm, REQUEST)
+    collocated = solve_cycle(arm, REQUEST)
+    assert collocated.status == CycleStatus.cycle
+    assert integrated.measures is not None, integrated.message
+    assert integrated.measures.period == pytest.approx(collocated.measures.period, rel=2e-4)
+
+
+@pytest.mark.parametrize(
+    "rod",
+    [
+        Rod(F=41.71170139482839, k1=10254.55, k2=131.5513, gamma3=5.79084e-3, gamma1=9.35741e-3),
+        Rod(F=42.73824356728793, k1=1330.789, k2=305.63, gamma3=3.35181e-3, gamma1=3.184137e-3),
+        Rod(F=42.37503910773828, k1=3477.883, k2=7441.525, gamma3=5.41233e-3, gamma1=1.164375e-4),
+        Rod(F=40.45242119989657, k1=7421.1, k2=898.714, gamma3=2.36832e-3, gamma1=1.3362e-6),
+    ],
+    ids=lambda rod: f"{rod.gamma1:.0e}",
+)
+def test_a_branch_that_rises_steeply_is_followed_from_its_hopf_point(rod):
+    """The status was `not_settled`, because the branch "ends or has a fold"; it has none."""
+    request = replace(REQUEST, start="hopf", accuracy=1e-6)
+    cycles = [solve_cycle(rod, each) for each in (request, replace(request, start="mode"))]
+    assert [cycle.status for cycle in cycles] == [CycleStatus.cycle] * 2, cycles[0].message
+    hopf, mode = (cycle.measures for cycle in cycles)
+    assert hopf.period == pytest.approx(mode.period, rel=4e-6)
+    assert hopf.tip_y_max == pytest.approx(mode.tip_y_max, rel=4e-6)

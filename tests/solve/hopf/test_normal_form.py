@@ -15,7 +15,13 @@ from rodsweep.determinant.roots.newton import eigenvalue_newton
 from rodsweep.determinant.value import newton_correction_and_scales
 from rodsweep.model.rod import Coefficients, Rod
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
-from rodsweep.solve.hopf.normal_form import normal_form, normal_form_by_mesh_rule
+from rodsweep.solve.hopf.normal_form import (
+    elements_for_landau_coefficient,
+    elements_with_third_more_unknowns,
+    normal_form,
+    normal_form_by_mesh_rule,
+    normal_form_on,
+)
 from rodsweep.solve.unsolvable import Unsolvable
 
 INF = np.inf
@@ -277,3 +283,15 @@ def test_cycles_that_a_motion_in_time_reaches_are_born_as_the_normal_form_says()
     squared, slope = 2 * found[0] - found[1]
     assert squared * SOFT[0].F == pytest.approx(normal_of(*SOFT).amplitude_coefficient ** 2, rel=1e-4)
     assert slope == pytest.approx(normal_of(*SOFT).frequency_slope, rel=1e-4)
+
+
+def test_a_high_hopf_point_of_a_thin_cone_has_a_normal_form():
+    """At most 400 nodes were allowed: 348 have an error of 1e-11 there, but only a finer mesh shows it."""
+    cone = Rod(F=69.86250471383605, k1=5480.0, k2=326.0, gamma3=9.01e-3, taper=0.2)
+    w = 2559.553405456654j
+    meshes = [elements_for_landau_coefficient(cone, w, 1e-5)]
+    for _ in range(4):
+        meshes.append(elements_with_third_more_unknowns(meshes[-1]))
+    coarse, fine = (normal_form_on(elements, cone, w, 1e-8) for elements in meshes[-2:])
+    assert fine.form.mesh.node_count > 400
+    assert abs(fine.landau - coarse.landau) < 1e-10 * abs(fine.landau)

@@ -25,7 +25,7 @@ from ...layouts.variables import ExtensionRule, Layout
 from ..creation import FilePlan
 from ..points import stored_records
 from ..validation import ResultHeader
-from .identity import config_difference
+from .identity import compared_settings, config_difference
 
 ROUNDING_TOLERANCE = 4 * np.finfo(float).eps
 """Two values on an axis with at most this relative difference are treated as equal up to rounding."""
@@ -105,8 +105,8 @@ def extension_of(header: ResultHeader, points: Points, plan: FilePlan) -> Extens
     Raises InputError, naming the difference, if the plan lacks a point or a result of the stored file, or has
     another task, arm, material, accuracy or option that cannot be increased.
     """
-    in_file = config_from_resolved(header.config).settings_of_results
-    requested = config_from_resolved(plan.config).settings_of_results
+    in_file = compared_settings(config_from_resolved(header.config))
+    requested = compared_settings(config_from_resolved(plan.config))
     task = in_file["task"]
     _refuse_difference(header, config_difference(task, requested["task"], "task"))
     has_longer_line = False

@@ -13,11 +13,26 @@ from typing import Any
 import numpy as np
 
 from ....arrays import Array
+from ....config.base_config import Config
 from ....config.document.reading import config_from_resolved
 from ....config.parameters_section import ParametersSection
 
 LONGEST_VALUE = 80
 """Maximum number of characters of a value in a message; longer values are cut."""
+
+
+VARIABLE = "variable"
+"""Stands for the values of an arm's quantity that varies between the points of a config."""
+
+
+def compared_settings(config: Config) -> dict[str, Any]:
+    """`Config.settings_of_results`, in which a quantity of an arm is VARIABLE instead of None if it varies
+    between points, so that None means that a key is not given."""
+    settings = config.settings_of_results
+    if "arm" not in settings:
+        return settings
+    arm = {name: VARIABLE if value is None else value for name, value in settings["arm"].items()}
+    return settings | {"arm": arm}
 
 
 def fingerprint_of(config: dict[str, Any], columns: Sequence[Array]) -> str:
@@ -53,7 +68,7 @@ def config_change_text(stored: dict[str, Any], given: dict[str, Any]) -> str:
     return (
         config_difference(kinds[0], kinds[1], "parameters")
         or config_difference(written[0], written[1], "parameters")
-        or config_difference(configs[0].settings_of_results, configs[1].settings_of_results)
+        or config_difference(compared_settings(configs[0]), compared_settings(configs[1]))
         or "the points listed in parameters.points differ"
     )
 
@@ -81,11 +96,18 @@ def config_difference(
         return ""
     if stored == given:
         return ""
-    texts = json.dumps(stored), json.dumps(given)
-    if isinstance(stored, list) and isinstance(given, list) and max(map(len, texts)) > LONGEST_VALUE:
+    longest = max(len(json.dumps(value)) for value in (stored, given))
+    if isinstance(stored, list) and isinstance(given, list) and longest > LONGEST_VALUE:
         return f"{key} has {_list_difference(stored, given, origins)}"
-    value_texts = [f"{text[:LONGEST_VALUE]} in {origin}" for text, origin in zip(texts, origins, strict=True)]
-    return f"{key} is {value_texts[0]} and {value_texts[1]}"
+    texts = [_value_text(value) for value in (stored, given)]
+    return f"{key} is {texts[0]} in {origins[0]} and {texts[1]} in {origins[1]}"
+
+
+def _value_text(value: Any) -> str:
+    """A value of a config as text for a message, cut to LONGEST_VALUE characters."""
+    if value is None or value == VARIABLE:
+        return "not given" if value is None else VARIABLE
+    return json.dumps(value)[:LONGEST_VALUE]
 
 
 def _list_difference(stored: list[Any], given: list[Any], origins: tuple[str, str]) -> str:

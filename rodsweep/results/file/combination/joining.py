@@ -26,7 +26,7 @@ from ..points import points_of_file, records_at, stored_records, write_records
 from ..provenance import MAX_ATTRIBUTE_LENGTH, blas_kernels_in
 from ..validation import ResultHeader
 from .extension import ROUNDING_TOLERANCE, StoredPointMap, kind_of_points
-from .identity import config_difference
+from .identity import compared_settings, config_difference
 
 NOT_INHERITED_ATTRIBUTES = (
     "program", "format", "fingerprint", "config_resolved", "coordinates", "finished", "snapshot",
@@ -112,10 +112,10 @@ def _point_text(points: Points, index: int) -> str:
 def joined_file_of(sources: Sequence[ResultHeader], planner: FilePlanMaker) -> JoinedFile:
     """The `JoinedFile` of sources with different points; raises InputError if the files cannot be joined."""
     first, *other_sources = sources
-    settings = config_from_resolved(first.config).settings_of_results
+    settings = compared_settings(config_from_resolved(first.config))
     grids = [points_of_file(source.path, source.layout) for source in sources]
     for header, points in zip(other_sources, grids[1:], strict=True):
-        other_settings = config_from_resolved(header.config).settings_of_results | {"together": None}
+        other_settings = compared_settings(config_from_resolved(header.config)) | {"together": None}
         names = (first.path.name, header.path.name)
         difference = config_difference(settings | {"together": None}, other_settings, "", names)
         if difference:

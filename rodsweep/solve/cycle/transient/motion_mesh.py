@@ -113,20 +113,23 @@ def coarse_mesh_along_branch(rod: Rod) -> Mesh:
     return mesh_with_edges(elements.edges, elements.order)
 
 
-def integrable_rod(rod: Rod) -> Rod:
-    """The rod with k1 and k2 of at most MOTION_MESH_SETTINGS.max_stiffness and gamma3 of at least
-    MOTION_MESH_SETTINGS.min_drag at the base, and with gamma1 of at least MOTION_MESH_SETTINGS.min_axial_drag
-    everywhere; a limiting rod (k1 = inf, k2 = inf or gamma3 = 0) cannot be integrated in time."""
-    gamma1 = max(rod.gamma1, MOTION_MESH_SETTINGS.min_axial_drag)
+def integrable_rod(rod: Rod, distance: float = 1.0) -> Rod:
+    """The rod with k1 and k2 at the base of at most MOTION_MESH_SETTINGS.max_stiffness, and with gamma3 and
+    gamma1 of at least `min_drag` and `min_axial_drag` at the base and at every row of a profile; a limiting
+    rod (k1 = inf, k2 = inf or gamma3 = 0) cannot be integrated in time. distance: distance of the replaced
+    values from these limits, divided by the distance in the settings. Larger stiffnesses along the arm stay:
+    they cost no digits, because the unknowns of `ExplicitSystem` are scaled with the compliances."""
+    least = {
+        "gamma3": distance * MOTION_MESH_SETTINGS.min_drag,
+        "gamma1": distance * MOTION_MESH_SETTINGS.min_axial_drag,
+    }
+    max_stiffness = MOTION_MESH_SETTINGS.max_stiffness / distance
+    drags = {name: max(getattr(rod, name), value) for name, value in least.items()}
     material = rod.material
-    least_factor = MOTION_MESH_SETTINGS.min_axial_drag / gamma1
-    if material.profile is not None and material.relative_least_axial_drag < least_factor:
-        material = replace(material, profile=material.profile.with_factors_above("gamma1", least_factor))
-    return replace(
-        rod,
-        k1=min(rod.k1, MOTION_MESH_SETTINGS.max_stiffness),
-        k2=min(rod.k2, MOTION_MESH_SETTINGS.max_stiffness),
-        gamma3=max(rod.gamma3, MOTION_MESH_SETTINGS.min_drag),
-        gamma1=gamma1,
-        material=material,
-    )
+    if material.profile is not None:
+        profile = material.profile
+        for name, value in least.items():
+            profile = profile.with_factors_above(name, value / drags[name], rod.taper)
+        material = replace(material, profile=profile)
+    stiffnesses = {"k1": min(rod.k1, max_stiffness), "k2": min(rod.k2, max_stiffness)}
+    return replace(rod.with_values(**stiffnesses, **drags), material=material)
