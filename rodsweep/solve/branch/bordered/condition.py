@@ -68,20 +68,15 @@ class BorderCondition:
             # There is no rate at the first step with a matrix.
             contraction = change / previous_change if matrix_distance > change else np.inf
             # The next step would have the length change * rate; a negligible step is not made.
-            is_converged = (
-                change * min(contraction, 1.0) <= tolerance
-                and contraction <= ORBIT_NEWTON_SETTINGS.new_matrix_ratio
+            is_contracting = contraction <= ORBIT_NEWTON_SETTINGS.new_matrix_ratio
+            is_converged = change <= tolerance or (
+                change * min(contraction, 1.0) <= tolerance and is_contracting
             )
-            if is_converged or change <= tolerance:
+            if is_converged:
                 solved = self._with_matrix_error(orbit, matrix, matrix_distance, max_matrix_distance)
                 if solved is not None:
                     return solved
-                needs_matrix = True
-            else:
-                needs_matrix = (
-                    matrix_distance > change and contraction > ORBIT_NEWTON_SETTINGS.new_matrix_ratio
-                )
-            if needs_matrix:
+            if is_converged or (matrix_distance > change and not is_contracting):
                 matrix = BorderedMatrix(orbit, self.scale, workspace)
                 matrix_distance = 0.0
                 step = matrix.step(self.border, self.residual(orbit))
