@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from rodsweep.bench.peers import PeerContribution
-from rodsweep.bench.spectrum.arms import ARM_RACE
+from rodsweep.bench.spectrum.arm_race import ARM_RACE
 from rodsweep.bench.spectrum.study import SPECTRUM_RACE
 
 from .eigensolvers import arm_contenders, contenders

@@ -14,8 +14,8 @@ import scipy.linalg
 import scipy.sparse.linalg
 
 from rodsweep.arrays import Array
-from rodsweep.bench.spectrum import arms
-from rodsweep.bench.spectrum.arms import mesh_of_arm, solve_next_arm
+from rodsweep.bench.spectrum import arm_race
+from rodsweep.bench.spectrum.arm_race import mesh_of_arm, solve_next_arm
 from rodsweep.bench.spectrum.rodsweep_spectrum import MODE_COUNT, PENCIL_GROUP, leading_eigenvalues
 from rodsweep.bench.spectrum.study import ELEMENT_ORDERS, pencil_mesh
 from rodsweep.bench.study import TimedMethod
@@ -204,8 +204,8 @@ def contenders() -> list[TimedMethod]:
 def arm_contenders() -> list[TimedMethod]:
     """The peers that solve arms with properties that vary along the length, at all of their sizes."""
     taken = {
-        dense_inverse: arms.ELEMENT_ORDERS,
-        scipy_eigs: arms.ELEMENT_ORDERS,
+        dense_inverse: arm_race.ELEMENT_ORDERS,
+        scipy_eigs: arm_race.ELEMENT_ORDERS,
         chebyshev_first_order: ARM_INTERVALS,
     }
     return [

@@ -119,12 +119,12 @@ def time_runs(runs: Sequence[Callable[[], Outcome]], rounds: Sequence[int]) -> l
     rounds. A function with a short run is called twice in succession and the second call is timed, so that
     the processor caches do not depend on the previous function.
     """
-    first = [_timed(run) for run in runs]
+    first = [_time_one_run(run) for run in runs]
     seconds: list[list[float]] = [[] for _ in runs]
     for i in timing_order(rounds):
         if first[i].median < SHORT_RUN_SECONDS:
             runs[i]()
-        seconds[i] += _timed(runs[i]).seconds
+        seconds[i] += _time_one_run(runs[i]).seconds
     return [
         TimedRuns(a.outcome, tuple(further) or a.seconds) for a, further in zip(first, seconds, strict=True)
     ]
@@ -137,7 +137,8 @@ def timing_order(rounds: Sequence[int]) -> Iterator[int]:
         yield from (i for i, round_count in enumerate(rounds) if round_number < round_count)
 
 
-def _timed(run: Callable[[], Outcome]) -> TimedRuns[Outcome]:
+def _time_one_run(run: Callable[[], Outcome]) -> TimedRuns[Outcome]:
+    """Outcome and processor time of one call of `run`, child processes included."""
     start = processor_seconds_with_children()
     outcome = run()
     return TimedRuns(outcome, (processor_seconds_with_children() - start,))

@@ -40,7 +40,8 @@ class FloatNumberType(click.types.FloatParamType):
     inf."""
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
-        """Number from the text `value`; fails as click's own types for another text."""
+        """Number from the text `value`. Fails for a number too large for a float, and for any other text as
+        click's own type does."""
         if isinstance(value, str) and overflows_float(value.strip()):
             self.fail(f"{short_repr(value)} is too large for a floating-point number.", param, ctx)
         number: float = super().convert(value, param, ctx)

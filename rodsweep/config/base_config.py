@@ -19,7 +19,7 @@ from .values import Number, StrictConfigSection, Text
 ModeCount = Annotated[int, Field(ge=1, le=100)]
 NodeCount = Annotated[int, Field(ge=3, le=513)]
 CrossingCount = Annotated[int, Field(ge=1, le=1000)]
-MaterialField = Field(description="a mapping of law, section and profile")
+MATERIAL_FIELD = Field(description="a mapping of law, section and profile")
 
 
 class Config(StrictConfigSection):
@@ -35,7 +35,7 @@ class Config(StrictConfigSection):
     """Relative error of each eigenvalue, threshold and mode. `limit_cycle` and `branch`, whose
     numbers are cycles, have other limits and defaults."""
 
-    material: Annotated[MaterialConfig | None, MaterialField] = None
+    material: Annotated[MaterialConfig | None, MATERIAL_FIELD] = None
     """Constitutive law and profile of the arm; by default a linear law and a uniform arm."""
 
     allows_crushed_rods: ClassVar[bool] = False

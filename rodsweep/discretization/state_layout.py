@@ -14,10 +14,10 @@ from ..model.compiled.compilation import compiled_for_vectors
 
 STRESS_NAMES = {3: ("n1", "n2", "m3"), 6: ("n1", "n2", "n3", "m1", "m2", "m3")}
 """Names of the stress components, by the number of components: 3 in the plane, 6 in space."""
-PLANE_COMPONENT_COUNT = 3
+SE2_DIMENSION = 3
 BENDING_INDEX = 2
-"""PLANE_COMPONENT_COUNT: number of stress components in the plane. BENDING_INDEX: index of the component m3.
-Both constants are for compiled code."""
+"""SE2_DIMENSION: number of components of the stress, of the velocity and of the strain in the plane.
+BENDING_INDEX: index of the component m3. Both constants are for compiled code."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +93,7 @@ class StateLayout:
 def plane_layout(node_count: int, unknown_velocities: tuple[int, ...] = ()) -> StateLayout:
     """Layout of the states of a rod in the plane. node_count: number of nodes without the tip.
     unknown_velocities: indices of the components of V that are unknowns."""
-    return StateLayout(PLANE_COMPONENT_COUNT, node_count, unknown_velocities)
+    return StateLayout(SE2_DIMENSION, node_count, unknown_velocities)
 
 
 @compiled_for_vectors

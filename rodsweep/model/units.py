@@ -153,7 +153,8 @@ def _cached_conversion_factor(unit_text: str, si_unit: str) -> float:
 
 
 def _suggestion(unit_text: str, si_unit: str) -> str:
-    """The text "did you mean 'kPa'? " if `unit_text` is a misspelt unit of the kind of `si_unit`; else ""."""
+    """The text "did you mean 'kPa'? " if `unit_text` differs from a common unit of the dimension of `si_unit`
+    only in spaces and in upper and lower case; else ""."""
     plain_text = "".join(unit_text.split()).casefold()
     for common_unit in COMMON_UNITS:
         if "".join(common_unit.split()).casefold() == plain_text and unit_registry()(common_unit).check(

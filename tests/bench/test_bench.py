@@ -24,9 +24,9 @@ from rodsweep.bench.peers import (
     peers_left_out,
     peers_of_study,
 )
-from rodsweep.bench.spectrum import arms
+from rodsweep.bench.spectrum import arm_race
 from rodsweep.bench.spectrum import study as spectrum
-from rodsweep.bench.spectrum.arms import (
+from rodsweep.bench.spectrum.arm_race import (
     ARM_RODS,
     UncachedArms,
     arm_table,
@@ -121,7 +121,7 @@ def test_no_arm_is_solved_twice():
 
 
 def test_table_of_arms_has_time_and_error_of_every_method(monkeypatch):
-    monkeypatch.setattr(arms, "ARM_RODS", {"cone": ARM_RODS["cone"]})
+    monkeypatch.setattr(arm_race, "ARM_RODS", {"cone": ARM_RODS["cone"]})
     bad = TimedMethod("coarse", "3", "a", lambda arm: np.ones(MODE_COUNT, complex))
     lines = arm_table(measure_arm_spectra([bad], 1), 1).splitlines()
     assert lines[2] == "| method | cone |"
@@ -178,7 +178,7 @@ def test_time_of_other_programs_is_counted():
 def test_study_of_the_spectrum_has_a_row_for_every_method(monkeypatch, tmp_path):
     monkeypatch.setattr(spectrum, "HARD_RODS", {"easy": EASY})
     monkeypatch.setattr(spectrum, "FORCE_COUNT", 1)
-    monkeypatch.setattr(arms, "ARM_RODS", {"cone": ARM_RODS["cone"]})
+    monkeypatch.setattr(arm_race, "ARM_RODS", {"cone": ARM_RODS["cone"]})
     exact = TimedMethod("a peer", "7", "g", partial(rodsweep_spectrum, certify=False))
     study = spectrum_study(
         quick=True, peers=PeerContribution({SPECTRUM_RACE: [exact]}, skipped=["Another is skipped."])

@@ -10,7 +10,7 @@ from benchmarks.spectrum.eigensolvers import (
     dense_inverse,
     displacement_elements,
 )
-from rodsweep.bench.spectrum.arms import ARM_RACE, ARM_RODS, UncachedArms, exact_arm_spectrum
+from rodsweep.bench.spectrum.arm_race import ARM_RACE, ARM_RODS, UncachedArms, exact_arm_spectrum
 from rodsweep.bench.spectrum.exact import exact_spectrum, relative_error
 from rodsweep.bench.spectrum.rodsweep_spectrum import MODE_COUNT
 from rodsweep.bench.spectrum.study import HARD_RODS, SPECTRUM_RACE

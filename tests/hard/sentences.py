@@ -831,7 +831,7 @@ def _curve_sentences(view, page, row):
         return []
     kinds = [int(v["curve_kind"][v["curve_number"] == n][0]) for n in np.unique(v["curve_number"])]
     for_line = "^curves: NUMBER of Hopf points, NUMBER of double eigenvalues; "
-    for_line += "crossings located on rows lie on them within NUMBER of the range of F; "
+    for_line += "the crossings located on rows lie within NUMBER of the range of F from the curves; "
     for_line += "(?:every crossing is on a|NUMBER crossings? (?:is|are) on no) curve"
     found = []
     for line, match in read(page, for_line):
@@ -1066,8 +1066,8 @@ def _state_sentences(view, page, fine, row):
         found.append((line, _special_on_row(view, row, *map(float, match.groups()))))
     for line, match in read(
         page,
-        "^curves of folds and torus points of cycles: NUMBER; points located on rows lie on them within "
-        "NUMBER of the range of F; (?:every|NUMBER) fold",
+        "^curves of folds and torus points of cycles: NUMBER; the points located on rows lie within NUMBER "
+        "of the range of F from the curves; (?:every|NUMBER) fold",
     ):
         true = (
             len(np.unique(view.variables["cycle_curve_number"])),

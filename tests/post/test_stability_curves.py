@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rodsweep.post.figures.stability.class_bars import draw_class_bars
-from rodsweep.post.figures.stability.diagram_curves import boundaries_to_name, constant_force_text
+from rodsweep.post.figures.stability.diagram_curves import constant_force_text, masks_of_labelled_curves
 from rodsweep.post.stability_curves import curves_bounding_stability
 from rodsweep.results.file.view import ResultView
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS
@@ -37,7 +37,7 @@ def diagram():
 def test_the_boundary_is_the_curve_on_which_the_rows_change_their_stability():
     view = diagram()
     assert curves_bounding_stability(view, "k1", "k2") == {1: False, 2: True}
-    (named,) = boundaries_to_name(view, 1, "k1", "k2")
+    (named,) = masks_of_labelled_curves(view, 1, "k1", "k2")
     assert (view.variables["curve_number"][named] == 2).all()
 
 

@@ -358,7 +358,7 @@ def test_curves_are_followed_beyond_the_range_after_all_other_stages():
     ((variable, count),) = curves_lost_beyond_values(2)
     view = SimpleNamespace(variables={variable.name: count})
     (line,) = detached_branch_lines(view, "k1")
-    assert line.startswith("ends of curves of folds lost beyond the range: 2; on rows whose branches")
+    assert line.startswith("ends of curves of folds lost beyond the range: 2; rows whose branches")
     assert curves_lost_beyond_values(0) == detached_branch_lines(SimpleNamespace(variables={}), "k1") == []
     assert [curve.points[0].parameter_value for curve in stages.curves(results).curves] == [0.2]
     # A row that could not be solved again has no folds.

@@ -30,7 +30,7 @@ from ..study import (
     result_or_error,
     time_runs,
 )
-from .arms import ARM_RACE, arm_table, measure_arm_spectra
+from .arm_race import ARM_RACE, arm_table, measure_arm_spectra
 from .exact import exact_spectrum, relative_error, relative_error_by_name
 from .rodsweep_spectrum import (
     CERTIFIED_NAME,
@@ -187,8 +187,8 @@ def pencil_mesh(order: int) -> Resolution:
 
 
 def krylov_schur(rod: Rod, order: int) -> Complex:
-    """Leading eigenvalues, (modes,), of a rod by SLEPc's Krylov-Schur, without Newton's method for D. order:
-    order of the pencil."""
+    """Up to MODE_COUNT + 1 leading eigenvalues of a rod by SLEPc's Krylov-Schur, without Newton's method for
+    D; the last may belong to a pair. order: order of the pencil."""
     solver = uniform_solver(pencil_mesh(order))
     eigenvalues = solver.solve(rod, transverse_problem(rod).shift, MODE_COUNT, to_rounding=True)
     return leading_eigenvalues(eigenvalues, MODE_COUNT + 1)

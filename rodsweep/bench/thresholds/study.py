@@ -16,7 +16,7 @@ from ...model.rod import Rod
 from ...solve.changes.thresholds import ThresholdsRequest, solve_thresholds, warm_up
 from ...wording import counted
 from ..peers import PeerContribution
-from ..spectrum.arms import FIVE_SEGMENT_PROFILE
+from ..spectrum.arm_race import FIVE_SEGMENT_PROFILE
 from ..study import (
     BenchmarkReport,
     Measurement,

@@ -105,9 +105,9 @@ def drag_axis(value: Any) -> Axis:
     return Axis(values=tuple(float(index) for index in sorted({DRAG_NAMES.index(name) for name in names})))
 
 
-def drag_names(values: list[float]) -> list[str]:
-    """Names of drag estimates from `values`, their indices in DRAG_NAMES."""
-    return [DRAG_NAMES[int(index)] for index in values]
+def drag_names_of_indices(indices: list[float]) -> list[str]:
+    """Names of the drag estimates with the `indices` in DRAG_NAMES, which are whole numbers."""
+    return [DRAG_NAMES[int(index)] for index in indices]
 
 
 def typed_unit(name: str, axis: Axis) -> str:
@@ -127,7 +127,7 @@ def quantities_as_typed(quantities: Mapping[str, Axis]) -> str:
     for name, axis in quantities.items():
         end_values = axis.array()[[0, -1]].tolist()
         if name == "drag":
-            drag_list = drag_names(axis.array().tolist())
+            drag_list = drag_names_of_indices(axis.array().tolist())
             typed.append(
                 f"drag {DRAG_RANGE_NAME if len(drag_list) == len(DRAG_NAMES) else ' and '.join(drag_list)}"
             )

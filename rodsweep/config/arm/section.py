@@ -18,7 +18,7 @@ from ..axis import Axis, ParameterAxis
 from ..material import LawName, SectionName
 from ..values import StrictConfigSection
 from .axes import LOAD_KEYS, NON_LOAD_KEYS, SINGLE_PARAMETER_OF
-from .quantities import DragAxis, QuantityAxis, drag_names, with_load_over_flutter
+from .quantities import DragAxis, QuantityAxis, drag_names_of_indices, with_load_over_flutter
 from .shape import (
     MATERIAL_KEYS,
     SEGMENTS_ALLOWED,
@@ -30,59 +30,59 @@ from .shape import (
 )
 from .status import STATUS_OF_ERROR, ArmOutsideModel
 
-QuantityField = Field(
+QUANTITY_FIELD = Field(
     description="a quantity with its unit (SI if the unit is omitted), or a list or a range of quantities"
 )
-RelativeLoadField = Field(description="a number from 0 on, a list or a range")
-DragField = Field(description="range, the name of a drag, or a list of names")
-PoissonField = Field(description="a number above -1 and up to 0.5, a list or a range")
+RELATIVE_LOAD_FIELD = Field(description="a number from 0 on, a list or a range")
+DRAG_FIELD = Field(description="range, the name of a drag, or a list of names")
+POISSON_FIELD = Field(description="a number above -1 and up to 0.5, a list or a range")
 NO_LOAD = {"pressure": 0.0}
 
 
 class ArmConfig(StrictConfigSection):
     """The arm in the quantities of `rodsweep arm`; each quantity is a value or an axis."""
 
-    length: Annotated[QuantityAxis | None, QuantityField] = None
+    length: Annotated[QuantityAxis | None, QUANTITY_FIELD] = None
     """Length from the clamp to the tip; for an arm in segments, the sum of their lengths."""
-    radius: Annotated[QuantityAxis | None, QuantityField] = None
+    radius: Annotated[QuantityAxis | None, QUANTITY_FIELD] = None
     """Radius of a circular section. Alternatives: width and height, or segments."""
-    inner_radius: Annotated[QuantityAxis | None, QuantityField] = None
+    inner_radius: Annotated[QuantityAxis | None, QUANTITY_FIELD] = None
     """Radius of the bore of a tube, which is closed at its tip."""
-    tip_radius: Annotated[QuantityAxis | None, QuantityField] = None
+    tip_radius: Annotated[QuantityAxis | None, QUANTITY_FIELD] = None
     """Radius at the tip of a solid cone, which has `radius` at its base."""
     segments: Annotated[Segments, Field(description=SEGMENTS_ALLOWED)] = None
     """Segments from the base to the tip, each with length, radius, and optionally inner_radius and young."""
-    width: Annotated[QuantityAxis | None, QuantityField] = None
+    width: Annotated[QuantityAxis | None, QUANTITY_FIELD] = None
     """Width of a rectangular section, across the plane of motion."""
-    height: Annotated[QuantityAxis | None, QuantityField] = None
+    height: Annotated[QuantityAxis | None, QUANTITY_FIELD] = None
     """Height of a rectangular section, in the plane of motion."""
-    young: Annotated[QuantityAxis | None, QuantityField] = None
+    young: Annotated[QuantityAxis | None, QUANTITY_FIELD] = None
     """Young's modulus at small strain; in an arm with segments, the modulus of every segment without a
     modulus of its own."""
-    poisson: Annotated[ParameterAxis | None, PoissonField] = None
+    poisson: Annotated[ParameterAxis | None, POISSON_FIELD] = None
     """Poisson's ratio, by default 0.5."""
     law: Annotated[LawName | None, Field(description="linear or neo_hookean")] = None
     """Constitutive law, by default linear. For an arm, this key replaces `material.law`."""
     section: Annotated[SectionName | None, Field(description="fixed or swelling")] = None
     """Whether the cross-section is fixed (the default) or swelling. For an arm, this key replaces
     `material.section`."""
-    viscosity: Annotated[QuantityAxis, QuantityField]
+    viscosity: Annotated[QuantityAxis, QUANTITY_FIELD]
     """Viscosity of the fluid. The parameters do not depend on the viscosity; times are proportional to the
     viscosity."""
-    fluid_density: Annotated[QuantityAxis | None, QuantityField] = None
+    fluid_density: Annotated[QuantityAxis | None, QUANTITY_FIELD] = None
     """Density of the fluid, by default the density of water; used only to test whether the model applies."""
-    density_difference: Annotated[QuantityAxis | None, QuantityField] = None
+    density_difference: Annotated[QuantityAxis | None, QUANTITY_FIELD] = None
     """Density of the arm minus density of the fluid; used only to test whether the neglected weight is small.
     If this key is missing, the weight is not tested."""
-    drag: Annotated[DragAxis | None, DragField] = None
+    drag: Annotated[DragAxis | None, DRAG_FIELD] = None
     """Drag estimates from the range in the literature, by name; by default the likeliest estimate."""
-    pressure: Annotated[QuantityAxis | None, QuantityField] = None
+    pressure: Annotated[QuantityAxis | None, QUANTITY_FIELD] = None
     """Pressure on the tip's cross section; alternative: force. Omit the load if the task solves for F."""
-    force: Annotated[QuantityAxis | None, QuantityField] = None
+    force: Annotated[QuantityAxis | None, QUANTITY_FIELD] = None
     """Follower force at the tip."""
-    pressure_over_flutter: Annotated[ParameterAxis | None, RelativeLoadField] = None
+    pressure_over_flutter: Annotated[ParameterAxis | None, RELATIVE_LOAD_FIELD] = None
     """Pressure divided by the flutter pressure at the likeliest drag: 1.2 is `pressure: 1.2 of flutter`."""
-    force_over_flutter: Annotated[ParameterAxis | None, RelativeLoadField] = None
+    force_over_flutter: Annotated[ParameterAxis | None, RELATIVE_LOAD_FIELD] = None
     """Force divided by the flutter force at the likeliest drag: 1.2 is `force: 1.2 of flutter`."""
 
     load_kind: Annotated[Literal["pressure", "force"] | None, Field(description="pressure or force")] = None
@@ -240,7 +240,7 @@ class ArmConfig(StrictConfigSection):
         section: dict[str, Any] = {name: value for name, value in values.items() if name in NON_LOAD_KEYS}
         has_load = with_load and self.load_key in LOADS
         section |= {str(self.load_key): values[str(self.load_key)]} if has_load else NO_LOAD
-        (drag,) = drag_names([section.pop("drag", 0.0)])
+        (drag,) = drag_names_of_indices([section.pop("drag", 0.0)])
         try:
             return SlenderArm(**section, **self.material, drag=drag)
         except InputError as error:

@@ -66,7 +66,7 @@ def require_arguments_of_signature(
     takes_any_keyword = any(parameter.kind is Parameter.VAR_KEYWORD for parameter in parameters)
     for name in named:
         if name in positional[: len(values)]:
-            raise InputError(f"{name} is given twice; write it as in {example}")
+            raise InputError(f"{name} is given twice, by position and by name; write it as in {example}")
         if not takes_any_keyword and name not in parameter_names:
             if hint(name):
                 raise InputError(f"unknown key {name}; {hint(name)}")

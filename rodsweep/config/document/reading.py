@@ -15,7 +15,7 @@ from ruamel.yaml import YAML
 from ...errors import InputError
 from ...model.parameters import OPTIONAL_PARAMETERS
 from ...wording import enumeration
-from ..arm.quantities import drag_names
+from ..arm.quantities import drag_names_of_indices
 from ..arm.section import ArmConfig
 from ..axis import Axis, axis_from_resolved
 from ..base_config import Config
@@ -148,7 +148,7 @@ def _config_notation(axis: Any) -> Any:
     if not isinstance(axis, dict):
         return axis
     if "length" in axis:
-        drag_entry = {"drag": drag_names(axis["drag"]["values"])} if "drag" in axis else {}
+        drag_entry = {"drag": drag_names_of_indices(axis["drag"]["values"])} if "drag" in axis else {}
         return {name: _config_notation(value) for name, value in axis.items()} | drag_entry
     values = axis.get("values", axis)
     return values[0] if isinstance(values, list) and len(values) == 1 else values
@@ -200,8 +200,8 @@ def _task_name(tree: dict) -> str:
 
 
 def with_file_contents(tree: Any, directory: Path) -> Any:
-    """The parsed config `tree`, with the profile read from its file, and `parameters.columns` read from the
-    header of the file of points.
+    """The parsed config `tree`, with the profile read from its file. If `parameters.columns` is not given, it
+    lists the optional parameters in the header of the file of points.
 
     directory: folder of relative file names. Raises InputError if the file of the profile is not a table of
     numbers.

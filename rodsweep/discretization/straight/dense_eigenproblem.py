@@ -39,7 +39,7 @@ class DenseEigenproblem:
         """Strains (h2, Pi) = (Y' - nu Theta, Theta') of k eigenvectors, (unknowns, k), at points, (points,):
         (2, k, points). h2 = c2 s is exactly 0 in an unshearable rod. At a jump of a coefficient both strains
         are limits from the right."""
-        c2 = self.rod.local_coefficients(_points_inside_elements(self.mesh, points)).c2
+        c2 = self.rod.local_coefficients(_points_moved_inside_elements(self.mesh, points)).c2
         shear = c2[:, None] * shear_force(self.mesh, vectors, points)
         return np.stack([shear.T, field_derivatives_at(self.mesh, self.displacements(vectors)[1], points).T])
 
@@ -69,7 +69,7 @@ def dense_eigenproblem(rod: Rod, pencil: AnyPencil) -> DenseEigenproblem:
     )
 
 
-def _points_inside_elements(mesh: Elements, points: Array) -> Array:
+def _points_moved_inside_elements(mesh: Elements, points: Array) -> Array:
     """The points, (n,), each moved just inside its element by `Elements.points_by_element`."""
     points_inside = np.array(points, dtype=float)
     for e, indices, coordinates in mesh.points_by_element(points):

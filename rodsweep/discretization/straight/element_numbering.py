@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..elements.elements import ELEMENT_SETTINGS
-from ..state_layout import PLANE_COMPONENT_COUNT
+from ..state_layout import SE2_DIMENSION
 
 Indices = NDArray[np.int_]
 
@@ -38,9 +38,9 @@ def element_numbering(element_count: int, order: int, components: tuple[int, ...
     of stresses and velocities that are unknowns."""
     last_node = element_count * order
     nodes = np.arange(element_count)[:, None] * order + np.arange(order + 1)
-    unknown_count = PLANE_COMPONENT_COUNT * (2 * last_node + 1)
+    unknown_count = SE2_DIMENSION * (2 * last_node + 1)
     stresses = [np.where(nodes == last_node, unknown_count, c * last_node + nodes) for c in components]
-    velocities = [PLANE_COMPONENT_COUNT * last_node + c * (last_node + 1) + nodes for c in components]
+    velocities = [SE2_DIMENSION * last_node + c * (last_node + 1) + nodes for c in components]
     unknowns_per_node = 2 * len(components)
     node = np.tile(np.arange(order + 1), unknowns_per_node)
     interior_nodes = np.flatnonzero((node > 0) & (node < order)) if element_count > 1 else np.array([], int)

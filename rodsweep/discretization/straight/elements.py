@@ -25,7 +25,7 @@ from ...model.balance import Values, ad, coad
 from ..elements.basis import differentiation_matrix
 from ..elements.elements import ELEMENT_SETTINGS
 from ..elements.quadrature import gauss_lobatto_rule
-from ..state_layout import PLANE_COMPONENT_COUNT
+from ..state_layout import SE2_DIMENSION
 from .element_numbering import ElementNumbering, element_numbering
 from .mixed_form import MixedForm
 
@@ -56,7 +56,7 @@ class StraightElements:
     @cached_property
     def A(self) -> Array:
         """Contribution of one element to the matrix A of the mixed form, (local, local)."""
-        identity = np.eye(PLANE_COMPONENT_COUNT)
+        identity = np.eye(SE2_DIMENSION)
         block = np.ix_(self.components, self.components)
         coefficients = self.form.rod.balance_coefficients
         E = coefficients.rest_strain[:, None]

@@ -31,7 +31,7 @@ from ..coefficients_on_mesh import balance_coefficients_at_nodes, jumps_on_mesh
 from ..elements.mesh import Mesh, shape_integration_matrices
 from ..nodal_rod import NodalRod, nodal_rod
 from ..rod_on_mesh import broadcast_to_field
-from ..state_layout import PLANE_COMPONENT_COUNT, StateLayout, plane_layout
+from ..state_layout import SE2_DIMENSION, StateLayout, plane_layout
 from .law_derivatives import LawDerivativesAtRest, law_derivatives_at_rest
 
 MIRROR_SIGNS = np.array([1.0, -1.0, -1.0])
@@ -53,7 +53,7 @@ class MixedForm:
     @cached_property
     def layout(self) -> StateLayout:
         """Indices of the fields in X; all components of V are unknowns."""
-        return plane_layout(self.mesh.node_count, tuple(range(PLANE_COMPONENT_COUNT)))
+        return plane_layout(self.mesh.node_count, tuple(range(SE2_DIMENSION)))
 
     @property
     def stress_count(self) -> int:
@@ -68,7 +68,7 @@ class MixedForm:
     @cached_property
     def nodal_rod(self) -> NodalRod:
         """The rod at all nodes of the mesh, with all components of V as unknowns."""
-        unknown_velocities = tuple(range(PLANE_COMPONENT_COUNT))
+        unknown_velocities = tuple(range(SE2_DIMENSION))
         jumps = jumps_on_mesh(self.rod, self.mesh)
         return nodal_rod(
             balance_coefficients_at_nodes(self.rod, self.mesh), self.mesh, unknown_velocities, jumps=jumps
@@ -98,7 +98,7 @@ class MixedForm:
         stresses = slice(self.stress_count)
         velocities = slice(self.stress_count, None)
         WD = -self.mesh.matrices.weak_derivative.T
-        identity = np.eye(PLANE_COMPONENT_COUNT)
+        identity = np.eye(SE2_DIMENSION)
         A = self._coupling_matrix()
         A[stresses, velocities] -= np.kron(identity, WD.T[:N])
         A[velocities, stresses] += np.kron(identity, WD[:, :N]) * self.law_derivatives.tangent[:, :N].ravel()
@@ -188,13 +188,13 @@ class MixedForm:
         equations of S, and W (ad*_E T S + ad*_{C S} Sigma) in the equations of V; T: tangent of the law."""
         N = self.mesh.node_count
         W = self.mesh.quadrature[:-1]
-        identity = np.eye(PLANE_COMPONENT_COUNT)[:, :, None]
+        identity = np.eye(SE2_DIMENSION)[:, :, None]
         E = self.nodal_rod.rest_strain[:, None, :N]
         C = self.nodal_rod.compliance[:, None, :N]
         T = self.law_derivatives.tangent[:, None, :N]
         Sigma = self.nodal_rod.tip_stress[:, None, None]
-        s = np.arange(self.stress_count).reshape(PLANE_COMPONENT_COUNT, N)
-        v = np.arange(self.stress_count, self.unknown_count).reshape(PLANE_COMPONENT_COUNT, N + 1)[:, :N]
+        s = np.arange(self.stress_count).reshape(SE2_DIMENSION, N)
+        v = np.arange(self.stress_count, self.unknown_count).reshape(SE2_DIMENSION, N + 1)[:, :N]
         matrix = np.zeros((self.unknown_count, self.unknown_count))
         # The tip contributes nothing: s = 0, and E enters only the equation of S(1), which is not solved.
         matrix[s[:, None], v[None]] = W * ad(E, identity)
@@ -206,7 +206,7 @@ class MixedForm:
 
 def axial_field(values: Array) -> Array:
     """The field with components (values, 0, 0), (3, nodes + 1); values: (nodes + 1,)."""
-    field = np.zeros((PLANE_COMPONENT_COUNT, len(values)))
+    field = np.zeros((SE2_DIMENSION, len(values)))
     field[0] = values
     return field
 

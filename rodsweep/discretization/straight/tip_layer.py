@@ -57,11 +57,11 @@ def tip_layer_ratio(rod: Rod) -> float:
     ratio = 0.0
     for element_stiffness, element_foundation in zip(stiffness, foundation, strict=True):
         K = (slope.T * element_stiffness) @ slope + (value.T * element_foundation) @ value
-        ratio = _ratio_at_right_end(K, ratio)
+        ratio = _layer_ratio_at_right_end(K, ratio)
     return ratio
 
 
-def _ratio_at_right_end(K: Array, left_ratio: float) -> float:
+def _layer_ratio_at_right_end(K: Array, left_ratio: float) -> float:
     """The ratio d/m of `tip_layer_ratio` at the right end of an element. left_ratio: d/m at the left end. K:
     stiffness matrix of the element, (nodes, nodes)."""
     # At the clamp (left_ratio = 0) d is not an unknown; otherwise all previous elements act as a spring of

@@ -14,7 +14,7 @@ from scipy.sparse.linalg import SuperLU, splu
 
 from ...arrays import Array, Complex
 from ...model.balance import Values
-from ..state_layout import PLANE_COMPONENT_COUNT
+from ..state_layout import SE2_DIMENSION
 from .elements import StraightElements
 from .mixed_form import MixedForm
 
@@ -32,7 +32,7 @@ class WholeRodMatrices:
     def state_indices(self) -> NDArray[np.int_]:
         """Indices in a state of the unknowns of `components`, (n,)."""
         size = self.form.mesh.node_count + 1
-        mask = np.isin(np.arange(PLANE_COMPONENT_COUNT), self.components)[:, None] * np.ones(size)
+        mask = np.isin(np.arange(SE2_DIMENSION), self.components)[:, None] * np.ones(size)
         return np.flatnonzero(self.form.layout.state(mask, mask))
 
     @cached_property

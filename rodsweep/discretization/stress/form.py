@@ -14,7 +14,7 @@ from ..coefficients_on_mesh import balance_coefficient_derivatives_at_nodes, jum
 from ..elements.mesh import Mesh, interpolation_matrix
 from ..nodal_rod import NodalRod, NodalRodDerivative, nodal_rod_derivative
 from ..rod_on_mesh import RodOnMesh
-from ..state_layout import PLANE_COMPONENT_COUNT, plane_layout
+from ..state_layout import SE2_DIMENSION, plane_layout
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -92,7 +92,7 @@ class StressForm(RodOnMesh):
         """States on the mesh `target`, (..., unknowns on target), with the stresses S at all nodes of
         `target`, (3, ..., nodes of target + 1), and the velocities of the states x, (..., unknowns)."""
         # Velocities are continuous where stresses jump, so their interpolation needs no correction.
-        V = np.zeros((PLANE_COMPONENT_COUNT, *x.shape[:-1], target.node_count + 1))
+        V = np.zeros((SE2_DIMENSION, *x.shape[:-1], target.node_count + 1))
         V[list(self.unknown_velocities)] = (
             self.layout.velocities(x) @ interpolation_matrix(self.mesh, target).T
         )

@@ -51,7 +51,7 @@ LINEAR_FRACTION = 0.1
 """Fraction of the Hopf points whose Re c lies in the linear range of a symmetric logarithmic axis."""
 
 
-def draw_criticality(request: FigureRequest) -> str:
+def draw_hopf_curves_by_criticality(request: FigureRequest) -> str:
     """Draws a map of the first Hopf points over two parameters, or the coefficients a and Re c against one
     parameter, or else predicted amplitudes against F; returns a sentence. Raises InputError for options that
     the task does not have, and if nothing can be drawn."""

@@ -178,7 +178,7 @@ def _work_limit_sentence(curves: Sequence[StoredBranch], units: PortraitUnits) -
     if missing_count := len(limited_curves) - len(end_texts):
         clauses.append(f"{missing_count} {is_or_are(missing_count)} not drawn")
     yield (
-        f"{' and '.join(clauses)}, because the work or the number of cycles of a portrait is used up; "
+        f"{' and '.join(clauses)}, because the portrait has reached its limit of work or of cycles; "
         "`rodsweep run` with task: branch follows branches to their ends."
     )
 

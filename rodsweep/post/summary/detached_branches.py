@@ -38,8 +38,8 @@ def lost_beyond_lines(view: ResultView) -> list[str]:
         return []
     count = int(view.variables[CURVES_LOST_BEYOND.name])
     return [
-        f"ends of curves of folds lost beyond the range: {count}; on rows whose branches are found only from "
-        "these curves, the stable states lack the cycles"
+        f"ends of curves of folds lost beyond the range: {count}; rows whose branches are found only from "
+        "these curves lack these cycles among the stable states"
     ]
 
 

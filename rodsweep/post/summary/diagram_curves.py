@@ -95,7 +95,8 @@ def curve_count_lines(view: ResultView, line_parameter: str) -> list[str]:
     double_count = len(np.unique(variables["curve_number"])) - hopf_count
     distance_text = error_text(float(variables["curve_agreement"]))
     agreement_text = (
-        f"crossings located on rows lie on them within {distance_text} of the range of {line_parameter}; "
+        f"the crossings located on rows lie within {distance_text} of the range of {line_parameter} from the "
+        "curves; "
     )
     agreement_text *= hopf_count + double_count > 0
     lines = []
@@ -110,7 +111,8 @@ def curve_count_lines(view: ResultView, line_parameter: str) -> list[str]:
         curve_count = len(np.unique(variables["cycle_curve_number"]))
         distance_text = error_text(float(variables["cycle_curve_agreement"]))
         agreement_text = (
-            f"points located on rows lie on them within {distance_text} of the range of {line_parameter}; "
+            f"the points located on rows lie within {distance_text} of the range of {line_parameter} from "
+            "the curves; "
         )
         agreement_text *= curve_count > 0
         untraced_clause = _on_no_curve_clause(int(variables["cycle_curves_untraced"]), "fold or torus point")

@@ -53,7 +53,7 @@ def state_lines(view: ResultView, computed: np.ndarray, line_parameter: str, row
                 f"{span_text(np.broadcast_to(variables[line_parameter], in_state.shape)[in_state])}, "
                 f"{row_parameter} = {axis_values_text(row_values[at_points])}"
             )
-        is_hidden = computed & ~in_state.any(axis=-1) & _both_between_grid_points(view, line_parameter)
+        is_hidden = computed & ~in_state.any(axis=-1) & _is_both_only_between_points(view, line_parameter)
         if state == "both" and is_hidden.any():
             rows = counted(int(is_hidden.sum()), "row")
             hidden_values = axis_values_text(row_values[is_hidden])
@@ -71,7 +71,7 @@ def state_lines(view: ResultView, computed: np.ndarray, line_parameter: str, row
     return lines
 
 
-def _both_between_grid_points(view: ResultView, line_parameter: str) -> np.ndarray:
+def _is_both_only_between_points(view: ResultView, line_parameter: str) -> np.ndarray:
     """Mask of the rows, (...,), on which straight rod and cycle are both stable somewhere between two
     neighbouring grid points, but not at these points: only the straight rod is stable at one point, only the
     cycle at the other, and between them one state becomes stable before the other state ends. Only intervals

@@ -49,7 +49,8 @@ ERROR_VARIABLES = (
 
 
 def followed_variables(parameter_name: str) -> tuple[Variable, ...]:
-    """Variables of the cycles on all branches, branch by branch."""
+    """Variables of the cycles on all branches, branch by branch. parameter_name: parameter along which the
+    branches are followed."""
     unit = PARAMETERS[parameter_name].unit
     return along_dimension(
         CYCLE_DIMENSION,

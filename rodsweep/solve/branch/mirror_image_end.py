@@ -36,16 +36,20 @@ def passes_hopf_point(start: BranchCycle, end: BranchCycle) -> bool:
     return float(start_moment @ layout.stress_field(end.orbit.start_state, "m3")) < 0
 
 
-def end_at_mirror_image(
+def end_or_shorter_step_at_mirror_image(
     start: BranchCycle, end: BranchCycle, limits: BranchLimits
 ) -> BranchCycle | BranchEnd:
     """The end of a branch that reaches its mirror image between two cycles (a failure if no known Hopf point
     or symmetry breaking is near), or `start` with half the step, if `start` is too far from this end. Raises
     Unsolvable if no shorter step is allowed."""
-    return (_end_at_hopf if start.orbit.is_symmetric else _end_at_breaking)(start, end, limits)
+    return (_end_at_hopf_or_shorter_step if start.orbit.is_symmetric else _end_at_breaking_or_shorter_step)(
+        start, end, limits
+    )
 
 
-def _end_at_hopf(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> BranchCycle | BranchEnd:
+def _end_at_hopf_or_shorter_step(
+    start: BranchCycle, end: BranchCycle, limits: BranchLimits
+) -> BranchCycle | BranchEnd:
     """The end of a branch at a Hopf point between two cycles, or at the end of the range before it (a failure
     if no known Hopf point is near), or `start` with half the step, if `start` is too large for an
     extrapolation. Raises Unsolvable."""
@@ -105,7 +109,9 @@ def _is_smallest(cycle: BranchCycle) -> bool:
     return cycle.cycle.measures.tip_y_max <= BRANCH_START_SETTINGS.min_amplitude_before_fold
 
 
-def _end_at_breaking(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> BranchCycle | BranchEnd:
+def _end_at_breaking_or_shorter_step(
+    start: BranchCycle, end: BranchCycle, limits: BranchLimits
+) -> BranchCycle | BranchEnd:
     """The end of an asymmetric branch at a symmetry breaking (a failure if no known symmetry breaking is
     near), or `start` with half the step, if `start` is too asymmetric. Raises Unsolvable."""
     index = symmetry_breaking_between(start, end, limits.breakings, limits.accuracy)

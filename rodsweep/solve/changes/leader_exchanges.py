@@ -66,7 +66,7 @@ class LeadingEigenvalueSettings:
     max_relative_distance: float = 1e-12
     """The eigenvalue w found by Newton's method is accepted if its distance from the start is below this
     multiple of |w|: some thousand rounding errors."""
-    min_step_ratio: float = 1e-12
+    min_interval_length_ratio: float = 1e-12
     """The search fails at an interval whose length, divided by the larger modulus of its ends, is at most
     this (some thousand rounding errors), if its exchange is not found."""
 
@@ -154,7 +154,7 @@ class LeaderExchangeSearch:
             exchange = self._exchange_between(left_sample, right_sample)
             if exchange is not None:
                 return self._exchange_if_alone(exchange, left_sample, right_sample, intervals)
-            if b - a <= LEADING_EIGENVALUE_SETTINGS.min_step_ratio * max(abs(a), abs(b)):
+            if b - a <= LEADING_EIGENVALUE_SETTINGS.min_interval_length_ratio * max(abs(a), abs(b)):
                 raise Unsolvable(
                     f"no point was found near {self.path.text_at(a)} at which the leading eigenvalue turns "
                     "from real to complex or back"

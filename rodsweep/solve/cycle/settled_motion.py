@@ -26,7 +26,7 @@ def max_settled_distance(accuracy: float) -> float:
 
 
 class ReturnTimes:
-    """Times of the returns of the tip to theta = 0 during successive runs of one motion.
+    """Time between returns of the tip to theta = 0, over successive runs of one motion.
 
     shortest: smallest value of `time_per_return`, in tau2, the period of the leading mode. time_per_return:
     expected time per return, in tau2: the time between the last two returns, or `shortest` if it is longer. A
@@ -38,8 +38,8 @@ class ReturnTimes:
         self._last_return: float | None = None
 
     def record_run(self, times: Array, duration: float) -> None:
-        """Records a run that follows the earlier runs. times: times of the returns during the run, (k,).
-        duration: length of the run. Times are in tau2."""
+        """Updates `time_per_return` from a run that follows the earlier runs. times: times of the returns,
+        (k,), and duration: length of the run, both from the start of the run, in tau2."""
         for time in (self._elapsed + times).tolist():
             if self._last_return is not None:
                 self.time_per_return = max(self.shortest, time - self._last_return)

@@ -20,9 +20,9 @@ from ...determinant.exponents import ROUND_OFF
 class PropagatorSettings:
     """Settings for exp(L t) and for its representation by the leading modes."""
 
-    infinite_eigenvalue_ratio: float = 1e-12
-    """An eigenvalue of G = L^-1 whose modulus is at most this fraction of the largest modulus belongs to an
-    infinite eigenvalue of the operator L."""
+    zero_inverse_eigenvalue_ratio: float = 1e-12
+    """An eigenvalue of G = L^-1 whose modulus is at most this fraction of the largest modulus is treated as
+    0: the operator L then has an infinite eigenvalue."""
     taylor_terms: int = 16
     """Number of Taylor terms of exp for a matrix of norm 1/2; a multiple of 4."""
 
@@ -64,7 +64,7 @@ class Propagator:
         self.G = G
         values, right_vectors = np.linalg.eig(G)
         finite = np.nonzero(
-            np.abs(values) > PROPAGATOR_SETTINGS.infinite_eigenvalue_ratio * np.abs(values).max()
+            np.abs(values) > PROPAGATOR_SETTINGS.zero_inverse_eigenvalue_ratio * np.abs(values).max()
         )[0]
         # G is the inverse of L: its eigenvalues near 0 are the infinite eigenvalues of the pencil, which
         # carry no dynamics.

@@ -29,7 +29,7 @@ class GrowthSettings:
 
     min_modes: int = 8
     """Initial number of leading modes that represent exp(L t)."""
-    mode_increase_ratio: float = 0.5
+    mode_increase_fraction: float = 0.5
     """Relative increase of the number of modes if more modes are needed."""
     truncation_exponent: float = 4.0
     """The omitted modes contribute at most exp(-`truncation_exponent`) times the accuracy."""
@@ -171,12 +171,12 @@ def transient_growth(
         early_bound = exp(min(abscissa * first_time, NORM_MAXIMUM_SETTINGS.max_exponent))
         if early_bound <= maximum[0] * (1 + tolerance) or mode_count == len(fine.w):
             break
-        mode_count = min(int((1 + GROWTH_SETTINGS.mode_increase_ratio) * mode_count), len(fine.w))
+        mode_count = min(int((1 + GROWTH_SETTINGS.mode_increase_fraction) * mode_count), len(fine.w))
     error = max(upper_bound, early_bound) / maximum[0] - 1 + later_excess
     if maximum[0] > 1:
         # The meshes are compared at the peak and at the geometric mean of the peak's time and the earliest
         # time that may matter; the coarser mesh uses more modes if possible.
-        coarse.use_leading_modes(int((1 + GROWTH_SETTINGS.mode_increase_ratio) * mode_count))
+        coarse.use_leading_modes(int((1 + GROWTH_SETTINGS.mode_increase_fraction) * mode_count))
         compared_times = maximum[1], sqrt(maximum[1] * max(first_time, log(maximum[0]) / abscissa))
         error += max(
             abs(coarse.norm_and_log_slope(t)[0] / fine.norm_and_log_slope(t)[0] - 1) for t in compared_times

@@ -19,7 +19,8 @@ class OrderRatioSettings:
     min_order: int = 4
     """Smallest order of an element that is chosen from coefficients."""
     min_ratio: float = 0.2
-    """Smallest ratio. Elements of short and stiff segments reach 0.25."""
+    """Smallest order of an element, divided by the largest order of the mesh. Elements of short and stiff
+    segments reach 0.25."""
     ratios_per_unit: int = 64
     """Ratios are rounded up to multiples of 1 over this number, which is less than one order at every allowed
     order."""

@@ -6,7 +6,7 @@ from typing import Protocol
 import numpy as np
 
 from ...arrays import Array, Complex
-from ...discretization.state_layout import PLANE_COMPONENT_COUNT, stress_index
+from ...discretization.state_layout import SE2_DIMENSION, stress_index
 from ...model.compiled.compilation import compiled_for_vectors
 from ...solve_progress import report
 from ..unsolvable import Unsolvable
@@ -188,14 +188,14 @@ def largest_relative_change(values: Array, step: Array, unknowns: int, nodes: in
         # NaN would be lost in the comparisons below.
         if not np.isfinite(change):
             return np.inf
-    max_steps = np.zeros(PLANE_COMPONENT_COUNT)
-    size = np.zeros(PLANE_COMPONENT_COUNT)
+    max_steps = np.zeros(SE2_DIMENSION)
+    size = np.zeros(SE2_DIMENSION)
     # The state at the start is left out: it is the last stage of the previous part of the period.
     for first in range(unknowns, len(values) - 1, unknowns):
-        for a in range(1, PLANE_COMPONENT_COUNT):
+        for a in range(1, SE2_DIMENSION):
             for i in range(nodes):
                 index = first + stress_index(a, i, nodes)
                 max_steps[a], size[a] = max(max_steps[a], abs(step[index])), max(size[a], abs(values[index]))
-    for a in range(1, PLANE_COMPONENT_COUNT):
+    for a in range(1, SE2_DIMENSION):
         max_change = max(max_change, max_steps[a] / size[a])
     return max_change

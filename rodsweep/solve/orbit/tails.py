@@ -16,7 +16,7 @@ from ...determinant.exponents import EXPONENT_SETTINGS
 from ...discretization.elements.elements import ELEMENT_SETTINGS
 from ...discretization.elements.mesh import uniform_mesh
 from ...discretization.elements.time_collocation import radau_method
-from ...discretization.state_layout import PLANE_COMPONENT_COUNT, stress_index
+from ...discretization.state_layout import SE2_DIMENSION, stress_index
 from ...discretization.stresses_at_jumps import stresses_by_element
 from ...model.compiled.compilation import compiled_for_vectors
 from ...model.compiled.kernel_constants import KernelConstants
@@ -212,7 +212,7 @@ def relative_tails_in_time(points: Array, row: Array, nodes: int) -> Array:
     `_last_coefficient_weights`, (s + 1,). nodes: number of nodes without the tip."""
     s = len(row) - 1
     tails = np.zeros((len(points) - 1) // s)
-    for a in range(PLANE_COMPONENT_COUNT):
+    for a in range(SE2_DIMENSION):
         max_value = EXPONENT_SETTINGS.min_divisor
         for m in range(len(points)):
             size = 0.0

@@ -110,10 +110,10 @@ class Points:
         columns_and_indices = zip(self.names, self.columns, indices_by_axis, strict=True)
         return {name: column[index_on_axis] for name, column, index_on_axis in columns_and_indices}
 
-    def rod(self, index: int, **F: float) -> Rod:
-        """Rod of the point at a flat index; raises Crushed. The values in `F` replace the values of the
-        point. A parameter with neither value has the value in NEUTRAL_VALUES."""
-        parameters: dict[str, Any] = {**NEUTRAL_VALUES, **self.values(index), **F}
+    def rod(self, index: int, **replaced_values: float) -> Rod:
+        """Rod of the point at a flat index. replaced_values: values that replace the values of the point. A
+        parameter with neither value has the value in NEUTRAL_VALUES. Raises Crushed."""
+        parameters: dict[str, Any] = {**NEUTRAL_VALUES, **self.values(index), **replaced_values}
         return Rod(**parameters, material=self.material_of(index))
 
     @property

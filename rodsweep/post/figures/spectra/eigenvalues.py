@@ -78,7 +78,7 @@ def _draw_markers(axes: Axes, x: np.ndarray, y: np.ndarray, is_growing: np.ndarr
 
 
 def scale_if_spread(axes: Axes, x: np.ndarray | None, y: np.ndarray) -> None:
-    """Makes an axis symmetric logarithmic if the ratio of its largest to smallest nonzero modulus is above
+    """Makes each axis symmetric logarithmic if the ratio of its largest to smallest nonzero modulus is above
     SPREAD_RATIO. x, y: values on the axes, of any shape; None for an axis that stays unchanged."""
     for set_scale, values in ((axes.set_xscale, x), (axes.set_yscale, y)):
         moduli = np.abs(values[np.isfinite(values) & (values != 0)]) if values is not None else np.zeros(0)

@@ -18,7 +18,9 @@ CRITICALITY_LOOKS = {
 """(legend entry, width, style) of parts of a Hopf curve, by sign of Re c."""
 
 
-def draw_criticality(axes: Axes, view: ResultView, line_parameter: str, row_parameter: str) -> list[Line2D]:
+def draw_hopf_curves_by_criticality(
+    axes: Axes, view: ResultView, line_parameter: str, row_parameter: str
+) -> list[Line2D]:
     """Draws Hopf curves with line styles by criticality, and generalised Hopf points; returns legend
     entries."""
     variables = view.variables

@@ -11,7 +11,7 @@ from ....results.file.view import ResultView
 from ....results.layouts.branch import SPECIAL_KINDS
 from ...stability_curves import curves_bounding_stability
 from ..style import GREEN, SYMBOLS
-from .criticality_curves import draw_criticality
+from .criticality_curves import draw_hopf_curves_by_criticality
 from .curve_labels import label_longest_curve, lowest_parts
 from .regions import DrawnPlane
 
@@ -42,7 +42,9 @@ def draw_boundary_curves(
     """Draws boundary curves and folds; if `hopf_only`, only Hopf curves. Returns legend entries."""
     variables = view.variables
     has_criticality = "curve_criticality" in variables
-    handles = draw_criticality(axes, view, line_parameter, row_parameter) if has_criticality else []
+    handles = (
+        draw_hopf_curves_by_criticality(axes, view, line_parameter, row_parameter) if has_criticality else []
+    )
     curve_looks = {0: DOUBLE_LOOK} if has_criticality else CURVE_LOOKS
     for number, (word, width, style) in curve_looks.items():
         mask = variables["curve_kind"] == number
@@ -60,7 +62,7 @@ def draw_boundary_curves(
         if mask.any():
             handles.append(Line2D([], [], color="k", lw=width, ls=style, label=word))
         if mask.any() and not has_criticality:
-            named = boundaries_to_name(view, number, line_parameter, row_parameter)
+            named = masks_of_labelled_curves(view, number, line_parameter, row_parameter)
             paths = [
                 np.column_stack(
                     [variables[f"curve_{name}"][curve] for name in (line_parameter, row_parameter)]
@@ -77,7 +79,7 @@ def draw_boundary_curves(
     return handles if hopf_only else handles + _mark_curve_folds(axes, view, line_parameter, row_parameter)
 
 
-def boundaries_to_name(
+def masks_of_labelled_curves(
     view: ResultView, kind: int, line_parameter: str, row_parameter: str
 ) -> list[NDArray[np.bool_]]:
     """Masks, (curve_point,), of the curves of the kind `kind` that are labelled with a symbol: all curves of

@@ -91,7 +91,8 @@ class SecantSearch:
         step = -current.test_value / rates.test_slope if rates else CURVE_SECANT_SETTINGS.first_secant_step
         if not abs(step) <= CURVE_SECANT_SETTINGS.max_secant_step:
             raise Unsolvable(
-                "the secant step to a point of the curve is too large: its start is too far away"
+                "the secant step to a point of the curve is too large: the cycle from which it starts is too "
+                "far from the curve"
             )
         if rates:
             error = self._error_after(step, span)

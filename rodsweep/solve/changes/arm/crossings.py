@@ -38,7 +38,7 @@ class ArmCrossingSettings:
     their frequencies is at most this number."""
     min_interval_fraction: float = 1e-6
     """Intervals shorter than this fraction of the path are not divided, but stored as gaps."""
-    min_step_ratio: float = 1e-12
+    min_interval_length_ratio: float = 1e-12
     """The search fails at an interval without located crossings whose length, divided by the larger modulus
     of its ends, is at most this number: some thousand rounding errors."""
     count_distance_fraction: float = 1e-5
@@ -135,7 +135,7 @@ class CrossingSearch:
                 )
                 intervals.add_subintervals(*parts)
                 return
-            if b - a <= ARM_CROSSING_SETTINGS.min_step_ratio * max(abs(a), abs(b)):
+            if b - a <= ARM_CROSSING_SETTINGS.min_interval_length_ratio * max(abs(a), abs(b)):
                 place = self.problem.path.text_at(a)
                 raise Unsolvable(f"the crossing of the imaginary axis near {place} could not be located")
         middle = a + fraction * (b - a)

@@ -14,7 +14,7 @@ from ...unsolvable import Unsolvable
 from ..thresholds_along_path import ThresholdSearchResult, find_thresholds
 
 
-class Attempt(NamedTuple):
+class RangeSearch(NamedTuple):
     """Search of a row that starts at one of its values. result: None if nothing could be searched. failure:
     why nothing could be searched, or why a search along F ended early at a pull, F < 0; empty otherwise."""
 
@@ -33,33 +33,33 @@ def thresholds_of_solvable_part(
     = 0 on either.
     """
     start, stop = row_ends
-    first_attempt = _attempt(rod, name, row_ends, certify)
-    if not first_attempt.failure and first_attempt.result is not None:
-        return first_attempt.result
+    first_search = _search(rod, name, row_ends, certify)
+    if not first_search.failure and first_search.result is not None:
+        return first_search.result
     later_starts: list[float] = []
     if name == "F":
         later_starts = [*inner_values[inner_values < 0].tolist(), *([0.0] if start < 0 < stop else [])]
-    last_attempt = _attempt(rod, name, (later_starts[-1], stop), certify) if later_starts else first_attempt
-    if last_attempt.result is None:
-        raise Unsolvable(last_attempt.failure)
+    last_search = _search(rod, name, (later_starts[-1], stop), certify) if later_starts else first_search
+    if last_search.result is None:
+        raise Unsolvable(last_search.failure)
     if not later_starts:
-        return last_attempt.result
+        return last_search.result
     # Bisection for the first value from which the row can be searched; a search from starts[solved_index]
     # succeeds.
     starts = [start, *later_starts]
-    failure = first_attempt.failure
+    failure = first_search.failure
     failed_index = 0
     solved_index = len(later_starts)
     while solved_index - failed_index > 1:
         middle_index = (failed_index + solved_index) // 2
-        attempt = _attempt(rod, name, (starts[middle_index], stop), certify)
-        if attempt.failure:
+        search = _search(rod, name, (starts[middle_index], stop), certify)
+        if search.failure:
             failed_index = middle_index
-            failure = attempt.failure
+            failure = search.failure
         else:
             solved_index = middle_index
-            last_attempt = attempt
-    result = last_attempt.result or first_attempt.result
+            last_search = search
+    result = last_search.result or first_search.result
     assert result is not None
     message = (
         f"the search begins at F = {starts[solved_index]:.12g}, because a search from "
@@ -68,7 +68,7 @@ def thresholds_of_solvable_part(
     return replace(result, ended_early=True, doubt_text="; ".join(filter(None, (message, result.doubt_text))))
 
 
-def _attempt(rod: Rod, name: str, row_ends: tuple[float, float], certify: bool) -> Attempt:
+def _search(rod: Rod, name: str, row_ends: tuple[float, float], certify: bool) -> RangeSearch:
     """Search along a row between `row_ends`; a search along F that ends early at a pull, F < 0, is a
     failure."""
     try:
@@ -76,6 +76,6 @@ def _attempt(rod: Rod, name: str, row_ends: tuple[float, float], certify: bool) 
             ParameterPath(rod.with_values(**{name: row_ends[0]}), name), *row_ends, certify
         )
     except Unsolvable as failure:
-        return Attempt(None, str(failure))
+        return RangeSearch(None, str(failure))
     ends_early = name == "F" and result.ended_early and result.searched_interval[1] < min(row_ends[1], 0)
-    return Attempt(result, result.doubt_text if ends_early else "")
+    return RangeSearch(result, result.doubt_text if ends_early else "")

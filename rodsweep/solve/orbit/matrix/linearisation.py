@@ -10,7 +10,7 @@ import numpy as np
 
 from ....arrays import Array, Complex
 from ....discretization.nodal_rod import NO_JUMP_DERIVATIVE, NodalRodDerivative
-from ....discretization.state_layout import PLANE_COMPONENT_COUNT
+from ....discretization.state_layout import SE2_DIMENSION
 from ....discretization.stress.form import StressForm
 from ....model.compiled.compilation import compiled_for_vectors
 from ..equations import OrbitEquations
@@ -98,7 +98,7 @@ def eliminate_at_orbit(
     n = len(p.mass)
     points = values[:-1].reshape(1 + K * s, n)
     duration = values[-1] / p.period_parts
-    V = np.empty((K, s, PLANE_COMPONENT_COUNT, len(p.node_matrices.weights)))
+    V = np.empty((K, s, SE2_DIMENSION, len(p.node_matrices.weights)))
     columns = np.empty((K, s, count, n))
     write_right_sides(points, duration, p, derivatives, V, columns)
     ends = eliminate_newton_matrix(points, V, duration, p, factors, columns)

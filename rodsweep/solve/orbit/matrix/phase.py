@@ -10,7 +10,7 @@ from ....arrays import Array
 from ....discretization.elements.mesh import NodeMatrices
 from ....discretization.nodal_rod import NodalRod, NodalRodDerivative
 from ....discretization.plane_equations import write_balance, write_balance_derivative, write_jacobian
-from ....discretization.state_layout import BENDING_INDEX, PLANE_COMPONENT_COUNT, stress_index
+from ....discretization.state_layout import BENDING_INDEX, SE2_DIMENSION, stress_index
 from ....model.compiled.compilation import compiled_for_vectors
 
 
@@ -69,7 +69,7 @@ def write_phase_row(start: Array, c: NodalRod, m: NodeMatrices, row: Array) -> N
     V = np.empty(c.drag.shape)
     G = np.empty(c.drag.shape)
     J = np.empty((n, n))
-    tip = np.empty((PLANE_COMPONENT_COUNT, n))
+    tip = np.empty((SE2_DIMENSION, n))
     write_balance(start, V, G, c, m)
     write_jacobian(start, V, J, tip, c, m)
     theta = tip_angle(start, c.compliance, m)

@@ -29,12 +29,12 @@ class CarriedCountSettings(KernelConstants):
     `rectangles_per_point` times the number of points covered."""
     rectangles_per_point: int = 20
     """Number of rectangles allowed in a proof for each point covered: a new count costs as much as twenty."""
-    wide_gap_ratio: float = 0.2
+    wide_half_gap_ratio: float = 0.2
     """Gaps are treated as equally wide if their relative half-width exceeds this; the leftmost of these gaps
     is taken. Relative half-width: half-width divided by the distance of the gap's middle from the imaginary
     axis."""
-    min_gap_ratio: float = 1e-6
-    """No line is drawn in a gap whose relative half-width (see `wide_gap_ratio`) is less than this."""
+    min_half_gap_ratio: float = 1e-6
+    """No line is drawn in a gap whose relative half-width (see `wide_half_gap_ratio`) is less than this."""
 
 
 CARRIED_COUNT_SETTINGS = CarriedCountSettings()
@@ -43,14 +43,14 @@ CARRIED_COUNT_SETTINGS = CarriedCountSettings()
 @compiled
 def line_in_gap(track: FollowedEigenvalues, i: int, gap: int) -> tuple[float, float]:
     """(real part of the line in the middle of a gap at point i, half-width of the gap divided by the modulus
-    of this real part). The half-width is at most `wide_gap_ratio`, and 0 if the line is not to the left of
-    the imaginary axis. gap: number of eigenvalues to the right of the gap."""
+    of this real part). The half-width is at most `wide_half_gap_ratio`, and 0 if the line is not to the left
+    of the imaginary axis. gap: number of eigenvalues to the right of the gap."""
     right = track.w[i, track.descending_order[i, gap - 1]].real
     left = track.w[i, track.descending_order[i, gap]].real
     line = (right + left) / 2
     if not line < 0:
         return line, 0.0
-    return line, min((right - line) / -line, CARRIED_COUNT_SETTINGS.wide_gap_ratio)
+    return line, min((right - line) / -line, CARRIED_COUNT_SETTINGS.wide_half_gap_ratio)
 
 
 @compiled
@@ -58,7 +58,7 @@ def widest_gap(track: FollowedEigenvalues, i: int, modes: int) -> int:
     """Number of eigenvalues to the right of the widest gap at point i; 0 if no gap is wide enough. The gap
     lies to the left of the leading `modes` and of the imaginary axis."""
     best_gap = 0
-    max_width = CARRIED_COUNT_SETTINGS.min_gap_ratio
+    max_width = CARRIED_COUNT_SETTINGS.min_half_gap_ratio
     for gap in range(modes, track.w.shape[1]):
         width = line_in_gap(track, i, gap)[1]
         if width >= max_width:
@@ -93,7 +93,7 @@ def _widest_open_gap(
     """Number of eigenvalues to the right of the widest gap that stays open between the points `ends`; 0 if no
     gap stays open. The number is at least `modes` and at most `proved_count`."""
     best_gap = 0
-    max_width = CARRIED_COUNT_SETTINGS.min_gap_ratio
+    max_width = CARRIED_COUNT_SETTINGS.min_half_gap_ratio
     for gap in range(modes, min(proved_count, track.w.shape[1] - 1) + 1):
         start_line, start_width = line_in_gap(track, ends[0], gap)
         end_line, end_width = line_in_gap(track, ends[1], gap)
