@@ -187,8 +187,8 @@ def pencil_mesh(order: int) -> Resolution:
 
 
 def krylov_schur(rod: Rod, order: int) -> Complex:
-    """Up to MODE_COUNT + 1 leading eigenvalues of a rod by SLEPc's Krylov-Schur, without Newton's method for
-    D; the last may belong to a pair. order: order of the pencil."""
+    """Leading eigenvalues, (n,) with n at most MODE_COUNT + 1, of a rod by SLEPc's Krylov-Schur, without
+    Newton's method for D. order: order of the pencil."""
     solver = uniform_solver(pencil_mesh(order))
     eigenvalues = solver.solve(rod, transverse_problem(rod).shift, MODE_COUNT, to_rounding=True)
     return leading_eigenvalues(eigenvalues, MODE_COUNT + 1)
