@@ -878,7 +878,7 @@ def test_a_changed_setting_reaches_compiled_functions():
     before = box_from_sqrt_bound(0.0, 1.0)
     with replaced("BOX_SETTINGS", "padding_fraction", 2.0):
         assert box_from_sqrt_bound(0.0, 1.0)[0] - before[0] == pytest.approx(
-            settings()["BOX_SETTINGS"].padding
+            settings()["BOX_SETTINGS"].padding_fraction
         )
     assert box_from_sqrt_bound(0.0, 1.0) == before
 
