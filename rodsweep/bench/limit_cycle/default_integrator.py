@@ -66,17 +66,19 @@ class IntegratorWithTolerances:
         return TimedMethod(self.name, f"{tolerance:.0e}", self.name.split()[0], run)
 
 
-def petsc_trajectory(family: str, variant: str, tolerance: float, task: IntegrationTask) -> Trajectory:
+def petsc_trajectory(ts_type: str, scheme_name: str, tolerance: float, task: IntegrationTask) -> Trajectory:
     """Trajectory of `task`, integrated by a scheme of PETSc TS as in the task `limit_cycle`; raises
-    ArithmeticError if the integration fails. family, variant: type of TS and name of the scheme, such as
+    ArithmeticError if the integration fails. ts_type, scheme_name: type of TS and name of the scheme, such as
     "arkimex" and "5". tolerance: see the module."""
     newton_ratio = (
         TimeScheme().newton_tolerance_ratio if tolerance > TIGHT_TOLERANCE else TIGHT_NEWTON_TOLERANCE
     )
-    scheme = TimeScheme(family, variant, tolerance, newton_ratio, prefix="bench_")
+    scheme = TimeScheme(ts_type, scheme_name, tolerance, newton_ratio, prefix="bench_")
     result = integrator(task.system.mesh, scheme).run(task.system, task.z, task.duration)
     if result.ending != EndReason.reached:
-        raise ArithmeticError(f"{family} {variant} at {tolerance:g}: {result.ending.name} {result.message}")
+        raise ArithmeticError(
+            f"{ts_type} {scheme_name} at {tolerance:g}: {result.ending.name} {result.message}"
+        )
     return result
 
 

@@ -143,12 +143,12 @@ class _IntegrationUntilSettled:
                 raise NoCycleFound(IntegrationStatus.straight, "the motion has decayed to rounding error")
             if len(past_moments) <= TRANSIENT_SETTINGS.returns_per_run:
                 continue
-            return_count, distance = repetition(list(past_moments))
-            distances.record_test(distance, return_count / TRANSIENT_SETTINGS.returns_per_run)
+            returns_per_repetition, distance = repetition(list(past_moments))
+            distances.record_test(distance, returns_per_repetition / TRANSIENT_SETTINGS.returns_per_run)
             # For distances in a geometric sequence the distance from the cycle is distance/(1 - rate).
             tolerance = max_settled_distance(self.request.accuracy)
             if distance <= tolerance * (1 - distances.contraction_rate):
-                return SettledMotion(z, return_count, time_step)
+                return SettledMotion(z, returns_per_repetition, time_step)
         message = not_settled_text(self.return_count, len(past_moments), distances.last)
         raise NoCycleFound(IntegrationStatus.not_settled, message)
 

@@ -76,14 +76,14 @@ class _CurvePoint:
 class BautinProblem:
     """Problem for `follow_curve`: generalised Hopf points over three parameters. axes: these parameters, with
     their ranges. rod: rod with all other parameters. requested_values: values of the third parameter of
-    further points, (m,). accuracy: relative accuracy of c. direction: sign of the first step along the third
-    parameter."""
+    further points, (m,). accuracy: relative accuracy of c. direction_sign: sign of the first step along the
+    third parameter."""
 
     rod: Rod
     axes: tuple[PlaneAxis, PlaneAxis, PlaneAxis]
     requested_values: Array
     accuracy: float
-    direction: float = 1.0
+    direction_sign: float = 1.0
 
     def scaled_coordinates(self, values: Array, frequency: float) -> Array:
         """Coordinates v, (4,): the parameters `values`, (3,), scaled to [0, 1], and log `frequency`."""
@@ -115,7 +115,7 @@ class BautinProblem:
         """The next point, predicted along the last chord, at first along the third parameter; raises
         Unsolvable. length: largest predicted change of a parameter, divided by its range."""
         v = previous[-1].v
-        tangent = np.array([0.0, 0.0, self.direction, 0.0])
+        tangent = np.array([0.0, 0.0, self.direction_sign, 0.0])
         if len(previous) > 1:
             chord = v - previous[-2].v
             # Step lengths are fractions of a parameter's range; the frequency has no range.
@@ -188,7 +188,7 @@ class BautinProblem:
 def bautin_curve(problem: BautinProblem, start: BautinCurvePoint) -> BautinCurve:
     """The curve of generalised Hopf points through `start`, followed in both directions."""
     start_point = _CurvePoint(problem.scaled_coordinates(start.values, start.frequency), start)
-    backward, first_reason = _half_curve(replace(problem, direction=-1.0), start_point)
+    backward, first_reason = _half_curve(replace(problem, direction_sign=-1.0), start_point)
     if first_reason is BautinEndReason.closed:
         return BautinCurve(tuple(point.point for point in backward), (first_reason, first_reason))
     forward, reason = _half_curve(problem, start_point)
@@ -215,8 +215,8 @@ def lies_on_curve(problem: BautinProblem, point: BautinCurvePoint, curve: Bautin
 
 def _half_curve(problem: BautinProblem, start: _CurvePoint) -> tuple[list[_CurvePoint], BautinEndReason]:
     """Returns (points, end_reason). points: points of the curve from `start` on, at first in the direction
-    `problem.direction` of the third parameter, including points at the requested values of this parameter."""
-    if not 0 < start.v[2] + problem.direction * BAUTIN_STEP_CONTROL.min_length < 1:
+    `problem.direction_sign` of the third parameter, including points at its requested values."""
+    if not 0 < start.v[2] + problem.direction_sign * BAUTIN_STEP_CONTROL.min_length < 1:
         return [start], BautinEndReason.range_end
 
     def report_progress(points: Sequence[_CurvePoint]) -> None:

@@ -182,10 +182,10 @@ class CallbackWorkspace:
         )
         take_steps(self.context)
 
-    def set_extrapolation_points(self, variant: str) -> None:
-        """Sets the extrapolation points of the stages for the ARKIMEX type `variant`; no points if
+    def set_extrapolation_points(self, arkimex_type: str) -> None:
+        """Sets the extrapolation points of the stages for the ARKIMEX type `arkimex_type`; no points if
         `EXTRAPOLATION_POINTS` does not contain the type."""
-        self._arrays["points"][:] = extrapolation_points_of(variant)
+        self._arrays["points"][:] = extrapolation_points_of(arkimex_type)
 
     def register_callbacks(self, ts: "PETSc.TS", matrix: "PETSc.Mat") -> None:
         """Registers the callbacks in `ts`, whose options must already be set. matrix: the matrix in which

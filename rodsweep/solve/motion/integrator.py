@@ -120,7 +120,7 @@ class Integrator:
         ts.setProblemType(PETSc.TS.ProblemType.NONLINEAR)
         ts.setMaxStepRejections(INTEGRATOR_SETTINGS.max_rejections)
         ts.setMaxSNESFailures(INTEGRATOR_SETTINGS.max_failed_stages)
-        options = self.scheme.petsc_options(database.getString(prefix + "ts_type", self.scheme.family))
+        options = self.scheme.petsc_options(database.getString(prefix + "ts_type", self.scheme.ts_type))
         own_options = {
             prefix + name: value for name, value in options.items() if not database.hasName(prefix + name)
         }

@@ -40,12 +40,12 @@ UNUSED_POINT = -1
 """Value of the unused entries in the array of extrapolation points."""
 
 
-def extrapolation_points_of(variant: str) -> NDArray[np.int64]:
-    """Indices of the stages through which each stage is extrapolated, for the ARKIMEX type `variant`,
+def extrapolation_points_of(arkimex_type: str) -> NDArray[np.int64]:
+    """Indices of the stages through which each stage is extrapolated, for the ARKIMEX type `arkimex_type`,
     (MAX_STAGES, MAX_STAGE_POINTS); unused entries are UNUSED_POINT. Stage k of this step has the index k,
     stage k of the last step the index MAX_STAGES + k."""
     points = np.full((MAX_STAGES, MAX_STAGE_POINTS), UNUSED_POINT)
-    for stage, (current_stages, last_stages) in EXTRAPOLATION_POINTS.get(variant, {}).items():
+    for stage, (current_stages, last_stages) in EXTRAPOLATION_POINTS.get(arkimex_type, {}).items():
         known_points = [*current_stages, *(MAX_STAGES + k for k in last_stages)]
         points[stage, : len(known_points)] = known_points
     return points

@@ -222,7 +222,7 @@ if PETSc.Sys.getVersion() >= (3, 20):  # its first slopes come from a solve whos
     METHODS += [TimeScheme("dirk", "es325sal", 1e-7), TimeScheme("dirk", "es648sa", 1e-7)]
 
 
-@pytest.mark.parametrize("method", METHODS, ids=lambda method: f"{method.family} {method.variant}")
+@pytest.mark.parametrize("method", METHODS, ids=lambda method: f"{method.ts_type} {method.scheme_name}")
 def test_every_method_follows_the_same_motion(method):
     system = ExplicitSystem(ROD, uniform_mesh(1, 14))
     start = 0.3 * leading_mode(system).z.real
