@@ -5,13 +5,26 @@ A parameter point that cannot be solved raises no error: the point gets a status
 the sweep continues. Any other exception is a bug.
 """
 
-from typing import Self
+from typing import Any, Self
 
 BUG_STATUS = 70
 """Exit status of a bug: EX_SOFTWARE of sysexits.h, "internal software error"."""
 STOPPED_STATUS = 75
 """Exit status of a run stopped by a signal (EX_TEMPFAIL of sysexits.h); the same command continues the
 run."""
+MAX_VALUE_LENGTH = 60
+"""Maximum length of a quoted value in a message, in characters; longer values lose their end."""
+
+
+def short_repr(value: Any) -> str:
+    """`repr` of a value for messages, on one line, cut to `MAX_VALUE_LENGTH` characters; a phrase if `repr`
+    fails because the value is too large."""
+    try:
+        text = " ".join(repr(value).split())
+    except (ValueError, RecursionError):  # an integer of thousands of digits, or a tree too deep
+        article = "an" if isinstance(value, int) else "a"
+        return f"{article} {type(value).__name__} too large to be shown"
+    return text if len(text) <= MAX_VALUE_LENGTH else text[: MAX_VALUE_LENGTH - 3] + "..."
 
 
 class UserError(Exception):

@@ -10,8 +10,7 @@ import xarray as xr
 
 from ..config.arm.axes import PARAMETER_STORED_ALONG
 from ..config.document.call_arguments import refusing_wrong_arguments
-from ..config.values import short_repr
-from ..errors import InputError
+from ..errors import InputError, short_repr
 from ..model.arm.quantities import ALL_QUANTITIES
 from ..results.file.content_digests import SEAL_ATTRIBUTE, attribute_digests, variable_digest
 from ..results.file.current_state import (

@@ -14,8 +14,8 @@ from ..config.document.refusals import message_of_problem, similar_keys, unknown
 from ..config.material import MaterialConfig, with_profile_read
 from ..config.parameters_section import DEFAULT_F_MAX, DEFAULT_VALUES_OF_PARAMETERS, REQUIRED_PARAMETERS
 from ..config.tasks import CONFIGS
-from ..config.values import as_float, short_repr
-from ..errors import InputError
+from ..config.values import as_float
+from ..errors import InputError, short_repr
 from ..model.arm.arm import SlenderArm
 from ..model.arm.as_config import material_config_of, rod_parameters_of
 from ..model.material.rod_material import DEFAULT_MATERIAL

@@ -15,7 +15,7 @@ import xarray as xr
 
 from ..config.document.call_arguments import refusing_wrong_arguments
 from ..config.document.reading import tree_yaml
-from ..errors import EnvironmentIncomplete, InputError
+from ..errors import EnvironmentIncomplete, InputError, short_repr
 from ..tasks.running.unforeseen_exceptions import describe_exception, log_file
 from ..wording import counted
 from .dataset import open_result
@@ -61,9 +61,11 @@ def sweep(
     ranks = plain_keyword("ranks", ranks)
     strict = plain_keyword("strict", strict)
     if not isinstance(strict, bool):
-        raise InputError(f"strict = {strict!r} is not allowed; it should be True or False")
+        raise InputError(f"strict = {short_repr(strict)} is not allowed; it should be True or False")
     if ranks is not None and (isinstance(ranks, bool) or not isinstance(ranks, int) or ranks < 1):
-        raise InputError(f"ranks = {ranks!r} is not allowed; it should be a whole number, 1 or above")
+        raise InputError(
+            f"ranks = {short_repr(ranks)} is not allowed; it should be a whole number, 1 or above"
+        )
     tree = config_tree(task, keywords)
     if ranks is not None:
         _refuse_idle_ranks(ranks, point_count_of_valid_tree(tree))
@@ -88,8 +90,8 @@ def _refuse_idle_ranks(ranks: int, points: int | None) -> None:
     max_ranks = max(os.cpu_count() or 1, points or 0, ALWAYS_ALLOWED_RANKS)
     if points is not None and ranks > max_ranks:
         raise InputError(
-            f"ranks = {ranks} is not allowed for {counted(points, 'point')}; ranks would be idle; it should "
-            f"be at most {max_ranks}"
+            f"ranks = {short_repr(ranks)} is not allowed for {counted(points, 'point')}; ranks would be "
+            f"idle; it should be at most {max_ranks}"
         )
 
 

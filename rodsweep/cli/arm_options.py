@@ -5,7 +5,8 @@ from typing import Any
 
 import click
 
-from ..config.values import overflows_float, short_repr
+from ..config.values import overflows_float
+from ..errors import short_repr
 from ..model.arm.quantities import QUANTITIES, UNITS
 from ..model.arm.segments import EXAMPLE_SEGMENT
 from ..model.parameters import NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS

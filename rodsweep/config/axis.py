@@ -8,7 +8,8 @@ import numpy as np
 from pydantic import BeforeValidator, Field
 
 from ..arrays import Array
-from .values import Number, StrictConfigSection, as_float, short_repr
+from ..errors import short_repr
+from .values import Number, StrictConfigSection, as_float
 
 MAX_AXIS_VALUES = 1_000_000_000
 """Maximum number of values on an axis; a range with more values is refused."""

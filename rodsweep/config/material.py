@@ -8,10 +8,10 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from ..errors import InputError
+from ..errors import InputError, short_repr
 from ..model.material.profile import FACTOR_NAMES, Profile
 from ..model.material.rod_material import RodMaterial
-from .values import Number, StrictConfigSection, cell_number, short_repr
+from .values import Number, StrictConfigSection, cell_number
 
 MAX_PROFILE_ROWS = 1000
 """Maximum number of rows of a profile; longer profiles are refused."""

@@ -5,6 +5,8 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, PlainSerializer
 
+from ..errors import short_repr
+
 
 class StrictConfigSection(BaseModel):
     """Base class of a config's sections: unknown keys are refused, types are not converted, values are
@@ -42,17 +44,6 @@ def cell_number(cell: str) -> float:
     if "_" in cell or not cell.isascii() or overflows_float(cell):
         raise ValueError
     return as_float(float(cell))
-
-
-def short_repr(value: Any) -> str:
-    """`repr` of a value for messages, cut to 60 characters; a phrase if `repr` fails because the value is too
-    large."""
-    try:
-        text = repr(value)
-    except (ValueError, RecursionError):  # an integer of thousands of digits, or a tree too deep
-        article = "an" if isinstance(value, int) else "a"
-        return f"{article} {type(value).__name__} too large to be shown"
-    return text if len(text) <= 60 else text[:57] + "..."
 
 
 def printable_name(name: object, max_length: int = 200) -> str:

@@ -12,8 +12,8 @@ from ..api.rod import SoftRod
 from ..config.document.reading import tree_yaml
 from ..config.document.refusals import unknown_key_hint
 from ..config.tasks import CONFIGS
-from ..config.values import overflows_float, short_repr
-from ..errors import InputError
+from ..config.values import overflows_float
+from ..errors import InputError, short_repr
 from ..model.parameters import OPTIONAL_PARAMETERS
 from ..model.units import load_over_flutter
 

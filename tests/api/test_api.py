@@ -403,7 +403,7 @@ def test_bad_input_is_refused_in_the_words_of_the_command(text, command, monkeyp
         (lambda: rs.Arm(**LOADED | {"poisson": 10**400}), "poisson = 1000000000"),
         (
             lambda: rs.Arm(**LOADED | {"poisson": 10**5000}),
-            "poisson = an integer too large to be shown is not",
+            "poisson = an int too large to be shown is not",
         ),
         (lambda: rs.Arm(**SILICONE | {"radius": "-5 mm"}), "radius = '-5 mm' is not above 0"),
         (lambda: rs.Arm(**LOADED, force="1 N"), "pressure = '2 kPa' and force = '1 N' are both given"),

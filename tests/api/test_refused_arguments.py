@@ -1,7 +1,9 @@
 """Arguments of Python calls that are refused in one sentence."""
 
+import re
 from dataclasses import fields
 
+import numpy as np
 import pytest
 
 import rodsweep as rs
@@ -147,3 +149,33 @@ def test_a_number_too_large_for_a_float_is_refused_in_one_short_sentence(number)
         assert len(sentences[-1]) < 200 and "\n" not in sentences[-1] and "inf" not in sentences[-1]
     assert sentences[-1].startswith("parameters.F: ")
     assert sentences[-1].endswith(" is too large for a floating-point number")
+
+
+HUGE = 10**5000
+"""An integer whose digits Python refuses to print."""
+PAIR = np.array([1, 2])
+"""An array, whose comparison with a text is no single truth value."""
+
+
+@pytest.mark.parametrize("value", [HUGE, [HUGE], {"a": HUGE}, PAIR], ids=["int", "list", "dict", "array"])
+@pytest.mark.parametrize(
+    ("name", "call"),
+    [
+        ("drag", lambda value, line: rs.Arm(**ARM, drag=value)),
+        ("law", lambda value, line: rs.Arm(**ARM, law=value)),
+        ("section", lambda value, line: rs.Arm(**ARM, section=value)),
+        ("segments", lambda value, line: rs.Arm(young="1 kPa", viscosity="1 Pa s", segments=[value])),
+        ("branch.along", lambda value, line: rs.Rod(**ROD).branch(along=value)),
+        ("branch.along", lambda value, line: rs.Arm(**ARM).branch(along=value)),
+        ("ranks", lambda value, line: rs.sweep("spectrum", F=1, **ROD, ranks=value)),
+        ("strict", lambda value, line: rs.sweep("spectrum", F=1, **ROD, strict=value)),
+        ("roots", lambda value, line: rs.plot(line, roots=value)),
+        ("what", lambda value, line: rs.plot(line, what=value)),
+        ("width", lambda value, line: rs.plot(line, width=value)),
+        ("at", lambda value, line: rs.plot(line, at={"k1": value})),
+    ],
+)
+def test_values_of_any_type_are_refused_with_the_name_of_the_argument(line, name, call, value):
+    with pytest.raises(rs.InputError, match=rf"^{re.escape(name)}\b") as refused:
+        call(value, line)
+    assert "\n" not in str(refused.value)

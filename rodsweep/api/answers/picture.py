@@ -12,8 +12,7 @@ from typing import Any, Literal, ParamSpec, TypedDict, TypeVar, Unpack
 import xarray as xr
 
 from ...config.document.call_arguments import refusing_wrong_arguments, unknown_argument_error
-from ...config.values import short_repr
-from ...errors import InputError
+from ...errors import InputError, short_repr
 from ...post.figures import draw
 from ...post.figures.grid_slices import checked_slice_values, slice_at_values
 from ...post.figures.request import FIGURE_KINDS, ROOT_CHOICES, FigureClass, FigureLook, ShapeFunction
@@ -173,8 +172,8 @@ def plot(
     invalid options and if there is nothing to draw."""
     _require_allowed_look(look)
     for name, choice, allowed in (("roots", roots, ROOT_CHOICES), ("what", what, FIGURE_KINDS)):
-        if choice is not None and choice not in allowed:
-            raise InputError(f"{name} = {choice!r} is not allowed; choose {', '.join(allowed)}")
+        if choice is not None and not (isinstance(choice, str) and choice in allowed):
+            raise InputError(f"{name} = {short_repr(choice)} is not allowed; choose {', '.join(allowed)}")
     points = [points] if isinstance(points, int) else points
     if not isinstance(points, Sequence) or not all(isinstance(point, int) for point in points):
         raise InputError(f"points = {short_repr(points)} is not allowed; give whole numbers, from 1")

@@ -9,8 +9,7 @@ import pandas as pd
 import xarray as xr
 
 from ...config.document.call_arguments import refusing_wrong_arguments
-from ...config.values import short_repr
-from ...errors import InputError
+from ...errors import InputError, short_repr
 from ...post.tables.tables import Tables
 from ...results.file.view import ResultView, read_view
 from ...solve.solve_lock import one_at_a_time

@@ -5,12 +5,12 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
 
-from ...errors import InputError
+from ...errors import InputError, short_repr
 from ...model.arm.drag import DRAG_NAMES, DRAG_RANGE_NAME
 from ...model.arm.quantities import LOAD_OF_RATIO, UNITS
 from ...model.units import load_over_flutter, quantity_in_si, split_quantity, value_in_unit
 from ..axis import AXIS_SCHEMA, RANGE_ENDS, Axis, as_axis
-from ..values import as_float, short_repr
+from ..values import as_float
 
 
 def quantity_axis(value: Any, validation: ValidationInfo) -> Axis:

@@ -5,8 +5,7 @@ from functools import wraps
 from inspect import Parameter, Signature, signature
 from typing import ParamSpec, TypeVar
 
-from ...errors import InputError
-from ..values import short_repr
+from ...errors import InputError, short_repr
 from .refusals import unknown_key_hint
 
 P = ParamSpec("P")

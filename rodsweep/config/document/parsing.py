@@ -14,8 +14,8 @@ from ruamel.yaml.error import YAMLError
 from ruamel.yaml.events import AliasEvent, Event, ScalarEvent
 from ruamel.yaml.parser import Parser
 
-from ...errors import InputError
-from ..values import overflows_float, printable_name, short_repr
+from ...errors import InputError, short_repr
+from ..values import overflows_float, printable_name
 
 MAX_CONFIG_BYTES = 100_000
 """Maximum size of a config file, in bytes: about 15,000 numbers, read in a second. Longer lists of points

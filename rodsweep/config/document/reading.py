@@ -12,7 +12,7 @@ import numpy as np
 from pydantic import ValidationError
 from ruamel.yaml import YAML
 
-from ...errors import InputError
+from ...errors import InputError, short_repr
 from ...model.parameters import OPTIONAL_PARAMETERS
 from ...wording import enumeration
 from ..arm.quantities import drag_names_of_indices
@@ -21,7 +21,7 @@ from ..axis import Axis, axis_from_resolved
 from ..base_config import Config
 from ..material import with_profile_read
 from ..tasks import CONFIGS, makes_diagram
-from ..values import printable_name, short_repr
+from ..values import printable_name
 from .parsing import MAX_DEPTH, parsed_yaml, read_config_text
 from .refusals import MAX_KEY_LENGTH, dotted_key, message_of_problem, similar_keys
 

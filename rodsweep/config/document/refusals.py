@@ -9,11 +9,12 @@ from typing import Any, Literal, get_args, get_origin
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
+from ...errors import short_repr
 from ...model.arm.quantities import radius_of_diameter
 from ...model.parameters import PARAMETERS
 from ...wording import enumeration
 from ..base_config import Config
-from ..values import printable_name, short_repr
+from ..values import printable_name
 
 MAX_KEY_LENGTH = 100
 """Maximum number of characters of a key in a message; longer keys are shortened."""

@@ -6,6 +6,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
+from ...errors import short_repr
 from ...model.parameters import (
     NONLINEAR_PARAMETERS,
     PARAMETERS,
@@ -14,7 +15,7 @@ from ...model.parameters import (
 )
 from ..base_config import Config
 from ..parameters_section import DEFAULT_VALUES_OF_PARAMETERS, NonlinearParametersSection
-from ..values import Number, StrictConfigSection, short_repr
+from ..values import Number, StrictConfigSection
 
 
 class BranchOptions(StrictConfigSection):
@@ -80,17 +81,19 @@ class BranchConfig(Config):
 
     @classmethod
     def rod_parameters_used(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
-        return parameter_names_except(options.get("along", "F"), NONLINEAR_PARAMETERS)
+        along = options.get("along", "F")
+        # Options of a Python call may be of any type, as an array, whose comparison is not one truth value.
+        return parameter_names_except(along if isinstance(along, str) else "", NONLINEAR_PARAMETERS)
 
     @classmethod
     def refuse_options_of_arm(cls, options: Mapping[str, Any]) -> None:
         along = options.get("along", "F")
-        if along != "F" and along in TRANSVERSE_PARAMETERS:
+        if isinstance(along, str) and along != "F" and along in TRANSVERSE_PARAMETERS:
             raise ValueError(
                 f"branch.along: {along} is not allowed with parameters.arm, which gives {along}; follow F, "
                 "or give the parameters without an arm"
             )
-        if along != "F":
+        if not isinstance(along, str) or along != "F":
             raise ValueError(
                 f"branch.along = {short_repr(along)} is not allowed for an arm; leave along out, and the "
                 "branches follow the load of the arm, as F, from start to stop"

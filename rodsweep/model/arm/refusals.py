@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...errors import InputError
+from ...errors import InputError, short_repr
 from ..material.laws import law_of
 from ..material.profile import MIN_ROW_DISTANCE
 from ..parameters import MAX_TAPER, MIN_TAPER
@@ -37,27 +37,25 @@ def refuse_wrong_choices(arm: "SlenderArm") -> None:
     poisson: Any = arm.poisson
     is_number = isinstance(poisson, Real) and not isinstance(poisson, bool | np.bool_)
     if not is_number or not -1 < poisson <= INCOMPRESSIBLE_POISSON:
-        try:
-            poisson_text = repr(poisson) if isinstance(poisson, str) else str(poisson)
-        except ValueError:  # an integer of thousands of digits
-            poisson_text = "an integer too large to be shown"
-        raise InputError(f"poisson = {poisson_text:.60} is not a number above -1 and up to 0.5")
+        raise InputError(f"poisson = {short_repr(poisson)} is not a number above -1 and up to 0.5")
+    if not isinstance(arm.drag, str):
+        raise InputError(
+            f"drag = {short_repr(arm.drag)} is not one name; choose one of {', '.join(DRAG_NAMES)}"
+        )
     if arm.drag == DRAG_RANGE_NAME:
         raise InputError(
             f"drag = {arm.drag!r} is for sweeps over all estimates; for one arm choose one of "
             f"{', '.join(DRAG_NAMES)}; the report states the results for all estimates"
         )
-    if not isinstance(arm.drag, str):
-        raise InputError(f"drag = {arm.drag!r:.60} is not one name; choose one of {', '.join(DRAG_NAMES)}")
     if arm.drag not in DRAG_NAMES:
-        raise InputError(f"drag = {arm.drag!r:.60} is not known; choose one of {', '.join(DRAG_NAMES)}")
+        raise InputError(f"drag = {short_repr(arm.drag)} is not known; choose one of {', '.join(DRAG_NAMES)}")
     allowed_by_name = (
         ("law", arm.law, "linear or neo_hookean"),
         ("section", arm.section, "fixed or swelling"),
     )
     for name, value, allowed in allowed_by_name:
         if not isinstance(value, str):
-            raise InputError(f"{name} = {value!r:.60} is not a text; write {allowed}")
+            raise InputError(f"{name} = {short_repr(value)} is not a text; write {allowed}")
     try:
         law_of(arm.law, arm.section)
     except ValueError as error:

@@ -4,7 +4,7 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
-from ...errors import InputError
+from ...errors import InputError, short_repr
 from ..units import GivenQuantity
 from .quantities import UNITS, arm_quantity_in_si, quoted_quantity, radius_of_diameter
 from .section import BoreTooWide, Circle, Tube
@@ -41,7 +41,7 @@ def segment_texts(segments: Any) -> tuple[str, ...]:
         raise InputError(f"segments has no segment; write each segment as in '{EXAMPLE_SEGMENT}'")
     if not isinstance(segments, Sequence):
         raise InputError(
-            f"segments = {str(segments):.60} is not a list; write each segment as in '{EXAMPLE_SEGMENT}'"
+            f"segments = {short_repr(segments)} is not a list; write each segment as in '{EXAMPLE_SEGMENT}'"
         )
     if len(segments) > MAX_SEGMENTS:
         raise InputError(f"segments: {len(segments)} are given; give at most {MAX_SEGMENTS}")
@@ -79,17 +79,18 @@ def _quantities_by_name(start: str, segment: Any) -> Mapping[str, GivenQuantity]
     `start`."""
     if isinstance(segment, Mapping):
         return {str(name): value for name, value in segment.items()}
-    length, colon, parts = str(segment).partition(":")
-    if not isinstance(segment, str) or not colon:
+    length, colon, parts = segment.partition(":") if isinstance(segment, str) else ("", "", "")
+    if not colon:
         raise InputError(
-            f"{start}: {str(segment)!r:.60} is not a segment; write a segment as in '{EXAMPLE_SEGMENT}'"
+            f"{start}: {short_repr(segment)} is not a segment; write a segment as in '{EXAMPLE_SEGMENT}'"
         )
     quantities: dict[str, GivenQuantity] = {"length": length.strip()}
     for part in parts.split(","):
         match = SEGMENT_QUANTITY_PATTERN.fullmatch(part)
         if match is None:
             raise InputError(
-                f"{start}: {part.strip()!r:.60} is not a quantity; write a segment as in '{EXAMPLE_SEGMENT}'"
+                f"{start}: {short_repr(part.strip())} is not a quantity; write a segment as in "
+                f"'{EXAMPLE_SEGMENT}'"
             )
         name = match[1].replace("-", "_").replace(" ", "_")
         if name in quantities:

@@ -56,6 +56,13 @@ class Profile:
                     raise ValueError(
                         f"the factor of {name} at u = {value:g} is {factor:g}; it must be finite and above 0"
                     )
+        with np.errstate(over="ignore", invalid="ignore"):
+            is_finite = np.isfinite(self._cubic_coefficients).all()
+        if not is_finite:
+            raise ValueError(
+                f"the largest factor is {max(map(max, self.rows)):g}, and the factors between the rows "
+                "overflow; give smaller factors"
+            )
 
     @cached_property
     def breaks(self) -> Array:

@@ -8,8 +8,7 @@ import numpy as np
 
 from ...config.arm.axes import PARAMETER_STORED_ALONG
 from ...config.document.refusals import similar_keys
-from ...config.values import short_repr
-from ...errors import InputError
+from ...errors import InputError, short_repr
 from ...model.arm.drag import DRAG_NAMES
 from ...model.arm.quantities import ALL_QUANTITIES
 from ...model.parameters import NONLINEAR_PARAMETERS
@@ -153,7 +152,7 @@ def checked_slice_values(section_values: Mapping[str, float | str]) -> dict[str,
             str(name): value if isinstance(value, str) else float(value)
             for name, value in section_values.items()
         }
-    except (AttributeError, TypeError, ValueError):
+    except (AttributeError, OverflowError, TypeError, ValueError):
         given_text = short_repr(section_values)
         raise InputError(
             f"at = {given_text} is not allowed; give numbers by parameter, as at={{'k1': 150}}"

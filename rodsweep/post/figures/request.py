@@ -7,7 +7,7 @@ from pathlib import Path
 from matplotlib import rcParams
 from matplotlib.figure import Figure
 
-from ...errors import InputError
+from ...errors import InputError, short_repr
 from ...model.units import quantity_in_si
 from ...results.file.view import ResultView
 from ..output_files import save_figure
@@ -81,9 +81,11 @@ class FigureLook:
 def _inches(width: str) -> float:
     """Width in inches, from a name in WIDTHS or a length with a unit. Raises InputError for another text, and
     for a width outside MIN_WIDTH to MAX_WIDTH."""
-    if width in WIDTHS:
+    if isinstance(width, str) and width in WIDTHS:
         return WIDTHS[width]
-    message = f"width = {width!r} is not allowed; choose {', '.join(WIDTHS)}, or a length such as '89 mm'"
+    message = (
+        f"width = {short_repr(width)} is not allowed; choose {', '.join(WIDTHS)}, or a length such as '89 mm'"
+    )
     try:
         inches = quantity_in_si("width", width, "m", "89 mm") / METRES_PER_INCH
     except InputError:

@@ -9,8 +9,8 @@ from typing import Any, TextIO
 import numpy as np
 
 from ...arrays import Array
-from ...config.values import cell_number, short_repr
-from ...errors import InputError
+from ...config.values import cell_number
+from ...errors import InputError, short_repr
 from ...model.material.rod_material import DEFAULT_MATERIAL, RodMaterial
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
