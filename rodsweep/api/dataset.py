@@ -55,7 +55,14 @@ def named_file_path(argument: object, example: str) -> Path:
     if not name or "\0" in name:
         raise InputError(f"{name!r} is not the name of a file; write it as in {example}")
     path = Path(name)
-    return Path(os.path.realpath(path)) if path.is_symlink() else path
+    try:
+        os.fsencode(name)
+        return Path(os.path.realpath(path)) if path.is_symlink() else path
+    except (OSError, UnicodeEncodeError) as error:  # a name that is too long, or a lone surrogate
+        reason = error.strerror if isinstance(error, OSError) else error.reason
+        raise InputError(
+            f"{short_repr(name)} is not the name of a file ({reason}); write it as in {example}"
+        ) from None
 
 
 def _open_result_file(path: Path) -> xr.Dataset:

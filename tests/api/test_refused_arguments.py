@@ -179,3 +179,20 @@ def test_values_of_any_type_are_refused_with_the_name_of_the_argument(line, name
     with pytest.raises(rs.InputError, match=rf"^{re.escape(name)}\b") as refused:
         call(value, line)
     assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize("name", ["\ud800", "9" * 300, "\0", ""], ids=["surrogate", "long", "nul", "empty"])
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda name, line: rs.open(name),
+        lambda name, line: rs.table(name),
+        lambda name, line: rs.plot(name),
+        lambda name, line: rs.plot(line, f"{name}.png" if name else name),
+        lambda name, line: rs.plot(line).save(f"{name}.png" if name else name),
+    ],
+    ids=["open", "table", "plot", "output", "save"],
+)
+def test_a_text_that_is_no_name_of_a_file_is_refused(line, call, name):
+    with pytest.raises(rs.InputError, match="is not the name of a file"):
+        call(name, line)

@@ -7,6 +7,7 @@ from reference.random_arms import random_arm
 from rodsweep.determinant.arm.determinant import ArmDeterminant
 from rodsweep.determinant.arm.newton import refine_eigenvalue_and_error
 from rodsweep.discretization.elements.elements import Elements
+from rodsweep.discretization.elements.resolution import RESOLUTION_SETTINGS
 from rodsweep.discretization.straight.arm_pencil import ArmPencil
 from rodsweep.discretization.straight.arm_resolution import ArmMesh, arm_mesh, finer_arm_mesh
 from rodsweep.discretization.straight.dense_eigenproblem import dense_eigenproblem
@@ -92,3 +93,12 @@ def test_coefficients_are_sampled_at_the_nodes_and_on_their_own_side_of_a_jump()
     assert (points[:, 0] > edges[:-1]).all()
     assert (points[:, -1] < edges[1:]).all()
     assert np.abs(points.ravel() - mesh.node_positions[mesh.element_nodes]).max() < 2e-15
+
+
+@pytest.mark.parametrize("F", [-1e13, -1e25])
+def test_an_arm_that_no_mesh_resolves_has_a_mesh_that_is_too_fine(F):
+    """The elements of the finest wave were counted one by one, up to a million and more."""
+    profile = Profile((0.0, 0.4, 0.4, 1.0), ((1.0,) * 6,) * 2 + ((0.5,) * 6,) * 2)
+    rod = Rod(F=F, k1=1e4, k2=1e3, gamma3=1e-4, material=RodMaterial(profile=profile))
+    mesh = arm_mesh(rod, 4, 1e-8)
+    assert RESOLUTION_SETTINGS.max_unknowns < mesh.unknown_count < 10 * RESOLUTION_SETTINGS.max_unknowns

@@ -38,6 +38,8 @@ ARGUMENTS_OF_OPTIONS = (
     (re.compile(r"--(at|what|output|roots|width|style|title)\b"), r"\1"),
 )
 """Regular expressions of options of `rodsweep plot`, each with the corresponding argument of `rs.plot`."""
+SAVE_EXAMPLE = 'picture.save("figure.pdf")'
+"""Example of a call of `Picture.save`, for messages."""
 PLOT_EXAMPLE = 'rs.plot(data, "figure.pdf", width="single")'
 
 
@@ -126,12 +128,12 @@ class Picture:
     """The rendered figure, PNG, or GIF for an animation."""
 
     @one_at_a_time
-    @refusing_wrong_arguments('picture.save("figure.pdf")')
+    @refusing_wrong_arguments(SAVE_EXAMPLE)
     @naming_python_arguments
     def save(self, path: str | Path) -> str:
         """Draws the figure into a file (.png, .pdf, .svg; .gif or .mp4 for an animation) and returns a
         sentence about the figure."""
-        return draw(self.views, Path(path), **self.choices)
+        return draw(self.views, named_file_path(path, SAVE_EXAMPLE), **self.choices)
 
     @one_at_a_time
     @refusing_wrong_arguments("picture.figure()")

@@ -92,6 +92,12 @@ def required_order(wave_number: float, accuracy: float) -> float:
     return settings.order_intercept + settings.order_slope * wave_number + further_digits * order_per_digit
 
 
+def max_element_count(max_order: int) -> int:
+    """Number of elements of the order `max_order` whose mesh has more than `RESOLUTION_SETTINGS.max_unknowns`
+    unknowns. No more elements are counted, because such a mesh is not solved."""
+    return RESOLUTION_SETTINGS.max_unknowns // (3 * max_order) + 2
+
+
 def resolution_for(wave_number: float, accuracy: float, max_order: int | None = None) -> Resolution:
     """The smallest number of elements, and then the lowest order (plus one for several elements), that
     resolve a wave to the relative accuracy `accuracy`.
@@ -101,14 +107,11 @@ def resolution_for(wave_number: float, accuracy: float, max_order: int | None = 
     `RESOLUTION_SETTINGS.max_order` by default.
     """
     max_order = max_order or RESOLUTION_SETTINGS.max_order
-    max_element_count = RESOLUTION_SETTINGS.max_unknowns // (3 * max_order) + 2  # more unknowns fail anyway
+    max_count = max_element_count(max_order)
     element_count = 1
-    while (
-        element_count < max_element_count
-        and required_order(wave_number / element_count, accuracy) > max_order
-    ):
+    while element_count < max_count and required_order(wave_number / element_count, accuracy) > max_order:
         element_count += 1
-    if element_count == max_element_count:
+    if element_count == max_count:
         return Resolution(element_count, max_order)
     order = max(RESOLUTION_SETTINGS.min_order, ceil(required_order(wave_number / element_count, accuracy)))
     return Resolution(element_count, order + (1 if element_count > 1 else 0))

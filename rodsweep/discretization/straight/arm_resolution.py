@@ -9,7 +9,7 @@ from ...arrays import Array
 from ...model.dispersion import most_amplified_local_waves, sampled_arm
 from ...model.rod import Rod
 from ..elements.elements import Elements
-from ..elements.resolution import RESOLUTION_SETTINGS, required_order
+from ..elements.resolution import RESOLUTION_SETTINGS, max_element_count, required_order
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -97,9 +97,11 @@ def finer_arm_mesh(rod: Rod, mesh: ArmMesh) -> ArmMesh:
 
 def _element_count_for(phase: float, accuracy: float, max_order: int) -> int:
     """Number of elements of the order `max_order` that resolve an interval in which the phase of the wave
-    grows by `phase`, to the relative accuracy `accuracy`."""
+    grows by `phase`, to the relative accuracy `accuracy`. At most `max_element_count`, with which the mesh has
+    too many unknowns."""
     count = 1
-    while required_order(phase / count, accuracy) > max_order:
+    max_count = max_element_count(max_order)
+    while count < max_count and required_order(phase / count, accuracy) > max_order:
         count += 1
     return count
 
