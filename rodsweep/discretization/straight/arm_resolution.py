@@ -67,16 +67,21 @@ def _elements_for_wave(rod: Rod, phases: Array, accuracy: float, max_order: int)
     sample interval, |q| times length, (n,). max_order: maximum order of an element."""
     breaks = rod.material.breaks
     phases_between_breaks = phases.reshape(len(breaks) - 1, -1).sum(axis=1)
+    max_count = max_element_count(max_order)
     edges = [0.0]
     max_element_phase = 0.0
+    is_too_fine = False
     for start, stop, phase in zip(breaks[:-1], breaks[1:], phases_between_breaks, strict=True):
         log_radius_ratio = abs(log(_relative_radius_at(rod, stop) / _relative_radius_at(rod, start)))
         min_count = _element_count_for(float(phase), accuracy, max_order)
+        is_too_fine |= min_count == max_count
         element_count = max(
             1, ceil(log_radius_ratio / log(ARM_RESOLUTION_SETTINGS.max_radius_ratio)), min_count
         )
         edges += _graded_edges(rod, start, stop, element_count)
         max_element_phase = max(max_element_phase, float(phase) / element_count)
+    if is_too_fine:  # more unknowns than allowed, whatever the order
+        return Elements(tuple(edges), max_order)
     order = max(RESOLUTION_SETTINGS.min_order, ceil(required_order(hypot(max_element_phase, 1.0), accuracy)))
     return Elements(
         tuple(edges), order + (0 if rod.is_uniform else ARM_RESOLUTION_SETTINGS.profile_order_increase)
@@ -97,8 +102,8 @@ def finer_arm_mesh(rod: Rod, mesh: ArmMesh) -> ArmMesh:
 
 def _element_count_for(phase: float, accuracy: float, max_order: int) -> int:
     """Number of elements of the order `max_order` that resolve an interval in which the phase of the wave
-    grows by `phase`, to the relative accuracy `accuracy`. At most `max_element_count`, with which the mesh has
-    too many unknowns."""
+    grows by `phase`, to the relative accuracy `accuracy`. At most `max_element_count`, with which the mesh
+    has too many unknowns."""
     count = 1
     max_count = max_element_count(max_order)
     while count < max_count and required_order(phase / count, accuracy) > max_order:
