@@ -176,6 +176,13 @@ def test_slabs_reach_from_end_to_end_and_grow_finer_towards_a_crushed_rod():
     assert all(100 - b > 0.49 * (100 - a) for a, b in parts[:-1])
 
 
+@pytest.mark.parametrize("ends", [(0.0, 5e-324), (0.0, 1e-323), (30.0, 30.000000000000004)])
+def test_a_path_of_one_rounding_is_one_interval(ends):
+    """The steps along it were 0, and their number had no end."""
+    path = ParameterPath(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4), "F")
+    assert path_intervals(path, *ends) == [ends]
+
+
 def test_an_eigenvalue_and_its_slope_along_the_force():
     path = ParameterPath(RODS[0], "F")
     w, slope, error = eigenvalue_newton(complex(-60, 150), path.rod.coefficients, path.direction)

@@ -53,7 +53,9 @@ def path_intervals(path: ParameterPath, p_start: float, p_stop: float) -> list[t
         if path.name != "F":  # drag and compliances vary over decades
             step = min(step, max(p, COVERING_SETTINGS.min_interval_ratio * width))
         end = p + step
-        edges.append(p_stop if p_stop - end < COVERING_SETTINGS.min_last_interval_ratio * step else end)
+        # On a path of a few roundings, p + step is p.
+        is_last = end <= p or p_stop - end < COVERING_SETTINGS.min_last_interval_ratio * step
+        edges.append(p_stop if is_last else end)
     return list(zip(edges[:-1], edges[1:], strict=True))
 
 
