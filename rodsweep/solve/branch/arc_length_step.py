@@ -73,6 +73,8 @@ class BranchCycle:
     """The mesh of the next cycle; None for the mesh of this cycle."""
     previous: PreviousCycle | None = None
     """The previous cycle of the branch; None for the first cycle."""
+    prediction_error: float = 0.0
+    """Relative distance of this cycle from its prediction by the previous cycle."""
 
     @property
     def scale(self) -> ArcLengthScale:
@@ -186,19 +188,17 @@ def _step_of_length(start: BranchCycle, accuracy: float, length: float) -> StepR
     solved = condition.solve_cycle(predicted, tolerance, start.workspace, allowed_matrix_distance(accuracy))
     prediction_error = relative_change(predicted, solved.orbit.values - predicted.values)
     is_unknown = start.previous is None or start.next_mesh is not None
+    control_error = prediction_error
     if is_unknown and prediction_error <= ARC_STEP_CONTROL.max_error:
         # The error of the tangent predictor does not predict the error of the cubic, and the error on another
         # mesh contains the difference between the meshes.
-        prediction_error = ARC_STEP_CONTROL.target_error
+        control_error = ARC_STEP_CONTROL.target_error
     tangent = tangent_at(solved.orbit, start.scale, start.unit_tangent, linearisation_of(solved))
     cosine = float(
         start.scale.directional_derivative(solved.orbit, tangent) @ start.unit_tangent
     )  # both have unit length
-    return StepResult(
-        branch_cycle_with_calibrated_errors(start, solved, tangent, length, length, accuracy),
-        prediction_error,
-        cosine,
-    )
+    cycle = branch_cycle_with_calibrated_errors(start, solved, tangent, length, length, accuracy)
+    return StepResult(replace(cycle, prediction_error=prediction_error), control_error, cosine)
 
 
 def arc_length_between(start: BranchCycle, end: BranchCycle) -> float:

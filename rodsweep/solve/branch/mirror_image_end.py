@@ -54,28 +54,43 @@ def _end_at_hopf_or_shorter_step(
     if no known Hopf point is near), or `start` with half the step, if `start` is too large for an
     extrapolation. Raises Unsolvable."""
     half_length = arc_length_between(start, end) / 2
+    shorter = (
+        replace(start, next_arc_length=half_length) if half_length >= ARC_STEP_CONTROL.min_length else None
+    )
     if start.cycle.measures.tip_y_max > BRANCH_END_SETTINGS.max_last_amplitude:
-        if half_length < ARC_STEP_CONTROL.min_length:
+        if shorter is None:
             raise Unsolvable(
                 "the branch jumps to its mirror image, and no shorter step along the branch is allowed"
             )
-        return replace(start, next_arc_length=half_length)
-    can_halve = half_length >= ARC_STEP_CONTROL.min_length
+        return shorter
+    if (known_end := _known_hopf_end_or_shorter_step(start, shorter, limits)) is not None:
+        return known_end
+    if shorter is not None and not _is_smallest(start):
+        return shorter  # the parabola through a smaller cycle is closer to the Hopf point
+    reason = "the cycles shrink to zero amplitude, but no Hopf point is known there"
+    return BranchEnd(branch_end_point(start, BranchEndReason.no_cycle_found, reason), complete=False)
+
+
+def _known_hopf_end_or_shorter_step(
+    start: BranchCycle, shorter: BranchCycle | None, limits: BranchLimits
+) -> BranchCycle | BranchEnd | None:
+    """The end of a branch at the known Hopf point to which its last cycle `start` leads, or at the end of the
+    range before this point; `shorter` if `start` is not near enough; None if it leads to no known Hopf point.
+    shorter: `start` with a shorter step, or None if no shorter step is allowed."""
     for number, hopf in enumerate(limits.hopfs):
         if _shrinks_to(start, hopf, limits.accuracy):
-            if _has_fold_ahead(start, hopf) and can_halve:
-                return replace(start, next_arc_length=half_length)
+            if _has_fold_ahead(start, hopf) and shorter is not None:
+                return shorter
             return BranchEnd(hopf_as_special_point(hopf), complete=True, end_hopf=number)
     for hopf in limits.hopfs_beyond:
         if _shrinks_to(start, hopf, limits.accuracy):
             end_before_hopf = end_at_range_end_near_hopf(start, hopf, limits)
             is_final = _is_smallest(start) or is_accurate_at_range_end(end_before_hopf, limits.accuracy)
-            if can_halve and (_has_fold_ahead(start, hopf) or not is_final):
-                return replace(start, next_arc_length=half_length)
+            if shorter is not None and (_has_fold_ahead(start, hopf) or not is_final):
+                return shorter
             if end_before_hopf is not None:
                 return end_before_hopf
-    reason = "the cycles shrink to zero amplitude, but no Hopf point is known there"
-    return BranchEnd(branch_end_point(start, BranchEndReason.no_cycle_found, reason), complete=False)
+    return None
 
 
 def _shrinks_to(start: BranchCycle, hopf: HopfBranchStart, accuracy: float) -> bool:

@@ -34,6 +34,23 @@ def test_a_fold_close_to_the_birth_of_a_branch_is_found():
     assert curve.special_points[0].parameter_value - fold.parameter_value == pytest.approx(2.87e-6, rel=0.05)
 
 
+@pytest.mark.parametrize("start", [0, 1])
+def test_a_branch_between_two_near_hopf_points_ends_at_the_other_one(start):
+    """The small cycles of both Hopf points are almost alike, so that a long step leads from one part of the
+    branch to the other; and behind its fold at F = 74.2082 the parabola through a cycle misses the Hopf point
+    at first. Steps of the accuracy 1e-6 once met both. The folds are those of the accuracy 1e-7."""
+    path = ParameterPath(Rod(F=60.0, k1=133.072, k2=1e4, gamma3=0.006), "F")
+    crossings = find_axis_crossings(path, 60.0, 86.0).thresholds
+    hopfs = [hopf_branch_start(path, crossing) for crossing in crossings]
+    limits = BranchLimits(
+        hopfs, (60.0, 86.0), (BranchEndReason.range_end,) * 2, 1e-6, 500, NewtonWorkspace(), 0.26
+    )
+    curve = follow_branch(start, limits)
+    assert (curve.complete, curve.start_hopf, curve.end_hopf) == (True, start, 1 - start)
+    folds = [point.parameter_value for point in curve.special_points[1:-1]]
+    assert sorted(folds) == pytest.approx([74.208181684, 84.358686271], rel=1e-9)
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("accuracy", [1e-2, 1e-3])
 def test_cycles_of_low_accuracy_are_not_the_symmetric_cycles_nearby(accuracy):
