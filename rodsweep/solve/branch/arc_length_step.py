@@ -74,7 +74,8 @@ class BranchCycle:
     previous: PreviousCycle | None = None
     """The previous cycle of the branch; None for the first cycle."""
     prediction_error: float = 0.0
-    """Relative distance of this cycle from its prediction by the previous cycle."""
+    """Relative distance of this cycle from its prediction by the previous cycle; 0 if the meshes differ, and
+    with them the cycles."""
 
     @property
     def scale(self) -> ArcLengthScale:
@@ -198,7 +199,9 @@ def _step_of_length(start: BranchCycle, accuracy: float, length: float) -> StepR
         start.scale.directional_derivative(solved.orbit, tangent) @ start.unit_tangent
     )  # both have unit length
     cycle = branch_cycle_with_calibrated_errors(start, solved, tangent, length, length, accuracy)
-    return StepResult(replace(cycle, prediction_error=prediction_error), control_error, cosine)
+    if start.next_mesh is None:
+        cycle = replace(cycle, prediction_error=prediction_error)
+    return StepResult(cycle, control_error, cosine)
 
 
 def arc_length_between(start: BranchCycle, end: BranchCycle) -> float:

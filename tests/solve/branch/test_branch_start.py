@@ -34,21 +34,42 @@ def test_a_fold_close_to_the_birth_of_a_branch_is_found():
     assert curve.special_points[0].parameter_value - fold.parameter_value == pytest.approx(2.87e-6, rel=0.05)
 
 
+NEAR_HOPF_POINTS = {
+    "1e-6": (
+        Rod(F=0.0, k1=133.072, k2=1e4, gamma3=0.006),
+        (60.0, 86.0),
+        1e-6,
+        [74.208181684, 84.358686271],
+    ),
+    "1e-5": (
+        Rod(F=0.0, k1=134.5294704184161, k2=11174.024843, gamma3=0.00541206904868, gamma1=0.86337382),
+        (20.0, 130.0),
+        1e-5,
+        [74.624718195, 78.387323836],
+    ),
+}
+"""Rod, range of F, accuracy, and F of the folds of the branch between the two Hopf points, at ten times the
+accuracy."""
+
+
 @pytest.mark.parametrize("start", [0, 1])
-def test_a_branch_between_two_near_hopf_points_ends_at_the_other_one(start):
+@pytest.mark.parametrize(
+    ("rod", "ends", "accuracy", "folds"), NEAR_HOPF_POINTS.values(), ids=NEAR_HOPF_POINTS
+)
+def test_a_branch_between_two_near_hopf_points_ends_at_the_other_one(rod, ends, accuracy, folds, start):
     """The small cycles of both Hopf points are almost alike, so that a long step leads from one part of the
-    branch to the other; and behind its fold at F = 74.2082 the parabola through a cycle misses the Hopf point
-    at first. Steps of the accuracy 1e-6 once met both. The folds are those of the accuracy 1e-7."""
-    path = ParameterPath(Rod(F=60.0, k1=133.072, k2=1e4, gamma3=0.006), "F")
-    crossings = find_axis_crossings(path, 60.0, 86.0).thresholds
+    branch to the other; and behind its first fold the parabola through a cycle misses the Hopf point at
+    first. Steps of these accuracies once met both."""
+    path = ParameterPath(rod, "F")
+    crossings = find_axis_crossings(path, *ends).thresholds
     hopfs = [hopf_branch_start(path, crossing) for crossing in crossings]
-    limits = BranchLimits(
-        hopfs, (60.0, 86.0), (BranchEndReason.range_end,) * 2, 1e-6, 500, NewtonWorkspace(), 0.26
-    )
+    unit = 0.01 * (ends[1] - ends[0])
+    reasons = (BranchEndReason.range_end,) * 2
+    limits = BranchLimits(hopfs, ends, reasons, accuracy, 500, NewtonWorkspace(), unit)
     curve = follow_branch(start, limits)
     assert (curve.complete, curve.start_hopf, curve.end_hopf) == (True, start, 1 - start)
-    folds = [point.parameter_value for point in curve.special_points[1:-1]]
-    assert sorted(folds) == pytest.approx([74.208181684, 84.358686271], rel=1e-9)
+    found = [point.parameter_value for point in curve.special_points[1:-1]]
+    assert sorted(found) == pytest.approx(folds, rel=1e-8)
 
 
 @pytest.mark.long

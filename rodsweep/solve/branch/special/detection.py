@@ -94,13 +94,14 @@ def lie_on_one_branch(start: BranchCycle, end: BranchCycle) -> bool:
     Along a branch the derivative of the parameter, divided by the product of 1 - m over the nontrivial
     multipliers m, is finite and not 0: both vanish at a fold. Its sign changes only at a cycle where two
     branches meet. If the sign is uncertain, because a multiplier is 1 within its error, the prediction error
-    of `end` decides.
+    of `end` decides, unless nothing changes.
     """
-    if any(map(_may_be_on_either_side_of_one, (start, end))):
-        return end.prediction_error <= SPECIAL_POINT_SETTINGS.max_uncertain_prediction_error
     has_fold = start.parameter_rate * end.parameter_rate < 0
     change = _count_beyond_one(start) - _count_beyond_one(end)
-    return change % 2 == int(has_fold)
+    if not any(map(_may_be_on_either_side_of_one, (start, end))):
+        return change % 2 == int(has_fold)
+    is_unchanged = not has_fold and change % 2 == 0
+    return is_unchanged or end.prediction_error <= SPECIAL_POINT_SETTINGS.max_uncertain_prediction_error
 
 
 def _may_be_on_either_side_of_one(point: BranchCycle) -> bool:

@@ -81,10 +81,11 @@ class SpecialPointSettings:
     unit_multiplier_distance: float = 3e-3
     """A multiplier m with |m - 1| below this number may lie on either side of the unit circle, because of
     errors. Near a fold two multipliers are close to 1."""
-    max_uncertain_prediction_error: float = 0.01
-    """Two successive cycles are taken as cycles of one branch without the evidence of their multipliers only
-    if the prediction error of the second cycle is at most this number: steps along one branch have errors of
-    about 5e-4, and between small cycles of two Hopf points close together, errors of 0.05 were seen."""
+    max_uncertain_prediction_error: float = 1e-4
+    """If the parameter turns back between two successive cycles, and their multipliers do not show a fold
+    within their errors, the cycles are taken as cycles of one branch only if the prediction error of the
+    second cycle is at most this number: a fifth of the usual error, so that one halving of the step suffices.
+    Between small cycles of two Hopf points close together, errors of 8e-3 were seen."""
     max_relocation_distance: float = 1e-6
     """Two special points of a rod are the same point only if the relative difference of their parameters,
     less their errors, is at most this number; a point on a curve over two parameters has an error of 1e-7."""
