@@ -11,7 +11,7 @@ from ...discretization.elements.mesh import Mesh, mesh_with_edges
 from ...discretization.elements.resolution import RESOLUTION_SETTINGS
 from ...discretization.state_layout import plane_layout
 from ..unsolvable import MeshLimitReached
-from .matrix.workspace import WORKSPACE_SETTINGS, factors_size
+from .matrix.workspace import WORKSPACE_SETTINGS, factors_size, require_enough_stages
 from .orbit import Orbit, TimeMesh
 from .time_grading import UNIFORM_TIME, TimeGrading
 
@@ -66,6 +66,9 @@ class OrbitMeshSettings:
     max_unknowns: int = 400
     """Largest number of unknowns of a state on an allowed mesh; with more unknowns a Newton step takes more
     than a second."""
+
+    def __post_init__(self) -> None:
+        require_enough_stages(self.min_stages)
 
 
 ORBIT_MESH_SETTINGS = OrbitMeshSettings()

@@ -9,6 +9,7 @@ from ....discretization.explicit_system import ExplicitSystem
 from ....discretization.plane_equations import write_balance
 from ....discretization.stress.form import StressForm
 from ...motion.integrator import Trajectory
+from ...orbit.matrix.workspace import require_enough_stages
 from ...orbit.orbit import Orbit, node_times
 from ...orbit.symmetry import NO_SYMMETRY, REFLECTION
 
@@ -25,6 +26,9 @@ class NewtonFromMotionSettings:
     """Number of equidistant times per period from which the time of the largest y is chosen."""
     max_asymmetry: float = 0.2
     """The orbit is solved as symmetric if the `relative_asymmetry` of the motion is less than this number."""
+
+    def __post_init__(self) -> None:
+        require_enough_stages(self.stages)
 
 
 NEWTON_FROM_MOTION_SETTINGS = NewtonFromMotionSettings()

@@ -40,10 +40,18 @@ WORKSPACE_SETTINGS = WorkspaceSettings()
 FIRST_STAGE, SECOND_STAGE, INTERVAL_MAP = range(3)
 """Numbers of the blocks of an interval for the first two stages, and for the map from its start to its end.
 """
+MIN_STAGE_COUNT = 3
+"""Smallest number of stages of an interval for which the blocks of Newton's matrix are arranged."""
+
+
+def require_enough_stages(s: int) -> None:
+    """Raises ValueError if Newton's matrix cannot be eliminated for intervals of s stages."""
+    if s < MIN_STAGE_COUNT:
+        raise ValueError(f"{s} stages per time interval are too few: at least {MIN_STAGE_COUNT} are needed")
 
 
 def block_count(s: int) -> int:
-    """Number of blocks of an interval of s >= 3 stages."""
+    """Number of blocks of an interval of s stages, at least `MIN_STAGE_COUNT`."""
     return int(s + (s - 2) ** 2)
 
 
