@@ -19,6 +19,7 @@ from ...model.compiled.compilation import compiled
 from ...model.rod import Coefficients
 from ..certificate.box import box_from_sqrt_bound
 from ..value import (
+    DETERMINANT_SETTINGS,
     distance_to_next_root,
     newton_correction_and_scales,
     scaled_determinant,
@@ -57,18 +58,14 @@ def root_error_and_scales(w: complex, coefficients: Coefficients) -> tuple[float
     sqrt(2 e/|D''|) of the middle.
     """
     error, length, wave = newton_correction_and_scales(w, coefficients)
-    if error > ROOT_SETTINGS.ill_conditioned_ratio * abs(w):
+    if error > ROOT_SETTINGS.double_root_correction_ratio * abs(w):
         D, D1, S, rounding_error = scaled_determinant(w, coefficients)
-        e = max(abs(D), ROOT_SETTINGS.ill_conditioned_rounding_fraction * rounding_error)
-        if D1 != 0:
-            error = max(error, e / abs(D1))
-        if error > ROOT_SETTINGS.double_root_correction_ratio * abs(w):
-            D_ww = abs(second_derivative(w, S, coefficients))
-            # Close to a double root Newton's correction is useless: the roots of the parabola bound the
-            # distance.
-            if abs(D1) ** 2 < ROOT_SETTINGS.min_squared_slope * e * D_ww:
-                root_distance = math.sqrt(2 * e / D_ww)
-                error = min(max(error, root_distance), abs(D1) / D_ww + root_distance)
+        e = max(abs(D), DETERMINANT_SETTINGS.typical_rounding_fraction * rounding_error)
+        D_ww = abs(second_derivative(w, S, coefficients))
+        # Close to a double root Newton's correction is useless: the roots of the parabola bound the distance.
+        if abs(D1) ** 2 < ROOT_SETTINGS.min_squared_slope * e * D_ww:
+            root_distance = math.sqrt(2 * e / D_ww)
+            error = min(max(error, root_distance), abs(D1) / D_ww + root_distance)
     return error, length, wave
 
 

@@ -27,13 +27,6 @@ class RootSettings(KernelConstants):
     """An eigenvalue is also taken to be imaginary if |Re w| <= this number times the error of w."""
     double_root_correction_ratio: float = 1e-11
     """An eigenvalue w is checked for a double root if |D/D'| > this number times |w|."""
-    ill_conditioned_ratio: float = 1e-14
-    """An eigenvalue w is ill-conditioned if |D/D'| > this number times |w|: the rounding of D then moves w by
-    some ten times more than `SpectrumErrorSettings.rounding_in_ulps`, so it is the whole error."""
-    ill_conditioned_rounding_fraction: float = 0.3
-    """Rounding error of D at an ill-conditioned eigenvalue, divided by its bound `rounding_error`. The
-    estimate must cover nearly all errors, not the typical error: at 888 eigenvalues near double eigenvalues
-    of random rods the fractions have the 99th percentile 0.19 and the maximum 0.27."""
     min_squared_slope: float = 16.0
     """The Newton correction e/|D'| is a valid error estimate if |D'|^2 >= this number times e |D''|, with the
     error e of D: the next root, at 2 |D'/D''|, is then at least 32 corrections away."""
