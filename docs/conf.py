@@ -13,7 +13,7 @@ author = copyright = "the rodsweep developers"
 version = release = rodsweep.__version__
 
 extensions = ["myst_nb", "sphinx.ext.autodoc"]
-exclude_patterns = ["_material"]
+exclude_patterns = ["_build"]
 root_doc = "index"
 
 smartquotes = False  # the prime of y' is no apostrophe
