@@ -49,8 +49,8 @@ class BorderCondition:
         """The cycle near `orbit` that fulfils the condition, by Newton's method; raises Unsolvable.
 
         tolerance: relative error of the cycle. workspace: memory of Newton's matrices. max_matrix_distance:
-        largest relative distance between the cycle and the orbit at which the last matrix was assembled. This
-        distance is the error of multipliers and tangent.
+        largest relative error of multipliers and tangent, which is the distance between the cycle and the
+        orbit at which the last matrix was assembled, or the error that their correction leaves.
         """
         matrix = BorderedMatrix(orbit, self.scale, workspace)
         matrix_distance = 0.0
@@ -105,8 +105,7 @@ class BorderCondition:
         self, mesh: OrbitMesh, solved: ConvergedOrbit, tolerance: float, max_matrix_distance: float = np.inf
     ) -> ConvergedOrbit:
         """The cycle `solved` solved again on the mesh `mesh` under this condition; raises Unsolvable.
-        tolerance: relative error of the cycle. max_matrix_distance: largest relative distance between the
-        cycle and the orbit at which the last matrix was assembled."""
+        tolerance: relative error of the cycle. max_matrix_distance: as in `solve_cycle`."""
         orbit = mesh.interpolated_orbit(solved.orbit)
         return self.solve_cycle(orbit, tolerance, solved.workspace, max_matrix_distance)
 
