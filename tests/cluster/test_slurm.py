@@ -187,6 +187,7 @@ def test_job_requeued_in_the_middle_finishes_by_itself(quick_slurm, expected):
     assert same(content(quick_slurm.directory / "c.h5"), expected)
 
 
+@pytest.mark.long
 def test_job_on_many_nodes_is_warned_on_all_of_them(slurm, expected):
     words = ("--nodes=2", "--nodelist=n1,n2", "--ntasks-per-node=1", halted(slurm))
     job = slurm.submit(*words, "jobs/many_nodes.sh", "c.yaml", "c.h5")

@@ -62,8 +62,17 @@ def test_the_hopf_point_leads_to_the_same_cycle_however_near(rod):
         assert start.measures.period == pytest.approx(mode.measures.period, rel=2 * ACCURACY)
 
 
-@pytest.mark.parametrize("accuracy", [1e-9, 1e-10, 1e-11])
-@pytest.mark.parametrize("distance", [1e-6, 1e-7])
+@pytest.mark.parametrize(
+    ("distance", "accuracy"),
+    [
+        (1e-6, 1e-9),
+        (1e-7, 1e-11),
+        *(
+            pytest.param(*case, marks=pytest.mark.long)
+            for case in [(1e-6, 1e-10), (1e-6, 1e-11), (1e-7, 1e-9), (1e-7, 1e-10)]
+        ),
+    ],
+)
 def test_the_error_of_the_amplitude_contains_rounding(distance, accuracy):
     """The amplitude by an independent solution of the same rod: y = sqrt(d) (A + B d), extrapolated from
     cycles by Fourier collocation at d = 1e-4 to 3.2e-3; the Hopf point is a zero of D in quadruple precision.
@@ -76,7 +85,7 @@ def test_the_error_of_the_amplitude_contains_rounding(distance, accuracy):
     assert cycle.measures.tip_y_max == pytest.approx(amplitude, rel=cycle.errors.amplitude_error)
 
 
-@pytest.mark.parametrize("rod", RODS)
+@pytest.mark.parametrize("rod", [RODS[0], *(pytest.param(rod, marks=pytest.mark.long) for rod in RODS[1:])])
 def test_amplitudes_of_several_accuracies_agree_within_their_errors(rod):
     cycles = [beside(rod, 1e-7, "hopf", accuracy) for accuracy in (1e-9, 1e-10, 1e-11)]
     for one, other in zip(cycles[:-1], cycles[1:], strict=True):

@@ -115,6 +115,7 @@ def test_six_threads_give_the_bits_of_one(told):
     assert told[1] == []
 
 
+@pytest.mark.long
 def test_interrupts_at_random_instants_leave_the_same_bits(told):
     seed, _, came, faults = told
     assert faults == [], f"seed {seed}"

@@ -66,6 +66,7 @@ def at_force(curve, force):
     return np.interp(force, at, period), np.interp(force, at, y)
 
 
+@pytest.mark.long
 def test_a_branch_that_turns_back_beyond_the_range_comes_back_stable():
     found = followed(RUBBER, 88.04, 137.56)
     first, second, back = found.curves
@@ -87,6 +88,7 @@ def test_a_branch_that_turns_back_beyond_the_range_comes_back_stable():
     assert abs(last.period / same.period - 1) <= last.period_error + same.period_error
 
 
+@pytest.mark.long
 def test_a_branch_enters_the_range_from_a_fold_beyond_it_without_a_hopf_point():
     """At k1 = 321.7 there is no Hopf point; the fold is on a curve through the fold at k1 = 322.11."""
     request = BranchRequest("F", 88.04, 137.56, ACCURACY, False, 500, 50)
@@ -315,6 +317,7 @@ def test_a_branch_that_turns_back_just_beyond_the_range_comes_back():
     assert row == states(rod, [100.0, 130.0, fold * (1 - 1e-3), 160.0])[:-1]
 
 
+@pytest.mark.long
 def test_a_narrow_diagram_equals_the_part_of_a_wide_one():
     """Random rods near the first fold of their Hopf curves, with ranges that contain no fold."""
     rng = np.random.default_rng(11)

@@ -48,6 +48,7 @@ def test_branch_passes_a_fold_within_the_range(fold):
     assert same.parameter_value == pytest.approx(fold.parameter_value, abs=fold.error + same.error)
 
 
+@pytest.mark.long
 def test_a_branch_passes_the_drag_below_which_omega_is_an_unknown():
     """Along the taper of a rod with gamma3 = 1e-4 the rotational drag of the tip is 1e-5 at 0.316."""
     rod = Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4)

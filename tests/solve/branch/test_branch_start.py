@@ -19,6 +19,7 @@ from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 
 
+@pytest.mark.long
 def test_a_fold_close_to_the_birth_of_a_branch_is_found():
     """The cycles without symmetry are born subcritically, and turn back 3e-6 below the symmetry breaking.
     F of the fold by the branch at the accuracy 1e-8, with an error of 2e-11."""

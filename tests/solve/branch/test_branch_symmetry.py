@@ -104,6 +104,7 @@ def test_stable_cycles_lose_their_symmetry_and_those_without_it_turn_at_a_fold(s
     assert {point.unstable_count for point in asymmetric.points[turn:]} - {-1} == {0}
 
 
+@pytest.mark.long
 def test_asymmetry_grows_with_the_square_root_of_the_distance(symmetric, asymmetric):
     """So do largest and smallest y; symmetric cycles have none."""
     assert all(point.measures.tip_y_min == -point.measures.tip_y_max for point in symmetric.points)

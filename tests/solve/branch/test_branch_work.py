@@ -55,6 +55,7 @@ def test_branch_without_work_for_its_first_cycle_says_so():
     assert curve.special_points[-1].reason == BranchEndReason.list_full
 
 
+@pytest.mark.long
 def test_special_point_has_its_error_on_the_meshes_that_the_work_allows(monkeypatch):
     solved = []
     of_mesh = locating._zero_by_secants

@@ -513,6 +513,7 @@ def test_a_closed_motion_without_a_cycle_near_ends_and_says_so(monkeypatch):
     assert "but Newton's method finds no cycle near this motion on finer meshes" in c.message
 
 
+@pytest.mark.long
 def test_a_slow_motion_near_a_fold_reaches_the_cycle_by_its_amplitude_equation():
     """The branch of these cycles folds at F = 85.60558. The motion needs 800 returns from above, and
     thousands from below; a cycle with a multiplier of 0.99789 is its limit."""

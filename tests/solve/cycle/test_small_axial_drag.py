@@ -55,6 +55,7 @@ def test_the_two_forms_have_the_same_cycle(factor):
     assert period_and_y(with_v1) == pytest.approx(period_and_y(without), rel=2e-8)
 
 
+@pytest.mark.long
 def test_period_and_amplitude_are_linear_in_a_small_drag_down_to_none():
     drags = [4e-4, 2e-4, 1e-5, 1e-300]
     large, small, tiny, none = (period_and_y(replace(ROD, gamma1=drag)) for drag in drags)
