@@ -19,22 +19,28 @@ MIN_MULTIPLIER_DISTANCE = 2e-16
 """Smallest distance of a multiplier from 1: smaller distances are rounding errors of the multiplier."""
 
 
-def with_amplitude_rounding(
-    errors: CycleErrors, solved: ConvergedOrbit, measures: CycleMeasures
-) -> CycleErrors:
-    """`errors`, in which the errors of the extrema are at least the effect of rounding: `rounding_error`
-    divided by the distance of the nearest nontrivial multiplier from 1.
-
-    Two meshes of a comparison share no rounding errors, but may agree by coincidence.
-    """
+def amplitude_rounding(solved: ConvergedOrbit) -> float:
+    """Relative error of the largest y of an orbit on any mesh, due to rounding: `rounding_error` divided by
+    the distance of the nearest nontrivial multiplier from 1; 0 if there is no nontrivial multiplier."""
     multipliers = solved.matrix.multipliers_over_solved_part
     if len(multipliers) < 2:
-        return errors
+        return 0.0
     # The multiplier nearest to 1 is the trivial multiplier.
     distance = max(float(np.sort(np.abs(multipliers - 1))[1]), MIN_MULTIPLIER_DISTANCE)
     # A multiplier m over half of the period is m^2 over the period, twice as far from 1.
     period_parts = 2 if solved.orbit.is_symmetric else 1
-    height_error = CYCLE_ERROR_SETTINGS.rounding_error / (period_parts * distance)
+    return CYCLE_ERROR_SETTINGS.rounding_error / (period_parts * distance)
+
+
+def with_amplitude_rounding(
+    errors: CycleErrors, solved: ConvergedOrbit, measures: CycleMeasures
+) -> CycleErrors:
+    """`errors`, in which the errors of the extrema are at least the effect of rounding,
+    `amplitude_rounding`.
+
+    Two meshes of a comparison share no rounding errors, but may agree by coincidence.
+    """
+    height_error = amplitude_rounding(solved)
     extrema_error = height_error * max(1.0, measures.tip_theta_max / measures.tip_y_max)
     return replace(
         errors,

@@ -19,6 +19,7 @@ from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import ORBIT_MESH_SETTINGS, OrbitMesh
 from ...orbit.path_differences import PERIOD_INDEX, Y_INDEX, path_differences
 from ...orbit.tails import tails_of
+from .amplitude_errors import amplitude_rounding
 from .calibration import Calibration, calibration_of
 from .calibration_settings import CALIBRATION_SETTINGS
 from .finer_meshes import FINER_MESH_SETTINGS, ComparedCycle
@@ -62,7 +63,8 @@ COARSER_MESH_SETTINGS = CoarserMeshSettings()
 
 class CoarserMeshes:
     """Solutions of a cycle on a coarse mesh, on meshes finer in space only and on meshes finer in time only,
-    from which the cycle on a fine mesh is predicted."""
+    from which the cycle on a fine mesh is predicted. amplitude_rounding: relative error of the largest y on
+    any mesh, due to rounding."""
 
     def __init__(self, mesh: OrbitMesh, start: Orbit, accuracy: float, workspace: NewtonWorkspace) -> None:
         """Solves the cycle on the coarse mesh; raises Unsolvable. mesh: the fine mesh. start: an orbit near
@@ -79,7 +81,9 @@ class CoarserMeshes:
         self._min_error = COARSER_MESH_SETTINGS.min_predicted_error_ratio * accuracy
         self._tolerance = FINER_MESH_SETTINGS.newton_tolerance_ratio * accuracy
         self._workspace = workspace
-        self._coarse_cycle = self._solve_on_mesh(self.coarse_mesh, start)
+        coarse_orbit = newton(self.coarse_mesh.interpolated_orbit(start), self._tolerance, workspace)
+        self.amplitude_rounding = amplitude_rounding(coarse_orbit)
+        self._coarse_cycle = ComparedCycle(coarse_orbit)
         self._cycles_on_finer_meshes: dict[OrbitMesh, ComparedCycle] = {}
 
     def can_predict(self, mesh: OrbitMesh) -> bool:

@@ -24,7 +24,7 @@ from ...orbit.newton import (
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_limit_error
 from ...unsolvable import Unsolvable
-from .amplitude_errors import multiplier_per_relative_exponent, with_amplitude_rounding
+from .amplitude_errors import amplitude_rounding, multiplier_per_relative_exponent, with_amplitude_rounding
 from .calibration import Calibration
 from .cheapest_mesh import cheapest_mesh
 from .coarser_meshes import CoarserMeshes
@@ -109,23 +109,24 @@ def _predicted_cycle(
     """A single cycle with errors predicted from coarser meshes, on the mesh `mesh` or a finer mesh. start: an
     orbit near the cycle.
 
-    The most accurate cycle is returned if no allowed mesh reaches the accuracy. Raises Unsolvable if
-    there is no cycle near `start` on a coarser or on the last mesh, if the errors do not decrease, or if the
-    cycle is far from its prediction.
+    The most accurate cycle is returned if no allowed mesh reaches the accuracy. Raises Unsolvable if a mesh
+    has no cycle near `start`, if the errors do not decrease, or if the cycle is far from its prediction.
     """
     coarser_meshes = CoarserMeshes(mesh, start, accuracy, workspace)
+    # No mesh reduces the effect of rounding, which other errors need not fall below.
+    sufficient_error = max(accuracy, coarser_meshes.amplitude_rounding)
     max_error = inf
     orbit, calibration = best = coarser_meshes.predicted_orbit_and_errors(mesh)
     for _ in range(REFINEMENT_SETTINGS.max_meshes):
         error = calibration.errors(accuracy).largest_weighted_error
         if error < best[1].errors(accuracy).largest_weighted_error:
             best = orbit, calibration
-        if error <= accuracy:
+        if error <= sufficient_error:
             break
         # A prediction that gets worse on a finer mesh has reached rounding errors, or another cycle.
         if error > max_error:
             raise Unsolvable("the errors do not decrease on finer meshes")
-        mesh = finer_mesh(mesh, cheapest_mesh(calibration, accuracy))
+        mesh = finer_mesh(mesh, cheapest_mesh(calibration, sufficient_error))
         max_error = REFINEMENT_SETTINGS.max_error_increase * error
         if not mesh.is_allowed:
             break
@@ -143,7 +144,7 @@ def _predicted_cycle(
     solved = with_matrix_within_distance(solved, min(accuracy, REFINEMENT_SETTINGS.max_matrix_distance))
     motion = CycleMotion(solved.orbit)
     calibration = with_indicators(best[1], error_indicators(solved, motion))
-    if calibration.errors(accuracy).largest_weighted_error > accuracy >= error:
+    if calibration.errors(accuracy).largest_weighted_error > sufficient_error >= error:
         raise Unsolvable("coarser meshes do not predict the error of the amplitude")
     return cycle_with_calibrated_errors(calibration, solved, accuracy, motion)
 
@@ -163,15 +164,14 @@ def cycle_with_measured_errors(
     for _ in range(REFINEMENT_SETTINGS.max_meshes):
         calibration = measured_calibration(solved, accuracy, calibration)
         cycle = cycle_with_calibrated_errors(calibration, solved, accuracy)
-        if (
-            best_cycle is None
-            or cycle.errors.largest_weighted_error < best_cycle.errors.largest_weighted_error
-        ):
+        error = cycle.errors.largest_weighted_error
+        if best_cycle is None or error < best_cycle.errors.largest_weighted_error:
             best_cycle = cycle
-        if cycle.errors.largest_weighted_error <= accuracy or cycle.errors.largest_weighted_error > max_error:
+        sufficient_error = max(accuracy, amplitude_rounding(solved))
+        if error <= sufficient_error or error > max_error:
             break
-        max_error = REFINEMENT_SETTINGS.max_error_increase * cycle.errors.largest_weighted_error
-        target = regraded(cheapest_mesh(calibration, accuracy), solved.orbit)
+        max_error = REFINEMENT_SETTINGS.max_error_increase * error
+        target = regraded(cheapest_mesh(calibration, sufficient_error), solved.orbit)
         next_mesh = finer_mesh(calibration.mesh, target)
         if not next_mesh.is_allowed:
             break
