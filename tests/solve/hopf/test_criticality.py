@@ -10,7 +10,7 @@ from mixed_motion import mixed_form
 from scipy.interpolate import BarycentricInterpolator
 from second_normal_form import coefficients
 from shown import shown
-from surveyed import few, survey_only
+from surveyed import few
 from test_paper import run, stated
 
 import rodsweep as rs
@@ -84,20 +84,19 @@ def cycle_near(at, hopf, known, gamma1, part):
     return np.array([measures.tip_y_max**2, measures.frequency - hopf.frequency]) / (F - at.F)
 
 
-@pytest.mark.long
 @pytest.mark.parametrize(
     "rod",
     [
         STRETCHABLE,
-        pytest.param(FILAMENT, marks=survey_only),
-        pytest.param(Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=0.5), marks=survey_only),
-        pytest.param(Rod(F=0.0, k1=150.0, k2=INF, gamma3=5e-3, gamma1=0.6), marks=survey_only),
-        pytest.param(Rod(F=0.0, k1=1e6, k2=50.0, gamma3=1.0, gamma1=0.7), marks=survey_only),
-        pytest.param(Rod(F=0.0, k1=1e3, k2=INF, gamma3=0.0, gamma1=0.5), marks=survey_only),
-        pytest.param(Rod(F=0.0, k1=110.0, k2=300.0, gamma3=0.1), marks=survey_only),
-        pytest.param(Rod(F=0.0, k1=INF, k2=1e4, gamma3=1e-6, gamma1=0.5), marks=survey_only),
-        pytest.param(Rod(F=0.0, k1=240.0, k2=1e3, gamma3=1e-3, gamma1=0.5), marks=survey_only),
-        pytest.param(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-2), marks=survey_only),
+        FILAMENT,
+        Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=0.5),
+        Rod(F=0.0, k1=150.0, k2=INF, gamma3=5e-3, gamma1=0.6),
+        Rod(F=0.0, k1=1e6, k2=50.0, gamma3=1.0, gamma1=0.7),
+        Rod(F=0.0, k1=1e3, k2=INF, gamma3=0.0, gamma1=0.5),
+        Rod(F=0.0, k1=110.0, k2=300.0, gamma3=0.1),
+        Rod(F=0.0, k1=INF, k2=1e4, gamma3=1e-6, gamma1=0.5),
+        Rod(F=0.0, k1=240.0, k2=1e3, gamma3=1e-3, gamma1=0.5),
+        Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-2),
     ],
 )
 def test_cycles_at_the_hopf_point_are_those_of_the_coefficients(rod):
@@ -113,7 +112,6 @@ FORCES = np.array([1e-4, 5e-5, 2e-5, 1e-5])
 """Relative distances from the Hopf point, where a fold is so near that two are not enough."""
 
 
-@survey_only
 @pytest.mark.parametrize("rod", [SUBCRITICAL, Rod(F=0.0, k1=50.0, k2=100.0, gamma3=1.0)])
 def test_cycles_of_rods_whose_fold_is_near_are_those_of_the_coefficients_too(rod):
     """The force and the frequency are smooth in y squared through the fold, hence extrapolated in that."""
