@@ -103,6 +103,7 @@ def test_meshes_are_not_refined_below_the_effect_of_rounding_on_the_amplitude(ro
         cycles.append(beside.__wrapped__(rod, 1e-7, "hopf", accuracy))
         works.append(sum(work))
     assert cycles[-1].errors.amplitude_error > 1e-9
+    assert "rounding errors may change the amplitude" in cycles[-1].message
     assert works[1] < 10 * works[0]
 
 

@@ -61,7 +61,8 @@ def validated_config(tree: dict[str, Any]) -> Config:
         return config.model_validate(tree)
     except ValidationError as error:
         problems = sorted(error.errors(include_url=False), key=lambda problem: problem["type"] == "missing")
-        count_text = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
+        further_count = len(problems) - 1
+        count_text = f" (and {further_count} more error{'s' * (further_count > 1)})" if further_count else ""
         raise InputError(f"{message_of_problem(config, problems[0])}{count_text}") from None
 
 

@@ -26,7 +26,7 @@ from ..orbit.measures import CycleMotion, measures_of
 from ..orbit.orbit import Orbit, node_times
 from ..orbit.symmetry import NO_SYMMETRY
 from ..point_outcome import outcome_or_failure
-from .accuracy.cycle_errors import CycleErrors, errors_of_two_integrations
+from .accuracy.cycle_errors import CycleErrors, errors_of_two_integrations, message_of_error
 from .cycle_outcome import CycleOutcome, CycleRequest, with_measures
 from .integration_settings import INTEGRATION_SETTINGS
 from .settled_motion import NoCycleFound, ReturnDistances, ReturnTimes, SettledMotion, max_settled_distance
@@ -233,10 +233,7 @@ class _IntegrationUntilSettled:
         cycle = replace(
             outcome,
             status=IntegrationStatus.cycle if is_accurate else IntegrationStatus.not_settled,
-            message=""
-            if is_accurate
-            else f"the cycle's errors, up to {errors.largest_weighted_error:.1e}, exceed "
-            "the requested accuracy",
+            message="" if is_accurate else message_of_error(errors, self.request.accuracy),
             periods=self.return_count,
         )
         return with_measures(cycle, self.request, motion, measures_of(motion), errors)

@@ -73,6 +73,12 @@ def largest_weighted_error(period: Array | float, amplitude: Array | float, extr
     return largest
 
 
+def message_of_error(errors: CycleErrors, accuracy: float) -> str:
+    """Sentence part for a cycle whose errors exceed the requested relative accuracy `accuracy`."""
+    largest_error = errors.largest_weighted_error
+    return f"the cycle's errors, up to {largest_error:.3g}, exceed the requested accuracy of {accuracy:g}"
+
+
 def errors_with_safety_factors(space_errors: Array, time_errors: Array, accuracy: float) -> Array:
     """The four errors of `CycleErrors`, (4, ...), from the errors `space_errors` due to the elements and
     `time_errors` due to the time intervals, (5, ...) each: the four errors of `path_differences`, then the

@@ -9,8 +9,9 @@ from ...orbit.measures import CycleMeasures, CycleMotion
 from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
 from ..status import CycleStatus
+from .amplitude_errors import amplitude_rounding
 from .calibration import Calibration
-from .cycle_errors import CycleErrors
+from .cycle_errors import CycleErrors, message_of_error
 from .minimal_period import possible_period_divisor
 
 
@@ -59,6 +60,16 @@ class RefinedCycle:
         excess = self.largest_multiplier - 1
         return None if abs(excess) <= self.largest_modulus_error else excess < 0
 
+    def _accuracy_message(self, accuracy: float) -> str:
+        """Why the errors exceed the requested relative accuracy `accuracy`."""
+        rounding = amplitude_rounding(self.converged_orbit)
+        if rounding > accuracy:
+            return (
+                "so close to a Hopf point or a fold, rounding errors may change the amplitude by a relative "
+                f"{rounding:.3g}, more than the requested accuracy of {accuracy:g}"
+            )
+        return message_of_error(self.errors, accuracy)
+
     def verdict(self, accuracy: float) -> tuple[CycleStatus, str]:
         """Returns (status, message) of the cycle for a requested relative accuracy; the message is "" for a
         stable or unstable cycle."""
@@ -68,11 +79,7 @@ class RefinedCycle:
                 f"the axial stretch h1 falls to {self.measures.least_stretch:.3g} on the cycle",
             )
         if self.errors.largest_weighted_error > accuracy:
-            error = self.errors.largest_weighted_error
-            return (
-                CycleStatus.not_settled,
-                f"the cycle's errors, up to {error:.1e}, exceed the requested accuracy",
-            )
+            return CycleStatus.not_settled, self._accuracy_message(accuracy)
         if self.possible_period_divisor != 1:
             message = (
                 f"the period found may be {self.possible_period_divisor} times the minimal period: the "
