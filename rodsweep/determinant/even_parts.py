@@ -65,6 +65,7 @@ def _rounding_by_squares(
         error_of_z = rounding_large
         dz = modulus(slope)
         rounding_slope = max_slope
+        # The smaller z was computed as product over larger z, and inherits both of their errors.
         if z < max_z / 2:
             error_of_z = (rounding_product + z * rounding_large) / max_z
             rounding_slope = 2 * contrast * size + 2 * soft * (T * abs(F) + 2 * nu) + z * max_slope
@@ -104,6 +105,7 @@ def even_sum_by_squares(
     S = max(root_plus.real, root_minus.real)
     E_plus, E1_plus = entire_cosh(plus, root_plus, S)
     E_minus, E1_minus = entire_cosh(minus, root_minus, S)
+    # z+ - z- is 4 P, without a subtraction.
     difference = 1 / (4 * P)
     s = E_plus + E_minus
     s1 = E1_plus + E1_minus

@@ -120,6 +120,7 @@ class ParameterPlane:
         """Returns (stencil, step) of a difference along axis number `axis_index`, 0 or 1, at scaled
         coordinates (x, y): `CENTRAL_STENCIL`, or `ONE_SIDED_STENCIL` if the rod two steps back is invalid."""
         step = self.difference_step_at(x, y, axis_index, PLANE_DIFFERENCE_SETTINGS.max_difference_step)
+        # Forwards the step is short against the distance to crushing: only rods behind can be invalid.
         two_steps_back = (x - 2 * step, y) if axis_index == 0 else (x, y - 2 * step)
         return (CENTRAL_STENCIL if self.is_valid_at(*two_steps_back) else ONE_SIDED_STENCIL), step
 
@@ -176,5 +177,6 @@ class ParameterPlane:
 
     def is_uncrushed_at(self, x: float, y: float) -> bool:
         """Whether the force at scaled coordinates (x, y) is below the force that crushes the rod."""
+        # A crushed rod cannot be made, so its force is compared without making it.
         values = {**self.rod.values} | {a.name: a.value(v) for a, v in zip(self.axes, (x, y), strict=True)}
         return values["F"] < values["k1"] * self.rod.material.relative_crushing_force(values["taper"])

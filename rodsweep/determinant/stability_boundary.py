@@ -95,8 +95,10 @@ class StabilityBoundary:
                 or abs(np.linalg.det(matrix)) < BOUNDARY_POINT_SETTINGS.min_jacobian_determinant
             ):
                 return None
+            # The inverse itself is needed: its rows turn the rounding of the residual into the error of v.
             inverse = np.linalg.inv(matrix)
             step = inverse @ right_side
+            # The third column belongs to the plane through the guess, an equation without rounding errors.
             error = float(np.abs(inverse[:, :2]).sum(axis=1).max()) * rounding
             step_size = float(np.abs(step).max())
             v = v + step
@@ -114,6 +116,7 @@ class StabilityBoundary:
         """`residual_and_jacobian` of Hopf points at v = (x, y, h): D(i exp(h); x, y) = 0."""
         w = complex(0.0, math.exp(v[2]))
         D, D_w, D_x, D_y, _, rounding = self.plane.determinant(w, v[0], v[1])
+        # h is log eta, so that dD/dh = w dD/dw.
         rows = np.array([D_x, D_y, D_w * w])
         scale = float(np.abs(rows).max())
         jacobian = np.array([rows.real, rows.imag]) / scale

@@ -69,6 +69,7 @@ def onset_between(
     guess_F = low + (high - low) * squared_half_gap / (squared_half_gap + squared_frequency)
     centre = ((first_w.real + second_w.real) / 2 + complex_w.real) / 2
     zero = double_eigenvalue_newton(centre, guess_F, *rods, high - low)
+    # The comparison is also false for nan, the result of a failure.
     if not low <= zero.p <= high:
         return None
     return StabilityChange("onset", zero.p, zero.error_of_p, zero.eta_or_x, 0.0)
@@ -89,6 +90,7 @@ def stability_change_between(
     found is unstable_count/2.
     """
     zeros = sorted(crossings_between(*end_forces, before_w, after_w, *rods).tolist())
+    # Each crossing makes two modes grow or decay; any other number means that one was missed or two cancel.
     if not zeros or 2 * len(zeros) != unstable_count:
         return None
     loses_stability = after_w[0].real > 0
@@ -124,6 +126,7 @@ def crossings_between(
                 if not w.imag > 0:
                     continue
                 zero = crossing_newton(w.imag, F, origin, direction, (w.imag, max(abs(F), high - low)))
+                # The comparison is also false for nan, the result of a failure.
                 if not low <= zero.p <= high:
                     continue
                 is_new = True

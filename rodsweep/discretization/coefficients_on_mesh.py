@@ -65,6 +65,7 @@ def jumps_on_mesh(rod: Rod, mesh: Mesh) -> Jumps:
         return NO_JUMPS
     sections = _sections_inside_elements(rod, mesh)
     c1, c2, c3 = sections.compliance
+    # The cached array is shared by all rods with this taper, so its columns are filled in a copy.
     sides = _shares_of_sides(rod.material, rod.taper, mesh).copy()
     for column, values in enumerate((sections.nu, c1, c3)):
         sides[..., column] = values[indices]
@@ -81,12 +82,14 @@ def _shares_of_sides(material: RodMaterial, taper: float, mesh: Mesh) -> Array:
     points = mesh.one_sided_nodes[indices]
     weights = _points_of_nodes(mesh).weights[indices]
     relative_compliances = material.relative_compliances(taper, points.ravel()).reshape(3, *points.shape)
+    # The mean strain is weighted by quadrature; in means of stresses the compliances of the sides count too.
     strain_weights = [
         values / values.sum(axis=1, keepdims=True)
         for values in (weights * relative_compliances[0], weights * relative_compliances[2])
     ]
     mean_weights = weights / weights.sum(axis=1, keepdims=True)
     coefficients = np.zeros(points.shape)
+    # In the order of `SIDE_COLUMNS`; the coefficients, here 0, are filled in for each rod.
     shares = [coefficients, coefficients, coefficients, *strain_weights, mean_weights, coefficients]
     return np.ascontiguousarray(np.stack(shares, axis=-1))
 
@@ -115,10 +118,12 @@ def _indices_beside_jumps(material: RodMaterial, mesh: Mesh) -> tuple[IntegerArr
     """Returns (indices, nodes) of the k jumps, cached. indices: indices, in `Elements.one_sided_nodes`, of
     the points just left and just right of each jump, (k, 2). nodes: index of the node at each jump, (k,)."""
     jumps = material.jump_positions
+    # The comparison is exact, because meshes take the positions of jumps as edges unchanged.
     elements_behind_jumps = np.array(
         [e for e in range(1, mesh.element_count) if mesh.edges[e] in jumps], np.int64
     )
     nodes = np.array([mesh.node_ranges[e].start for e in elements_behind_jumps], np.int64)
+    # Each element before the jump has added one point, since its last node is listed twice.
     right_indices = nodes + elements_behind_jumps
     return np.stack([right_indices - 1, right_indices], axis=-1), nodes
 
@@ -136,6 +141,7 @@ def _mean_at_nodes(values: Array, mesh: Mesh) -> Array:
     """Means over both sides of each node, (m, nodes + 1). values: m fields at the `one_sided_nodes`,
     (m, points)."""
     points = _points_of_nodes(mesh)
+    # The points of a node are neighbours, so `reduceat` adds the one or two sides of each node.
     mean: Array = np.add.reduceat(points.weights * values, points.first_indices, axis=1) / mesh.quadrature
     return mean
 

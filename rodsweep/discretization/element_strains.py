@@ -28,6 +28,7 @@ def index_before_jump(node: int, element_nodes: IntegerArray) -> int:
     """Index of the last node of the element before the jump at `node`, in arrays over the nodes of every
     element. The first node of the element behind the jump has the next index. element_nodes: indices of the
     nodes of every element, one element after the other, (nodes + elements,)."""
+    # The node occurs twice; searchsorted returns the first place.
     return int(np.searchsorted(element_nodes, node))
 
 
@@ -82,6 +83,7 @@ def write_element_strain_rates(
             # The strain of a rigid component is constant for every stress.
             dq1 = rates[0, k, node] / c1 if c1 > 0 else 0.0
             dq2 = rates[1, k, node] / c2 if c2 > 0 else 0.0
+            # c3 needs no test: only k1 and k2 may be infinite.
             changes = side_increments_at_jump(rod.law, sides, q, LawUnknowns(dq1, rates[2, k, node] / c3))
             for side in range(2):
                 out[0, k, index + side] = sides[side, 1] * changes[side].q1

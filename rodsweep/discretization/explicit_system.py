@@ -84,6 +84,7 @@ class ExplicitSystem(RodOnMesh):
         states = z.reshape(-1, size)
         matrices = jacobians.reshape(-1, size, size)
         write_rate_jacobians(states, matrices, self.sqrt_compliance, self.nodal_rod, self.mesh.matrices)
+        # The kernel writes columns, as LAPACK reads them.
         return jacobians.swapaxes(-1, -2)
 
     def tip_position_and_velocity(self, z: Array, direction: Array) -> tuple[Array, Array]:

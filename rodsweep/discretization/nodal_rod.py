@@ -119,6 +119,7 @@ def _drag_arrays(
 def _expanded_to_nodes(values: Array, node_count: int) -> Array:
     """`values` as an array (d, node_count). values: (d, node_count), or one constant per component, (d,) or
     (d, 1)."""
+    # A whole array even for constants, because compiled loops index every node.
     out = np.empty((len(values), node_count))
     out[:] = values.reshape(len(values), -1)
     return out

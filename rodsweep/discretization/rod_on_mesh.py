@@ -137,6 +137,7 @@ class RodOnMesh(ABC):
         load = F * c1
         h1 = nu + c1 * q1
         # shortening/load tends to 1 for load -> 0. For c1 = 0 this limit replaces (h1 - 1)/c1 = 0/0.
+        # The inner where keeps the quotient that is not used from being 0/0.
         ratio = np.where(load == 0, 1.0, law.shortening(load) / np.where(load == 0, 1.0, load))
         scaled_strain = q1 - F * ratio  # (h1 - 1)/c1
         energy_density: Values = (

@@ -77,6 +77,7 @@ class StateLayout:
         to all nodes of the other mesh, (nodes of the other mesh + 1, nodes + 1)."""
         stress_count = self.components * self.node_count
         slices = [slice(first, first + self.node_count) for first in range(0, stress_count, self.node_count)]
+        # Stresses at the tip are 0 on both meshes, so the row and the column of the tip are left out.
         stresses = [x[..., stress] @ E[:-1, :-1].T for stress in slices]
         return np.concatenate(
             [*stresses, *(self.velocities(x) @ E.T if self.unknown_velocities else ())], axis=-1

@@ -114,6 +114,7 @@ def interpolate_state_stress(nodal: NodalRod, S: Values, source: Mesh, rod: Rod,
         for side, side_values in enumerate(values):
             rows = element == _element_behind(source, node) - 1 + side
             for component, value in zip(JUMPING_COMPONENTS, side_values, strict=True):
+                # Each side has its own value at the node of the jump, so only the share of this node changes.
                 target_S[component][..., rows] += (value - S[component, ..., node])[..., None] * E[rows, node]
     for node, sides, values in zip(target_jumps.nodes, target_jumps.jump_sides, sides_of_jumps, strict=True):
         for i, component in enumerate(JUMPING_COMPONENTS):

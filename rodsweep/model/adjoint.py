@@ -50,6 +50,7 @@ quotient loses digits."""
 def tip_layer_factor(rod: Rod) -> float:
     """T = tanh(kappa)/kappa of the boundary layer of theta at the tip of a uniform rod with gamma3 = 0 < c2.
     kappa^2 = g nu/c2. T = 0 for all other rods, which have no such layer."""
+    # With rotational drag theta has its own time derivative, and without shear it is no unknown of its own.
     if rod.rotational_drag > 0 or rod.c2 == 0:
         return 0.0
     squared_kappa = rod.g * rod.nu / rod.c2
@@ -57,6 +58,7 @@ def tip_layer_factor(rod: Rod) -> float:
     if abs(squared_kappa) < TANH_SERIES_BELOW:
         return 1 - squared_kappa / 3 + 2 * squared_kappa**2 / 15
     kappa = sqrt(abs(squared_kappa))
+    # Both quotients are even in kappa, so the sign of the root does not matter.
     return tanh(kappa) / kappa if squared_kappa > 0 else tan(kappa) / kappa
 
 

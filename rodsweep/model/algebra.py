@@ -44,12 +44,17 @@ def algebra_from_constants(dimension: int, constants: list[StructureConstant]) -
     """The Lie algebra of dimension `dimension` whose nonzero structure constants are `constants`."""
     # Loops over the Jacobian skip all blocks that are not in these patterns.
     ad_pairs = {(a, c) for a, _, c, _ in constants}
+    # Component c of ad* contains products of components a and b, and depends on both.
     coad_pairs = {(c, component) for a, b, c, _ in constants for component in (a, b)}
-    ad_pattern, coad_pattern = (
-        tuple(tuple((i, j) in pairs for j in range(dimension)) for i in range(dimension))
-        for pairs in (ad_pairs, coad_pairs)
+    return LieAlgebra(
+        range(dimension), tuple(constants), _pattern(dimension, ad_pairs), _pattern(dimension, coad_pairs)
     )
-    return LieAlgebra(range(dimension), tuple(constants), ad_pattern, coad_pattern)
+
+
+def _pattern(dimension: int, pairs: set[tuple[int, int]]) -> SparsityPattern:
+    """Sparsity pattern of a square matrix of the given dimension. pairs: (row, column) of the elements that
+    may be nonzero."""
+    return tuple(tuple((row, column) in pairs for column in range(dimension)) for row in range(dimension))
 
 
 def _cross_product_constants(

@@ -33,16 +33,19 @@ def ad(E: Values, V: Values) -> Values:
     out = np.zeros(np.broadcast(E, V).shape, np.result_type(E, V))
     for a, b, c, sign in ALGEBRAS[len(E)].structure_constants:
         # out[a, ...] is a view also for scalar components; out[a] would be a copy.
-        (np.add if sign > 0 else np.subtract)(out[a], E[b] * V[c], out[a, ...])
+        add = np.add if sign > 0 else np.subtract
+        add(out[a], E[b] * V[c], out[a, ...])
     return out
 
 
 def coad(E: Values, Sigma: Values) -> Values:
     """ad*_E Sigma of a deformation E and a stress Sigma, (3, ...) each in the plane or (6, ...) in space."""
+    # The result type keeps complex steps complex even if only one argument is.
     out = np.zeros(np.broadcast(E, Sigma).shape, np.result_type(E, Sigma))
     for a, b, c, sign in ALGEBRAS[len(E)].structure_constants:
         # ad* is minus the transpose of `ad`.
-        (np.subtract if sign > 0 else np.add)(out[c], E[b] * Sigma[a], out[c, ...])
+        subtract = np.subtract if sign > 0 else np.add
+        subtract(out[c], E[b] * Sigma[a], out[c, ...])
     return out
 
 

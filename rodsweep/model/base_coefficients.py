@@ -30,4 +30,5 @@ def stretch_of_straight_rod(F: Any, k1: Any) -> Any:
     if isinstance(k1, np.ndarray):
         with np.errstate(invalid="ignore"):  # inf/inf where k1 = inf
             return np.where(np.isinf(k1), 1.0, (k1 - F) / k1)
+    # The difference k1 - F of two floats close together is exact, unlike 1 - F/k1.
     return (k1 - F) / k1 if k1 < inf else 1.0

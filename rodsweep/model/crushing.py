@@ -22,10 +22,12 @@ def uncrushed_interval(
     other than F, k1 and taper, which does not influence crushing, the whole interval is returned.
     """
     name, low, high = varied_parameter
+    # The weakest section moves along the arm as the taper changes, so only a search finds the limit.
     if name == "taper":
         return _smallest_uncrushed_taper(material, other_values, (low, high), margin), high
     relative_force = material.relative_crushing_force(other_values.get("taper", 1.0))
     if name == "F":
+        # Without a bound on the force, as for rubber, the product is inf and the interval is unchanged.
         return low, min(high, (1 - margin) * relative_force * other_values["k1"])
     if name == "k1":
         return max(low, other_values["F"] / relative_force * (1 + margin)), high
@@ -42,9 +44,14 @@ def _smallest_uncrushed_taper(
         return (1 - margin) * material.relative_crushing_force(taper) * other_values["k1"] > other_values["F"]
 
     low, high = interval
+    # A wider tip never weakens a section, so one sign change at most lies in the interval.
     if is_uncrushed(low) or not is_uncrushed(high):
         return low if is_uncrushed(low) else high
     while high - low > TAPER_ACCURACY * high:
         middle = (low + high) / 2
-        low, high = (low, middle) if is_uncrushed(middle) else (middle, high)
+        if is_uncrushed(middle):
+            high = middle
+        else:
+            low = middle
+    # The upper end of the bracket, at which the rod is known to be uncrushed.
     return high

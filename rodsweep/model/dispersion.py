@@ -35,6 +35,7 @@ def most_amplified_wave(rod: Rod) -> tuple[float, float]:
     decay. The wave travels on an infinitely long rod with the coefficients of the uniform `rod`. The function
     is not compiled, so that `rodsweep check` need not load numba."""
     F, nu, c2, gamma3 = rod.coefficients
+    # The growth is positive only for K < F g, so without such K every wave decays; nan counts as none.
     if not F * rod.g > 0:
         return 0.0, 0.0
     rate, wave_number = _largest_growth(F * rod.g, rod.g * nu, c2, gamma3)
@@ -61,6 +62,7 @@ def sampled_arm(rod: Rod) -> SampledArm:
 @lru_cache(maxsize=CACHED_ARM_COUNT)
 def _interval_midpoints(material: RodMaterial) -> tuple[Array, Array]:
     """Returns (midpoints, lengths) of short intervals of u between breaks of a profile, (points,) each."""
+    # Midpoints avoid the breaks, at which the factors have two values.
     lengths = np.diff(material.breaks)
     fractions = (np.arange(SAMPLES_PER_INTERVAL) + 0.5) / SAMPLES_PER_INTERVAL
     points = (material.breaks[:-1, None] + lengths[:, None] * fractions).ravel()
@@ -73,8 +75,10 @@ def most_amplified_local_waves(rod: Rod) -> tuple[Array, Array]:
     (points,) each. A local wave travels on an infinitely long uniform rod with the coefficients of the arm at
     the point. If all waves at a point decay, both numbers are 0."""
     nu, c2, c3, gamma2, gamma3, g = sampled_arm(rod).local
+    # A local rod has its own units: the formula needs bending compliance and drag scaled to 1.
     max_K = np.maximum(rod.F * c3 * g, 0.0)
     rate, wave_number = _largest_growth(max_K, g * nu, c2 / c3, gamma3 / gamma2)
+    # Rates return to the unit tau2 of the base; the wave number already is in 1/L.
     return rate / (gamma2 * c3), wave_number
 
 
@@ -83,6 +87,7 @@ def expected_unstable_count(rod: Rod) -> float:
     number that grows by the local dispersion relation, divided by pi. For 14 arms with 4 to 132 unstable
     modes the estimate was 0.9 to 1.9 times the true number."""
     _, weights, coefficients = sampled_arm(rod)
+    # Half waves of the shortest growing wave, counted along the arm.
     return float(weights @ np.sqrt(np.maximum(rod.F * coefficients.c3 * coefficients.g, 0.0))) / math.pi
 
 
@@ -94,6 +99,7 @@ def _largest_growth(max_K: Any, damping_at_0: Any, c2: Any, gamma3: Any) -> tupl
     (F < 0). c2, gamma3: shear compliance and rotational drag. All arguments are numbers or arrays of one
     shape; the results have this shape.
     """
+    # The closed formula needs a damped limit K = 0; a strongly pulled rod may not have one.
     if not np.min(damping_at_0) > 0:
         return _largest_sampled_growth(*(np.asarray(x)[..., None] for x in (max_K, damping_at_0, c2, gamma3)))
     # At the largest w the derivative of the dispersion relation with respect to K is 0:
@@ -110,6 +116,7 @@ def _largest_growth(max_K: Any, damping_at_0: Any, c2: Any, gamma3: Any) -> tupl
             + damping * damping
         )
         denominator = drag_sum * relative_max_K + 2 * damping
+        # As a quotient with a sum of positive terms, the largest rate has no cancellation.
         return max_K * relative_max_K / denominator, np.sqrt(max_K * (damping / denominator))
 
 
@@ -118,6 +125,7 @@ def _largest_sampled_growth(max_K: Any, damping_at_0: Any, c2: Any, gamma3: Any)
     rate may have a maximum at K = 0 only, or no maximum. Arguments: as in `_largest_growth`, (..., 1)."""
     product = c2 * gamma3
     K = max_K * K_FRACTIONS
+    # Both branches of each `where` are evaluated, also where they divide by 0.
     with np.errstate(all="ignore"):
         constant = K * (max_K - K)
         damping = (c2 + gamma3) * K + damping_at_0
@@ -126,6 +134,7 @@ def _largest_sampled_growth(max_K: Any, damping_at_0: Any, c2: Any, gamma3: Any)
         # cancellation for one sign of `damping`.
         rates_if_damped = np.where(product > 0, (root_of_discriminant - damping) / (2 * product), 0.0)
         rates = np.where(damping > 0, 2 * constant / (damping + root_of_discriminant), rates_if_damped)
+    # Also turns nan into a wave that does not grow.
     rates = np.where(rates > 0, rates, 0.0)
     max_rate = rates.max(axis=-1)
     fractions = K_FRACTIONS[rates.argmax(axis=-1)]

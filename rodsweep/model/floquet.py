@@ -12,6 +12,7 @@ def min_unstable_count(outside_count: int, largest_modulus: float, modulus_error
     + r) and 1 + r: on branches with multipliers of 1e13, rounding errors make r larger than 1, and the
     multiplier still has the right order of magnitude.
     """
+    # Even if the full count is undecided, the largest multiplier may lie clearly outside.
     if outside_count < 0 and largest_modulus > 1 + modulus_error / largest_modulus:
         return 1
     return outside_count

@@ -70,6 +70,7 @@ class Parameter:
 
     def __post_init__(self) -> None:
         """Raises ValueError if the parameter scales both stiffnesses and drags."""
+        # Along such a path some coefficients would be affine in the value and others in its inverse.
         if len({name in STIFFNESSES for name in self.scaled_names}) > 1:
             raise ValueError(
                 f"{self.name} scales {' and '.join(self.scaled_names)}; "
@@ -206,6 +207,7 @@ def parameter_names_except(excluded: str, names: tuple[str, ...] = LINEAR_PARAME
 
 def with_parameter_fields(cls: type[Decorated]) -> type[Decorated]:
     """Class decorator that adds every parameter of `PARAMETERS`, in order, as a field with its default."""
+    # Fields of a dataclass are in the order of the annotations, so the parameters must come first.
     own_annotations = dict(cls.__annotations__)
     cls.__annotations__ = dict.fromkeys(PARAMETERS, float) | {
         name: annotation for name, annotation in own_annotations.items() if name not in PARAMETERS

@@ -43,6 +43,7 @@ def branches_cost(
     """
     indices = sampled_points(points)
     values: dict[str, Array | float] = points.values_of(indices) | {
+        # The costly end of the range stands for the whole branch, on which the steps there dominate.
         parameter_name: limits[parameter_name in COSTLIER_IF_LARGER]
     }
     taper = np.asarray(values.get("taper", 1.0))

@@ -32,6 +32,7 @@ NO_WORK_LEFT: IndexRange = (0, 0)
 
 def chunk_seconds(rank_count: int) -> float:
     """Planned time of a chunk, in s, in a run with `rank_count` ranks."""
+    # The first rank answers one request per chunk and rank, so chunks must grow with the number of ranks.
     return max(CHUNK_SECONDS, rank_count * CHUNK_SECONDS_PER_RANK)
 
 
@@ -78,6 +79,7 @@ class ChunkQueue:
     def add_report(self, rank: int, report: RankReport) -> None:
         """Updates the queue from a rank's report on finished and returned items."""
         with self.change:
+            # The first report of a rank belongs to no chunk.
             if self.outstanding[rank]:
                 self.outstanding[rank] -= 1
             self.stored_points += report.stored_points
@@ -88,6 +90,7 @@ class ChunkQueue:
                 self.seconds_per_item[rank] = (
                     report.seconds
                 )  # pessimistic, so that its next chunk is one item
+                # At the front, so that points are still solved nearly in the order of the file.
                 self.unsolved.appendleft(report.returned_items)
                 self.items_left += end - start
             self.change.notify_all()
@@ -97,11 +100,13 @@ class ChunkQueue:
         with self.change:
             if self.unsolved:
                 return self._pop_chunk(rank)
+            # A chunk under way may come back unsolved, so a rank waits for it instead of ending.
             return None if self.outstanding.total() and not self.is_stopped else NO_WORK_LEFT
 
     def next_chunk_in_advance(self, rank: int) -> IndexRange | None:
         """The next chunk for a rank that still works on a chunk; None if few items are left in the queue."""
         with self.change:
+            # Near the end a chunk handed out early would wait on a busy rank while another rank is idle.
             if self.unsolved and self.items_left >= MIN_ITEMS_AHEAD * self.rank_count:
                 return self._pop_chunk(rank)
             return None
@@ -118,6 +123,7 @@ class ChunkQueue:
         )
         first, last = self.unsolved.popleft()
         end = min(last, first + max(1, min(size, fair_size, MAX_CHUNK_ITEMS)))
+        # The rest of a range goes back to the front, which keeps the order of the file.
         if end < last:
             self.unsolved.appendleft((end, last))
         self.items_left -= end - first
@@ -158,7 +164,9 @@ class DependentItemQueue(ChunkQueue):
         with self.change:
             self.stored_points += report.stored_points
             self.results |= report.results
+            # A new result may change the choice of all items, so it is made anew when a rank next asks.
             self._items_to_solve = None
+            # An item that was abandoned has no result, and is chosen again.
             self.in_progress.pop(rank, None)
             self.change.notify_all()
 
@@ -175,6 +183,7 @@ class DependentItemQueue(ChunkQueue):
                 if item not in taken_items:
                     self.in_progress[rank] = (item, item + 1)
                     return self.in_progress[rank]
+            # Results under way may call for further items.
             return None if self.in_progress else NO_WORK_LEFT
 
     def next_chunk_in_advance(self, rank: int) -> IndexRange | None:

@@ -104,6 +104,7 @@ class ChunkServer:
 
     def _sum_of_fractions(self) -> float:
         """Sum of the fractions done of all unfinished points on all ranks."""
+        # A copy, because the thread may change the dictionary meanwhile.
         return sum(position.completed_fraction or 0.0 for position in list(self.positions.values()))
 
     def poll_messages(self) -> None:
@@ -123,6 +124,7 @@ class ChunkServer:
         """After a stop request to the first rank, ends the queue and notifies all working ranks, once."""
         if self.stop and not self.queue.is_stopped:
             self.queue.stop()
+            # A rank that has ended would never receive the message.
             for rank in self.working_ranks:
                 self.ranks.comm.send(self.stop.name, dest=rank, tag=STOP_TAG)
 
@@ -131,6 +133,7 @@ class ChunkServer:
         comm = self.ranks.comm
         MPI = self.ranks.MPI
         with self.serving_lock:
+            # Stop requests come first, so that no chunk is handed out after one.
             while comm.Iprobe(source=MPI.ANY_SOURCE, tag=STOP_TAG, status=self.mpi_status):
                 self.stop.adopt(comm.recv(source=self.mpi_status.Get_source(), tag=STOP_TAG))
             self._pass_on_stop()
@@ -176,6 +179,7 @@ class ChunkServer:
         with self.ranks.abort_all_ranks_on_error():
             while self.working_ranks:
                 self._serve()
+                # While this rank answers messages itself, the thread leaves it the processor.
                 is_polled = time.monotonic() - self.last_served < POLL_SECONDS_IF_ANSWERED
                 time.sleep(POLL_SECONDS_IF_ANSWERED if is_polled else POLL_SECONDS)
 

@@ -145,10 +145,12 @@ def followed_spectra_cost(
         FOLLOWED_ARM_POINT_MS if any(not rod.is_uniform_and_linear for rod in rods) else FOLLOWED_POINT_MS
     )
     unstable = np.array([0.0 if rod.is_uniform_and_linear else expected_unstable_count(rod) for rod in rods])
+    # Such arms are not followed, so each of their points is solved alone.
     extra_ms = np.where(
         unstable > mode_count + MAX_EXTRA_UNSTABLE_MODES, MS_PER_SQUARED_UNSTABLE_MODE * unstable**2, 0.0
     )
     point_ms += float(extra_ms.mean()) if rods else 0.0
+    # Groups shorter than the cost of their first point would make following look dearer than it can be.
     return replace(alone, seconds=alone.seconds * min(1.0, ratio) + points.count * 1e-3 * point_ms)
 
 
@@ -158,6 +160,7 @@ def two_meshes_cost(points: Points, mode_count: int, accuracy: float) -> CostEst
     one_mesh = spectra_cost(points, mode_count, accuracy, certify=False)
     rods = [points.rod(int(index)) for index in sampled_points(points)]
     extra = points.count * 1e-3 * float(np.mean([_soft_or_pulled_rod_ms(rod) for rod in rods] or [0.0]))
+    # The part for soft and pulled rods is taken out of the factor, as it has a factor of its own.
     seconds = COST_OF_TWO_MESHES * (one_mesh.seconds - extra) + UNCOUNTED_SHARE * extra
     unknowns = one_mesh.unknowns and (
         one_mesh.unknowns[0],
@@ -175,6 +178,7 @@ def spectra_cost(points: Points, mode_count: int, accuracy: float, certify: bool
     if not counts:  # no rod covers any point of the sample
         return CostEstimate(0.0)
     arm_fraction = sum(not rod.is_uniform_and_linear for rod in rods) / len(rods)
+    # A rod whose mesh would be larger is refused at once, so it costs no more than the largest mesh.
     n = np.minimum(np.array(counts, dtype=float), RESOLUTION_SETTINGS.max_unknowns)
     dense_ms = SPECTRUM_FIXED_MS + SPECTRUM_MS_PER_UNKNOWN * n + SPECTRUM_MS_PER_CUBED_UNKNOWN * n**3
     point_ms = np.where(n <= MIN_SPARSE_UNKNOWNS, dense_ms, SPARSE_MS_PER_UNKNOWN * n) + (
@@ -184,6 +188,7 @@ def spectra_cost(points: Points, mode_count: int, accuracy: float, certify: bool
     point_ms += arm_fraction * ARM_SPECTRUM_MS + MS_PER_SQUARED_UNSTABLE_MODE * unstable**2
     point_ms += np.array([_soft_or_pulled_rod_ms(rod) for rod in rods])
     memory = BASE_MEMORY + int(n.max()) * MEMORY_PER_UNKNOWN
+    # Counted before the limit is applied, so that the user learns of rods that will not be solved.
     too_large = int((np.array(counts) > RESOLUTION_SETTINGS.max_unknowns).sum())
     return CostEstimate(
         float(point_ms.mean()) * 1e-3 * points.count, memory, (min(counts), max(counts)), too_large
@@ -197,7 +202,9 @@ def _soft_or_pulled_rod_ms(rod: Rod) -> float:
         squared_wave_number = rod.F * rod.g
     else:  # the unstable modes of arms are counted in `spectra_cost`
         local = sampled_arm(rod).local
+        # Only the pull is counted here; compressed arms are in the term of unstable modes.
         squared_wave_number = min(rod.F, 0.0) * float(np.max(local.c3 * np.maximum(local.g, 0.0)))
+    # Under pushes it is the shortest growing wave, under pulls the thickness of the layers at the ends.
     wave_number = math.sqrt(min(abs(squared_wave_number), MAX_SQUARED_WAVE_NUMBER))
     if squared_wave_number > 0:
         count = wave_number / math.pi
@@ -217,6 +224,7 @@ def _unknown_count(rod: Rod, mode_count: int, accuracy: float) -> int:
 def sampled_points(points: Points, max_count: int = MAX_SAMPLED_POINTS) -> NDArray[np.int64]:
     """Flat indices, (n,), of at most `max_count` evenly spaced points of a sweep, without points to which the
     rod model does not apply."""
+    # Rounding gives the same index twice if there are few points.
     indices = np.unique(np.linspace(0, points.count - 1, min(max_count, points.count)).astype(np.int64))
     return indices[[points.is_in_model(int(index)) for index in indices]]
 
@@ -225,6 +233,7 @@ def cycles_cost(points: Points, first_count: int) -> CostEstimate:
     """Estimated cost of the limit cycles of `points`. first_count: number of cycles computed from the leading
     mode; all other cycles are computed from a neighbour's cycle."""
     indices = sampled_points(points)
+    # Without any rod in the model nothing is pulled, as for F = 0.
     F = np.asarray(points.values_of(indices)["F"]) if indices.size else np.zeros(1)
     pulled_count = points.count * float(np.mean(-MIN_PULL_OF_SLOW_MOTION >= F))
     seconds = first_count * CYCLE_SECONDS + (points.count - first_count) * CHAINED_CYCLE_SECONDS

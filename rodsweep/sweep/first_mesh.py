@@ -36,6 +36,7 @@ def largest_first_mesh(
     mesh_of: function from a rod to its initial mesh. parameter_ends: ends, (n,), of the range in which each
     rod is searched, by name of the parameter; meshes are compared at these values.
     """
+    # The finest meshes belong to extreme parameter values, which evenly spaced points may miss.
     indices = {*sampled_points(points).tolist(), *_corners(points)}
     rods = (
         rod
@@ -59,6 +60,7 @@ def _rods_at_parameter_ends(rod: Rod, parameter_ends: Mapping[str, Array]) -> It
     for values in product(*(column.tolist() for column in parameter_ends.values())):
         end_values = dict(zip(parameter_ends, values, strict=True))
         if "F" in end_values:
+            # The other parameters come first, because they set the crushing force.
             force = end_values.pop("F")
             end_rod = rod.with_values(**end_values)
             yield end_rod.with_values(F=end_below_crushing(end_rod, force))

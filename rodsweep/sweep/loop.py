@@ -79,8 +79,10 @@ def sweep(
         if ranks.is_first
         else ChunkClient(ranks, stop)
     )
+    # A stop request during the preparation ends it; the loop below then gets no work.
     with suppress(SolveStopped), reporting_to(RankListener(requests, stop)):
         callbacks.prepare()
+    # Points count from here on, so that the preparation does not lower the rate.
     progress(0)
     return _RankLoop(ranks, requests, callbacks, progress, stop).solve_chunks()
 
@@ -114,6 +116,7 @@ class _RankLoop:
             points_before = self.solved_points
             next_item = self._solve_chunk(chunk)
             chunk_seconds = time.monotonic() - chunk_start
+            # Measured before the next request, so that waiting counts as idle.
             busy_seconds += chunk_seconds
             report = RankReport(
                 finished_items=next_item - chunk[0],

@@ -25,6 +25,7 @@ def on_terminal() -> bool:
     too."""
     if sys.stderr.isatty():
         return True
+    # The launcher pipes the output of its ranks, so a rank's own standard error is never a terminal.
     launcher = f"/proc/{os.getppid()}/fd/2"
     if not any(name in os.environ for name in ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE")):
         return False
@@ -66,13 +67,15 @@ class ProgressReporter:
         self.finished_count = 0
         self.fraction_sum = 0.0
         self.position_text = ""
-        self.bar = _bar(title) if (on_terminal() if is_bar is None else is_bar) else None
+        shows_bar = on_terminal() if is_bar is None else is_bar
+        self.bar = _bar(title) if shows_bar else None
         if self.bar is not None:
             self.task = self.bar.add_task(title, total=total, count="", rate="", left="", where="")
 
     def __call__(self, finished_count: int) -> None:
         """Records the number `finished_count` of finished points, and displays it if due; 0 starts the
         clock."""
+        # The clock starts after the preparation, in which no point can finish.
         if not finished_count:
             self.start_time = time.monotonic()
             self.next_display = self.start_time + QUIET_SECONDS
@@ -101,6 +104,7 @@ class ProgressReporter:
         time_left = "" if seconds is None else f"about {duration_text(seconds)} left"
         count = f"{self.finished_count} of {self.total}" if self.total else f"{self.finished_count or ''}"
         if self.bar is not None:
+            # Starting an already running bar does nothing; started here, a quick sweep shows none.
             self.bar.start()
             self.next_display = now + BAR_SECONDS
             fields: dict[str, Any] = {
@@ -110,6 +114,7 @@ class ProgressReporter:
                 "where": self.position_text,
             }
             self.bar.update(self.task, completed=self.finished_count + self.fraction_sum, **fields)
+            # Without a thread of its own the bar cannot draw in the middle of another message.
             self.bar.refresh()
             return
         self.next_display = now + LINE_SECONDS
@@ -125,6 +130,7 @@ def _bar(title: str) -> Progress:
     """Progress bar on standard error, or in a notebook, that begins with `title`."""
     console = Console() if in_notebook() else Console(file=sys.stderr, force_terminal=True)
     fields = (f"{{task.fields[{name}]}}" for name in ("count", "rate", "left", "where"))
+    # A unit or a file name in brackets would be taken as a style.
     title_column, *field_columns = (TextColumn(text, markup=False) for text in (title, *fields))
     return Progress(
         title_column, BarColumn(), *field_columns, console=console, transient=True, auto_refresh=False

@@ -33,6 +33,7 @@ def pulled_rows_seconds(rods: Sequence[Rod], F_values: Array, row_count: int) ->
     pulls = F_values[F_values < 0]
     if not pulls.size or not rods:
         return 0.0, ""
+    # The diagram itself begins a row at the first pull with a bound on its eigenvalues.
     starts = [_first_searchable_pull(rod, pulls) for rod in rods]
     seconds_of_rows = [_row_seconds(rod, start) for rod, start in zip(rods, starts, strict=True)]
     # Beyond the shear stiffness g = nu + F c2 is negative somewhere along the arm.
@@ -60,6 +61,7 @@ def _first_searchable_pull(rod: Rod, pulls: Array) -> float:
 def _row_seconds(rod: Rod, start_pull: float) -> float:
     """Time to search one row from the pull `start_pull` to F = 0, in s."""
     if not rod.is_uniform_and_linear:
+        # No search lasts longer, because it gives up on rods that no mesh resolves.
         return min(1e-3 * ARM_MS_PER_PULL * -start_pull, MAX_ATTEMPT_SECONDS)
     boxes = _boxes(rod, start_pull)
     covering_ms = COVERING_MS_PER_BOX * (0 if boxes is None else len(boxes))

@@ -26,9 +26,11 @@ class Ranks:
         except ImportError as error:
             raise import_failure_error("mpi4py", error) from error
         self.MPI = MPI
+        # On a communicator of its own, messages of rodsweep cannot meet those of PETSc or of user code.
         self.comm = MPI.COMM_WORLD.Dup()
         self.rank: int = self.comm.Get_rank()
         self.size: int = self.comm.Get_size()
+        # The first rank answers requests from a thread while its main thread solves.
         if self.size > 1 and MPI.Query_thread() < MPI.THREAD_MULTIPLE:
             raise EnvironmentIncomplete(
                 "MPI does not provide the thread level MPI_THREAD_MULTIPLE, which rodsweep needs on several "
@@ -49,6 +51,7 @@ class Ranks:
             except UserError as error:
                 outcome = (None, error)
         self.wait_for_all()
+        # After the barrier, as a broadcast would keep the processor busy while the first rank works.
         value, refusal = self.comm.bcast(outcome)
         if refusal is not None:
             raise refusal.marked_collective()
@@ -69,6 +72,7 @@ class Ranks:
             work()
         except UserError as error:
             first_error = error
+        # All ranks must take part before any of them raises, or the others would wait forever.
         refusals = [r for r in self.comm.allgather(first_error) if r is not None]
         if refusals:
             raise refusals[0].marked_collective()
@@ -85,6 +89,7 @@ class Ranks:
 
     def map_in_order(self, items: Sequence[T], work: Callable[[T], S]) -> list[S]:
         """Results of `work` for all items, in order, on every rank; the items are divided among the ranks."""
+        # Dealt out in turn, because neighbouring items often take similar times.
         results_by_rank = self.gather_on_all_ranks([work(item) for item in items[self.rank :: self.size]])
         return [results_by_rank[i % self.size][i // self.size] for i in range(len(items))]
 
@@ -106,6 +111,8 @@ class Ranks:
             for stream in (sys.stdout, sys.stderr):
                 with suppress(OSError):  # a full disk under the log must not prevent the abort
                     stream.flush()
+            # The launcher ends with this status, which tells a refusal from a bug.
             status = error.exit_status if isinstance(error, UserError) else BUG_STATUS
             self.comm.Abort(status)
+            # Reached only if Abort returns, which MPI allows.
             raise SystemExit(status) from error

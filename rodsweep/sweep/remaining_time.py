@@ -36,6 +36,7 @@ class RemainingTimeEstimator:
         """Remaining time, in s, when `finished_count` points are finished at the time `now`, smoothed over
         the calls; None if too little work is done for an estimate. now: in s since the start of the sweep.
         fraction_sum: sum of the fractions done of unfinished points."""
+        # Without this case the smoothed time would still show a rest at the end.
         if finished_count == self.total:
             return 0.0
         if finished_count and (not self.records or finished_count > self.records[-1][0]):
@@ -43,11 +44,13 @@ class RemainingTimeEstimator:
         seconds_per_point = self._seconds_per_point(finished_count, now, fraction_sum)
         if seconds_per_point is None:
             return None
+        # Fractions of long points are estimates, and may exceed what is left.
         remaining = max(self.total - finished_count - fraction_sum, 0.0) * seconds_per_point
         if self.reported is None:
             self.reported = now, remaining
             return remaining
         last_time, reported = self.reported
+        # A countdown that only passes time; the new estimate corrects it with the weight below.
         expected = max(reported - (now - last_time), 0.0)
         # A zero time constant would divide by zero when nothing is left.
         time_constant = TIME_CONSTANT * min(now, max(remaining, expected)) or 1.0
@@ -58,6 +61,7 @@ class RemainingTimeEstimator:
     def _record(self, finished_count: int, now: float) -> None:
         """Stores the record (finished, now); thins earlier records to about 35 per doubling of the points."""
         if len(self.records) > 2 and self.records[-1][0] < RECORD_RATIO * self.records[-2][0]:
+            # The latest record is replaced, not added to, so that a million points need some hundred records.
             self.records.pop()
         self.records.append((finished_count, now))
 
@@ -70,6 +74,7 @@ class RemainingTimeEstimator:
         None if their sum is below MIN_FRACTION_DONE.
         """
         if not self.records or finished_count < self.records[0][0] + MIN_POINTS:
+            # Before two points are finished only the fractions of long points tell the pace.
             return now / (finished_count + fraction_sum) if fraction_sum >= MIN_FRACTION_DONE else None
         earlier_records = (
             record for record in reversed(self.records) if record[0] <= PACE_WINDOW_START * finished_count
@@ -77,6 +82,7 @@ class RemainingTimeEstimator:
         earlier_points, earlier_time = next(earlier_records, self.records[0])
         latest_time = self.records[-1][1]
         new_points = finished_count - earlier_points
+        # While a long point runs, the time since the last record shows that the pace has dropped.
         return max(
             (latest_time - earlier_time) / new_points,
             (now - earlier_time) / (new_points + (fraction_sum or 1.0)),
@@ -86,6 +92,7 @@ class RemainingTimeEstimator:
 def duration_text(seconds: float) -> str:
     """Text of a duration with at most two significant digits: 8 s, 1.5 min, 3.2 h, 12 d."""
     for unit, length in (("d", 86400.0), ("h", 3600.0), ("min", 60.0)):
+        # Up to 1.45 of a unit the smaller unit has the finer digits: 85 min instead of 1.4 h.
         if seconds >= 1.45 * length:
             return f"{float(f'{seconds / length:.2g}'):g} {unit}"
     return f"{float(f'{seconds:.2g}'):.0f} s"

@@ -54,9 +54,11 @@ def soft_searches_seconds(points: Points, F_max: float, is_varying: bool) -> flo
     values = points.values_of(indices)
     min_area = np.minimum(np.asarray(values.get("taper", 1.0)), 1.0) ** 2
     with np.errstate(over="ignore"):
+        # The search ends where the rod is crushed.
         F = np.maximum(np.minimum(F_max, values["k1"]), 0.0)
         exchanges = F**2 / (np.asarray(values["k2"]) * min_area)
         rod_ms = SOFT_ARM_SEARCH_MS * exchanges**2 if is_varying else SOFT_SEARCH_MS * exchanges
+        # An infinite time could not be added, compared and printed like other times.
         return float(min(points.count * 1e-3 * float(np.mean(rod_ms)), sys.float_info.max / 4))
 
 

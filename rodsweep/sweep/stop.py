@@ -46,6 +46,7 @@ class StopRequest:
         first read after a stop request."""
         if not self.name:
             return False
+        # The clock starts at the first reading: the request of another rank comes without a signal.
         self._since = self._since or time.monotonic()
         return time.monotonic() - self._since >= GRACE_SECONDS
 
@@ -58,6 +59,7 @@ class StopRequest:
     def ignore() -> None:
         """Makes the process ignore stop signals, even while Python and MPI shut down; main thread only."""
         for signal_number in STOP_SIGNALS:
+            # A second signal would otherwise end the process with a traceback after all results are stored.
             signal.signal(signal_number, signal.SIG_IGN)
 
     def adopt(self, name: str) -> None:
@@ -68,6 +70,7 @@ class StopRequest:
         if signal_number == signal.SIGINT and self.acknowledges and not self.name:
             with suppress(OSError):
                 os.write(2, STOPPING_MESSAGE)  # print is not safe in a signal handler
+        # A handler must not touch files or MPI, which may be in the middle of a call.
         self.name = signal.Signals(signal_number).name
 
 
@@ -110,6 +113,7 @@ class RankListener:
     def __call__(self, make_position: PositionMaker) -> None:
         """Handles a solver's report at `make_position()`; raises SolveStopped if the solve must end."""
         now = time.monotonic()
+        # The text is made only when it is due, as solvers report thousands of times a second.
         if now >= self.next_report and (position := make_position()).text:
             self.next_report = now + POSITION_SECONDS
             self.communication.report_position(
@@ -117,6 +121,7 @@ class RankListener:
                     ": ".join(filter(None, (self.item_label(), position.text))), position.completed_fraction
                 )
             )
+        # A poll is an MPI call, too slow for every iteration of a solver.
         if now >= self.next_poll:
             self.next_poll = now + POLL_SECONDS
             self.communication.poll_messages()

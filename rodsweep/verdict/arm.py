@@ -63,10 +63,15 @@ class ArmReport:
         headline, *others = map(escape, self.verdict)
         verdict = f"<p><b>{headline}</b> {' '.join(others)}</p>"
         header_row = "".join(f"<th>{name}</th>" for name in ("quantity", "value", "formula", "source"))
-        cells = ("".join(f"<td>{escape(cell)}</td>" for cell in row) for row in self.rows)
-        table = f"<table><tr>{header_row}</tr>{''.join(f'<tr>{row}</tr>' for row in cells)}</table>"
+        rows = "".join(f"<tr>{_html_cells(row)}</tr>" for row in self.rows)
+        table = f"<table><tr>{header_row}</tr>{rows}</table>"
         checks = "".join(f"<li>{escape(check.text)}</li>" for check in self.checks)
         return f"{warnings}{verdict}{table}<p>{BRACKETS_NOTE}</p><ul>{checks}</ul>"
+
+
+def _html_cells(row: NumberRow) -> str:
+    """The cells of a row of the table, as HTML."""
+    return "".join(f"<td>{escape(cell)}</td>" for cell in row)
 
 
 def arm_report(arm: SlenderArm) -> ArmReport:
@@ -76,6 +81,7 @@ def arm_report(arm: SlenderArm) -> ArmReport:
     first_plane = planes.first
     assessment = Assessment(first_plane.arm, first_plane.thresholds)
     checks = checks_of(assessment)
+    # If the model does not apply at all, the verdict says so itself, and a doubt adds nothing.
     is_applicable = assessment.validity_of_verdict < Validity.does_not_apply
     doubtful_checks = tuple(
         check
@@ -85,6 +91,7 @@ def arm_report(arm: SlenderArm) -> ArmReport:
     headline, *others = verdict_sentences(planes, assessment)
     if arm.share_of_flutter is not None:
         load = str(getattr(arm, str(arm.load))).strip()
+        # The reader typed a multiple of flutter, so the absolute load has to be stated once.
         others.insert(0, f"{LoadFormatter(first_plane.arm).typed_text} is {load} with the likeliest drag.")
     return ArmReport(
         validity=assessment.validity_of_verdict,

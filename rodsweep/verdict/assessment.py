@@ -101,6 +101,7 @@ def effects_at_flutter(arm: SlenderArm, thresholds: ThresholdsOverDrags) -> tupl
     flutters; the rate of motion is the largest over all drags. Inertia, compression and Reynolds number are
     NaN if the arm does not flutter."""
     threshold = first_hopf_point(thresholds)
+    # Without flutter only the effects of the load and of the section are known; the others become nan.
     if threshold is None:
         return neglected_effects(arm, nan, nan)
     return neglected_effects(
@@ -125,15 +126,18 @@ def thickness_factor(arm: SlenderArm) -> float:
     iteration does not converge. NaN also for an arm that varies along its length, because each solve would
     take a second.
     """
+    # Sections of unequal size do not scale with one thickness that the reader could choose.
     if arm.shape.varies:
         return nan
     factor = 1.0
     for _ in range(MAX_THINNING_ITERATIONS):
         scaled_arm = _with_scaled_section(arm, factor)
+        # The flutter force changes with the thickness, through shear and drag, so each arm is solved anew.
         thresholds = ThresholdsOverDrags((thresholds_with_drag(scaled_arm, scaled_arm.drags[0]),))
         effects = effects_at_flutter(scaled_arm, thresholds)
         required_viscosity_factor = viscosity_factor(effects)
         if MIN_VISCOSITY_RATIO < required_viscosity_factor <= 1.0:
+            # A thinner arm may still be crushed or bent too much, and is then no remedy.
             is_valid = worst_validity(effects, of_cycles=False) < Validity.does_not_apply
             return factor if is_valid else nan
         # Mass times rate over drag scales as thickness^6/viscosity^2, hence thickness as viscosity^(1/3).
@@ -156,6 +160,7 @@ def _with_scaled_section(arm: SlenderArm, thickness_ratio: float) -> SlenderArm:
 def rounded_down(value: float) -> float:
     """The positive number `value`, rounded down to REMEDY_DIGITS significant digits."""
     unit = 10.0 ** (floor(log10(value)) - REMEDY_DIGITS + 1)
+    # A remedy rounded to the nearest number could lie just beyond the limit.
     return floor(value / unit) * unit
 
 

@@ -76,6 +76,7 @@ def slenderness_check(arm: SlenderArm) -> Check:
 
 def compression_check(assessment: "Assessment", at_flutter: Effect) -> Check:
     """Check of F/k1, the compressive strain of the straight arm's weakest section, at flutter and loaded."""
+    # The limit of linear elasticity means nothing for a law that holds at large strain.
     if assessment.arm.law != LINEAR.law_name:
         return _rubber_compression_check(assessment)
     texts = []
@@ -86,6 +87,7 @@ def compression_check(assessment: "Assessment", at_flutter: Effect) -> Check:
     if not isnan(at_flutter.value):
         beginning = "the flutter load shortens"
         texts.append(f"{beginning} {'it' if texts else 'the arm'} by {_percent_text(at_flutter)}")
+    # A nan counts as `applies`, so an arm that does not flutter is judged by its load alone.
     validity = max(map(_validity_of_effect, effects))
     strain = max(float(effect.value) for effect in effects if not isnan(effect.value)) if texts else 0.0
     remark = (
@@ -121,6 +123,7 @@ def _rubber_compression_check(assessment: "Assessment") -> Check:
 
 def _weakest_section_shortening(arm: SlenderArm, F: float) -> float:
     """Compressive strain of the arm's weakest section under the force F. F: in k3/L^2."""
+    # The force is the same in all sections, so the one of the smallest E A shortens most.
     smallest_stiffness = min(station.young * station.section.area for station in arm.shape.stations)
     base_stiffness = arm.shape.base.young * arm.cross_section.area
     return float(arm.material.constitutive_law.shortening(F / (arm.k1 * smallest_stiffness / base_stiffness)))
@@ -143,6 +146,7 @@ def inertia_checks(arm_inertia: Effect, fluid_inertia: Effect) -> list[Check]:
     if isnan(arm_inertia.value):
         return []
     validity = max(map(_validity_of_effect, (arm_inertia, fluid_inertia)))
+    # To first order the two phase lags add, so one factor serves both.
     percent = 100 * THRESHOLD_DECREASE_BY_INERTIA * float(arm_inertia.value + fluid_inertia.value)
     remark = (
         "neither matters",

@@ -50,6 +50,7 @@ def _shortened_load(load: object, value: float, si_unit: str) -> str:
     given as a number is written in the SI unit `si_unit`, in which it is `value`."""
     if not isinstance(load, str):
         return f"{value:.4g} {si_unit}"
+    # A number as typed is recognised by the reader; only computed loads have many digits.
     number_text = load.split()[0]
     if len(number_text) <= MAX_TYPED_LENGTH:
         return load.strip()

@@ -100,6 +100,7 @@ def flutter_force_row(plane: PlaneOfMotion) -> list[NumberRow]:
     pressure may be the smaller force."""
     thresholds = plane.thresholds
     forces = [] if thresholds.failures else plane.flutter_load_by_drag
+    # A range over drags that leaves some drags out would look like the whole range.
     if not forces or not all(isfinite(force) for force in forces):
         return []
     value = value_with_drag_range(forces, " N")

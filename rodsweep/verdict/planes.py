@@ -59,6 +59,7 @@ def planes_of(arm: SlenderArm) -> PlanesOfMotion:
     exchanged = with_exchanged_sides(arm)
     height_plane = PlaneOfMotion(arm, thresholds_over_drags(arm), "the plane of its height")
     width_plane = PlaneOfMotion(exchanged, thresholds_over_drags(exchanged), "the plane of its width")
+    # In newtons, since each plane has its own unit of force.
     if width_plane.flutter_load_by_drag[0] < height_plane.flutter_load_by_drag[0]:
         return PlanesOfMotion(width_plane, height_plane)
     return PlanesOfMotion(height_plane, width_plane)
@@ -82,6 +83,7 @@ def with_absolute_load(planes: PlanesOfMotion) -> PlanesOfMotion:
             f"not flutter up to {end_text}; give an absolute load"
         )
     factor, unit = with_si_prefix(ratio * force * scale, UNITS[load][0])
+    # As text with a unit, because a bare number would be read in SI units and lose the user's scale.
     absolute_load: dict[str, Any] = {load: f"{ratio * force * scale * factor:.15g} {unit}"}
     second = planes.second and replace(planes.second, arm=replace(planes.second.arm, **absolute_load))
     return PlanesOfMotion(replace(first, arm=replace(first.arm, **absolute_load)), second)

@@ -58,6 +58,7 @@ def rods_by_plane(
     planes = [(_rod_in_its_plane(arm, material, taper), 1.0)]
     if not arm.is_equally_stiff_in_all_planes:
         exchanged = with_exchanged_sides(arm)
+        # Each plane has its own unit of force, as the bending stiffness differs.
         scale = exchanged.cross_section.second_moment / arm.cross_section.second_moment
         planes.append((_rod_in_its_plane(exchanged, material, taper), scale))
     return planes
@@ -90,6 +91,7 @@ def first_hopf_force(rod: Rod) -> float:
         ):
             force = find_first(path, end_below_crushing(rod, end))
             if force < inf:
+                # The last digits of a solution differ between machines, and with them all points of a sweep.
                 return float(f"{force:.{REFERENCE_DIGITS}g}")
     except (ArithmeticError, MemoryError, np.linalg.LinAlgError) as error:
         reason = str(error) or type(error).__name__
@@ -103,6 +105,7 @@ def first_hopf_force(rod: Rod) -> float:
 def _first_hopf_force_by_boxes(path: ParameterPath, end_force: float) -> float:
     """Smallest F up to `end_force` at which a pair of modes becomes unstable; inf if no pair does. Covers the
     zeros of the determinant with boxes. Raises FlutterSearchFailed if a smaller F is not excluded."""
+    # Boxes exclude all smaller forces; following one mode from F = 0 could miss another one.
     boxes = first_boxes(path, 0.0, end_force)
     if boxes is None:
         raise FlutterSearchFailed(
@@ -111,6 +114,7 @@ def _first_hopf_force_by_boxes(path: ParameterPath, end_force: float) -> float:
         )
     zeros, undecided, _ = cover_with_boxes(boxes, path.origin, path.direction)
     force = min((zero.p for zero in zeros if _becomes_unstable(path, zero)), default=inf)
+    # Undecided boxes beyond the first Hopf point cannot contain an earlier one.
     if any(min(box.p_from, box.p_to) < force for box in undecided):
         raise FlutterSearchFailed(
             "the flutter threshold to which a relative load refers is uncertain: a narrow window of flutter "
@@ -137,6 +141,7 @@ def _first_hopf_force_of_varying_arm(path: ParameterPath, end_force: float) -> f
         (crossing.value for crossing in located.thresholds if crossing.kind == ThresholdKind.hopf),
         default=inf,
     )
+    # A search that ended early after the first Hopf point has all that is asked for.
     if not located.proved or (located.ended_early and force == inf):
         raise FlutterSearchFailed(
             "the flutter threshold to which a relative load refers is uncertain, because a Hopf point may be "

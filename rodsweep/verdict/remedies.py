@@ -20,6 +20,7 @@ def not_applicable_sentences(arm: SlenderArm, assessment: Assessment) -> list[st
     *others, first = {effect_kind(effect): effect for effect in reversed(effects)}.values()
     remedy = _remedy(first, arm, assessment)
     is_valid = assessment.validity_at_flutter != Validity.does_not_apply
+    # At flutter itself the model applies then, so the sentence must say that the load is the reason.
     load_clause = f" at {LoadFormatter(arm).typed_text}" if is_valid else ""
     excess = f"{first.name} is {excess_text(first)} what the model allows"
     sentences = [f"The model does not apply{load_clause}: {excess}; {remedy}."]
@@ -53,6 +54,7 @@ def _remedy(effect: Effect, arm: SlenderArm, assessment: Assessment) -> str:
         unit = unit_of(arm.density_difference, si_unit)  # type: ignore[arg-type]
         limit = rounded_down(value_in_unit(abs(arm.si.density_difference) * ratio, unit, si_unit))
         return f"the model needs an arm whose density is within {limit:g} {unit} of the fluid's"
+    # By identity, as the compression at flutter and under the load have the same name.
     if any(effect is weakest for weakest in assessment.compression_under_load):
         noun = "a pull" if arm.F < 0 else "a load"
         return f"the model needs {noun} of at most {LoadFormatter(arm).rounded_down_text(abs(arm.F) * ratio)}"

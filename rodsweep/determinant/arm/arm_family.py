@@ -84,6 +84,7 @@ def interpolated_family(path: ParameterPath, low: float, high: float, W: float) 
         elements = elements_for(arms, samples, W)
         entry_count = len(elements.lengths) * ARM_ELEMENT_SETTINGS.max_terms * PADDED
         if entry_count > ARM_FAMILY_SETTINGS.max_propagator_entries:
+            # Later trials have as many entries for each arm, so that none of them would be smaller.
             return None
         propagators = element_propagators([rod.F for rod in arms], elements.local, elements.lengths, W)
         if _has_small_coefficient_tail(propagators, ARM_FAMILY_SETTINGS.converged_tail_ratio):
@@ -100,6 +101,7 @@ def interpolated_family(path: ParameterPath, low: float, high: float, W: float) 
 def has_smooth_coefficients(path: ParameterPath, low: float, high: float) -> bool:
     """Whether the arms' coefficients are smooth in p from `low` to `high`, as a family needs: a cheap test.
     Raises ValueError at a p without a valid arm."""
+    # The last trial has the most arms: if the coefficients are smooth at all, it mostly says so at once.
     for node_count, spacing in reversed(ARM_FAMILY_SETTINGS.trials()):
         p = _interpolation_points(low, high, spacing * (high - low), node_count)
         if _series_converges(coefficient_samples([path.rod_at(value) for value in p.tolist()])):
@@ -110,6 +112,7 @@ def has_smooth_coefficients(path: ParameterPath, low: float, high: float) -> boo
 def _series_converges(samples: CoefficientSamples) -> bool:
     """Whether the Chebyshev series in p of the coefficients along the arms converges at every sample."""
     tolerance = ARM_FAMILY_SETTINGS.coefficient_tail_factor * ARM_FAMILY_SETTINGS.converged_tail_ratio
+    # The series are in p, so the axis of the arms comes first.
     return _has_small_coefficient_tail(np.moveaxis(np.array(samples.local), 1, 0), tolerance)
 
 
@@ -142,4 +145,5 @@ def chebyshev_points(count: int) -> Array:
 @cache
 def _chebyshev_coefficient_matrix(count: int) -> Array:
     """Matrix that maps values at `count` Chebyshev points to Chebyshev coefficients, (count, count)."""
+    # At Chebyshev points the matrix is well conditioned, and its inverse loses no digits.
     return np.asarray(np.linalg.inv(chebyshev.chebvander(chebyshev_points(count), count - 1)))

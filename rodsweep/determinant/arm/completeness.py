@@ -94,6 +94,7 @@ def prove_complete(
     absolute errors, (n,) each. Eigenvalues whose conjugate is not in `known_w` are treated as unknown. Raises
     FloatingPointError if no elements resolve the arm.
     """
+    # Negated, so that a line of nan proves nothing.
     if not math.isfinite(hull.a) or not line <= 0:
         return CompletenessProof(False, 0)
     # R must be real, so an eigenvalue without its conjugate is treated as unknown.
@@ -133,6 +134,7 @@ def cheapest_proof(line: float, hull: EigenvalueHull, known_w: Complex, mode_cou
     the smallest |w|, and therefore the fewest elements. The number is at least `mode_count`, or 0 if no proof
     is possible."""
     cheapest = 0, math.inf
+    # The leading eigenvalues are not the smallest, so |w| need not increase along the list.
     moduli = np.maximum.accumulate(np.abs(known_w)).tolist()
     complete = [*(known_w[1:] != known_w[:-1].conj()).tolist(), True]
     for k, ratio in COMPLETENESS_SETTINGS.proof_trials():

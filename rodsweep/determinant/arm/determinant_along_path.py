@@ -124,8 +124,10 @@ class ArmAlongPath:
         previous_x_step = math.inf
         jacobian: _DoubleEigenvalueJacobian | None = None
         uses_families = True
+        # Twice as many steps: Newton's method runs first with families, then with the arms themselves.
         for _ in range(2 * ROOT_NEWTON_SETTINGS.max_steps):
             family = self._usable_family(x, p) if uses_families else None
+            # The last Jacobian of the families only affects how fast the arms' own steps converge.
             if uses_families or jacobian is None:
                 jacobian = self._jacobian(x, p, expected_distance)
             step = self._newton_step(x, p, jacobian, family)
@@ -134,6 +136,7 @@ class ArmAlongPath:
             # Negated comparisons are also true for NaN.
             if (
                 not abs(p - start_p) <= 2 * expected_distance
+                # As D(0) = 1, no branch of real eigenvalues crosses x = 0: the step jumped to another root.
                 or not x * start_x > 0
                 or not self._is_valid_at(p)
             ):
@@ -150,6 +153,7 @@ class ArmAlongPath:
     def _jacobian(self, x: float, p: float, expected_distance: float) -> _DoubleEigenvalueJacobian:
         """Derivatives of D and D_w at real w = x and p, by differences; expected_distance: see
         `double_eigenvalue`."""
+        # Every value is brought to one scale S, since values with different scales cannot be subtracted.
         log_scale = self._determinant_value(x, p).log_scale
         h = DETERMINANT_SETTINGS.second_difference_step_ratio * abs(x)
         D_ww = (
@@ -180,6 +184,7 @@ class ArmAlongPath:
         if cross == 0 or not math.isfinite(cross):
             return _DoubleEigenvalueStep(math.nan, math.nan, math.nan, math.nan)
         rounding = rounding_error_from_propagators(complex(x, 0.0), W, polynomials, log_scale)
+        # p itself is rounded, which changes D by this much even if D were evaluated exactly.
         total_rounding = rounding + ROUND_OFF * abs(p * D_p)
         rounding_of_slope = rounding / max(abs(x), EXPONENT_SETTINGS.min_divisor)
         x_step = (D_p * D_w - D_wp * D) / cross
@@ -214,6 +219,7 @@ class ArmAlongPath:
         that no shortened step keeps p - step positive, unless p is the force.
         """
         first_step = min(ROOT_NEWTON_SETTINGS.jacobian_step_ratio * max(abs(p), 1.0), max_step)
+        # p = 0 ends the range of compliances and drags, but not of the force, which has either sign.
         if p == 0 and self.path.name != "F":
             return FORWARD_DIFFERENCE_STENCIL, first_step
         central_step = self._valid_step(p, first_step, CENTRAL_DIFFERENCE_STENCIL)

@@ -27,6 +27,7 @@ def write_propagators(family: ArmFamily, p: float, polynomials: Array, p_derivat
     if family.scale < LINEAR_SCALE:
         log_width = math.log1p(2 * half / family.scale)
         t = 2 * math.log1p((p - family.p_low) / family.scale) / log_width - 1
+        # dp/dt at this p turns derivatives by the Chebyshev variable t into derivatives by p.
         half = (p - family.p_low + family.scale) * log_width / 2
     nodes = len(family.coefficients)
     T = np.empty(nodes)
@@ -106,6 +107,7 @@ def eigenvalue_of_family_arm(family: ArmFamily, guess: complex, p: float) -> tup
     for _ in range(ROOT_NEWTON_SETTINGS.max_refinements):
         value = determinant_from_propagators(w, family.largest_w, polynomials)
         step = value.D / value.D_w if value.D_w != 0 else 0j
+        # D is real at real w, so an imaginary part of the step could only be rounding.
         if w.imag == 0:
             step = complex(step.real, 0.0)
         if (

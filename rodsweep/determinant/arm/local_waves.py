@@ -43,6 +43,7 @@ def arm_samples(F: float | Array, coefficients: LocalCoefficients, weights: Arra
 @compiled_for_vectors
 def sqrt_in_upper_half_plane(real: float, imag: float) -> tuple[float, float]:
     """(real part, imaginary part) of the square root of real + i imag, imag >= 0."""
+    # The larger part comes from a sum of positive terms; the smaller then follows without cancellation.
     larger = math.sqrt((math.sqrt(real * real + imag * imag) + abs(real)) / 2)
     smaller = imag / (2 * max(larger, EXPONENT_SETTINGS.min_divisor))
     return (larger, smaller) if real >= 0 else (smaller, larger)

@@ -80,15 +80,18 @@ def _newton_from_guess(guess: complex, level: PropagatorsUpToW, last: float) -> 
     w = guess
     for _ in range(ROOT_NEWTON_SETTINGS.max_refinements):
         value = determinant_from_propagators(w, level[0], level[1])
+        # An infinite step ends the iteration where it is.
         step = value.D / value.D_w if value.D_w != 0 else complex(math.inf, 0.0)
         if guess.imag == 0:
             step = complex(step.real, 0.0)
+        # w stays where D was just evaluated, so that its error needs no further value.
         if not abs(step) < ROOT_NEWTON_SETTINGS.converging_step_ratio * last:
             return w, _root_error_from_value(w, value, level), last
         last = abs(step)
         w -= step
         if abs(w.imag) <= ROOT_NEWTON_SETTINGS.real_tolerance * abs(w):
             w = complex(w.real, 0.0)
+        # The error needs D' at w + h too, which must also lie within W.
         if not (1 + DETERMINANT_SETTINGS.second_difference_step_ratio) * abs(w) <= level[0]:
             return w, -1.0, last
     return w, _root_error_by_propagators(w, level), last
@@ -158,7 +161,9 @@ def refine_eigenvalue_and_error(
     convergence. A real guess w gives a real eigenvalue. max_first_step: if the first Newton step is at least
     this long, w is returned unchanged."""
     error = -1.0
+    # A step must be below half of the last one, so this demands a first step below max_first_step.
     last = 2 * max_first_step
+    # The loop ends because the steps keep halving across the restarts with other elements.
     while error < 0:
         w, error, last = _newton_from_guess(complex(w), _propagators_up_to(w, determinant), last)
     return w, error
@@ -175,6 +180,7 @@ def refine_eigenvalues_and_errors(
         roots, errors, _ = _newton_from_guesses(np.array(w, complex), level, last)
         if (errors >= 0).all():
             return list(zip(roots.tolist(), errors.tolist(), strict=True))
+    # An iterate has left the common elements, so every guess now chooses its own.
     steps = zip(w, max_first_steps, strict=True)
     return [refine_eigenvalue_and_error(value, determinant, step) for value, step in steps]
 

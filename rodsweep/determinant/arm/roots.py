@@ -112,6 +112,7 @@ def _separate_close_roots(
         if abs(w[partner] - w[i]) <= ROOT_SETTINGS.pair_distance * (errors[i] + errors[partner]):
             for _ in range(ROOT_SETTINGS.parabolas_per_pair):
                 middle = (w[i] + w[partner]) / 2
+                # The middle of a real or conjugate pair is real, and rounding must not move it off the axis.
                 if w[partner] == w[i].conjugate() or (w[i].imag == 0 and w[partner].imag == 0):
                     middle = complex(middle.real, 0.0)
                 w[i], w[partner] = taylor_parabola_roots(middle, determinant)

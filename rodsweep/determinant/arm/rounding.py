@@ -83,6 +83,7 @@ def error_of_interpolated_chain(
     moduli = np.empty((2, MINORS))
     scale_after = -S
     total = 0.0
+    # `next_moduli` holds a_e of the module docstring, so the elements are visited from tip to clamp.
     for e in range(elements - 1, -1, -1):
         errors = ARM_ROUNDING_SETTINGS.error_per_product * modulus_sum_of_form(next_moduli, C[e], x[e])
         if len(entry_sizes):

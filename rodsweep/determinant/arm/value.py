@@ -105,6 +105,7 @@ def _multiply_along_chain(
             fill_propagator_value(p_derivatives[e], powers, C_p)
             apply_propagator_with_change(C, minors[2], C_p, minors[0], next_minors[2])
         size = _norm(next_minors[0])
+        # At the tip D is scaled by its terms, because its rounding error is relative to them, not to D.
         if e == elements - 1:
             size = max(size, modulus_sum_of_products(C, minors[0]))
         if _needs_rescaling(size) or e == elements - 1:

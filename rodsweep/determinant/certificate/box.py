@@ -152,6 +152,7 @@ def zero_free_radius_of_rod(coefficients: Coefficients, max_radius: float) -> fl
 def _zero_free_radius(radius: float, T: float, X: float, G: float, max_pull: float) -> float:
     """The first of r, r/2, r/4, ... such that |D(i eta) - 1| < 1/2 for |eta| <= r; 0 if r underflows. T, X,
     G: bounds of c2 + gamma3, c2 gamma3 and |g nu|. max_pull: bound of -F g, at least 0."""
+    # The loop ends at the latest when the radius underflows to 0, where the bound is 0.
     while (
         _distance_from_one_bound(radius, T, X, G, max_pull) >= ZERO_FREE_DISC_SETTINGS.max_deviation_from_one
     ):
@@ -166,4 +167,5 @@ def _distance_from_one_bound(radius: float, T: float, X: float, G: float, max_pu
     if exponent > 1 + sqrt(max_pull):
         return inf
     factor = (T * radius + sqrt(radius * G) + 2 * radius * sqrt(X)) / 2
+    # The cap keeps exp from overflowing: every bound above 1/2 means the same to the caller.
     return exp(min(exponent + log(factor), 1.0)) if factor > 0 else 0.0

@@ -196,6 +196,7 @@ def cover_with_boxes(
     undecided = [Box(0.0, 0.0, 0.0, 0.0) for _ in range(0)]
     count = 0
     while len(stack) > 0:
+        # The last box comes first (depth first), so that the stack stays short.
         box = stack.pop()
         eta = (box.eta_from + box.eta_to) / 2
         p = (box.p_from + box.p_to) / 2

@@ -204,6 +204,7 @@ def bound_for_distinct_exponents(centre: BidiscCentre, rates: DerivativePair, ra
         max_change > 0 and e2 > DISC_BOUND_SETTINGS.max_factor_change
     ):
         return math.inf
+    # If g nu and X are 0, the second factor is 0 on the whole bidisc and does not change.
     if max_change == 0:
         e2 = 0.0
     nonlinear_change = abs(T_p) * sigma * rho + abs(N_pp) / 2 * sigma * sigma

@@ -142,6 +142,7 @@ def _phase_beyond_dominant(w: complex, factors: tuple[complex, complex], coeffic
     `dominant_prefactor_and_exponent` at w."""
     D, _, _, _ = scaled_determinant(w, coefficients)
     factor, root = factors
+    # Only the phase is wanted, so both moduli, which may overflow, are left out.
     return cmath.phase(D / (factor * cmath.exp(complex(0.0, root.imag))))
 
 
@@ -178,9 +179,11 @@ def phase_over_dominated_segment(
             rho /= 2
         if not proved:
             break
+        # Most trials prove no disc at all, so the first wave is computed only after a proof.
         if t == 0.0:
             wave = dominant_prefactor_and_exponent(w, coefficients)
             first_wave = wave
+        # A remainder of the size of rounding would leave a last disc of radius 0.
         t = length if t + 2 * rho >= length * (1 - DOMINANCE_SETTINGS.end_rounding) else t + 2 * rho
         w = start + direction * t
         next_wave = dominant_prefactor_and_exponent(w, coefficients)

@@ -73,6 +73,7 @@ def first_boxes(path: ParameterPath, p_start: float, p_stop: float) -> Array | N
         if min_eta * sys.float_info.max <= max_eta:  # `min_eta` is 0 or so small that top/min_eta overflows
             return None
         count = max(1, math.ceil(math.log(max_eta / min_eta) / math.log(COVERING_SETTINGS.max_eta_ratio)))
+        # Boxes of one ratio: discs about a centre must not reach the branch point of P at eta = 0.
         edges = np.geomspace(min_eta, max_eta, count + 1)
         boxes += [(edges[i], edges[i + 1], interval_start, interval_end) for i in range(count)]
     return np.array(boxes).reshape(-1, 4)

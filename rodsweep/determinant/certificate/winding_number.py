@@ -97,6 +97,7 @@ def phase_change(start: complex, end: complex, coefficients: Coefficients) -> tu
         if t < length:
             w = start + direction * t
             walk_end = min(length, t + node_walk_length * abs(w))
+            # The corner itself, since the next edge starts there.
             walk_end_w = end if walk_end == length else start + direction * walk_end
             change, used_count = phase_change_by_nodes(w, walk_end_w, coefficients)
             node_count += abs(used_count)
@@ -126,6 +127,7 @@ def phase_change_by_nodes(start: complex, end: complex, coefficients: Coefficien
             return 0.0, -node_count
         # The next node may lie outside the zero-free disc of this node if its own disc covers the step.
         distance = min(WINDING_SETTINGS.max_step_ratio * node.zero_free_radius, length - t)
+        # The second trial lies within the zero-free radius, so there are at most two.
         while True:
             is_in_disc = distance < node.zero_free_radius
             next_node = zero_free_disc_at(
@@ -138,6 +140,7 @@ def phase_change_by_nodes(start: complex, end: complex, coefficients: Coefficien
                 break
             distance = WINDING_SETTINGS.safe_step_ratio * node.zero_free_radius
         # The linear part of the change may exceed 2 pi; the values of D give the rest, less than pi/2.
+        # The linear part of the larger disc, which contains the step, leaves less than pi/2.
         linear_change = (
             (node.L if node.zero_free_radius >= next_node.zero_free_radius else next_node.L)
             * (next_node.w - node.w)

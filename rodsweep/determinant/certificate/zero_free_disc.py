@@ -99,6 +99,7 @@ def zero_free_disc_at(w: complex, coefficients: Coefficients) -> ZeroFreeDiscNod
     centre = bidisc_centre(w, coefficients, NO_COEFFICIENT_CHANGE, S)
     valid_radius = 0.0
     rho = trial_radius(w, coefficients, L, S)
+    # Half the radius may prove more, because the bound M grows exponentially with the radius.
     for _ in range(2):
         M = bound_on_bidisc(centre, (L, 0j), (rho, 0.0))
         q = max_remainder / M

@@ -67,6 +67,7 @@ def crossing_newton(
             abs(eta_step) <= ROOT_NEWTON_SETTINGS.converged_step_in_rounding_errors * e_eta
             and abs(p_step) <= ROOT_NEWTON_SETTINGS.converged_step_in_rounding_errors * e_p
         ) or (
+            # Small steps that stop halving are rounding errors above their estimate.
             step > ROOT_NEWTON_SETTINGS.converging_step_ratio * last
             and step * scale[1] < ROOT_NEWTON_SETTINGS.stagnant_step_ratio * abs(p)
         ):
@@ -138,6 +139,7 @@ def refine_eigenvalue(w: complex, coefficients: Coefficients, max_first_step: fl
     A real guess w gives a real eigenvalue. max_first_step: if the first Newton step is at least this long, w
     is returned unchanged."""
     real = w.imag == 0
+    # With the test below this demands a first step below max_first_step.
     last = 2 * max_first_step
     for _ in range(ROOT_NEWTON_SETTINGS.max_refinements):
         value = scaled_determinant(w, coefficients)

@@ -188,6 +188,7 @@ def refined_roots(raw: Complex, coefficients: Coefficients, sqrt_bound: float, m
     axis = np.abs(w.real) <= np.maximum(
         ROOT_SETTINGS.axis_tolerance_in_errors * error, ROOT_SETTINGS.axis_tolerance * np.abs(w)
     )
+    # An eigenvalue in the box that leads all roots is spurious, or the trace of a root that was missed.
     spurious_count = (inside & ~is_near & (raw.real > (w[0].real if len(w) else -math.inf))).sum()
     return Roots(indices, w, error, displacement, wave, axis, spurious_count)
 
@@ -206,6 +207,7 @@ def _refine_candidates(
     for i in range(len(w)):
         if not is_root[i]:
             continue
+        # Pairs moved to the roots of a parabola are not conjugates of their neighbours in the list.
         is_conjugate = i > 0 and w[i].imag != 0 and not is_separated[i - 1] and not is_separated[i]
         if is_conjugate and w[i] == first[i - 1].conjugate():
             # The conjugate is refined already.

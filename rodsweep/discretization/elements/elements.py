@@ -119,6 +119,7 @@ class Elements:
         matrix = np.zeros((len(points), self.element_nodes.size))
         for e, indices, coordinates in self.points_by_element(points):
             nodes = gauss_lobatto_rule(self.orders[e])[0]
+            # Each earlier element has added one column, since the node between two elements has two values.
             columns = slice(self.node_ranges[e].start + e, self.node_ranges[e].stop + e)
             matrix[indices, columns] = lagrange_interpolation_matrix(nodes, coordinates)
         return matrix
@@ -127,6 +128,7 @@ class Elements:
         """Yields (element, indices, coordinates) for each element that contains some of the `points`, (n,).
         indices: indices of the points in the element. coordinates: coordinates of these points, from -1 to 1
         along the element. A point between two elements belongs to the right element."""
+        # The clip puts u = 1, which lies right of the last edge, into the last element.
         element = np.clip(np.searchsorted(self.edges, points, side="right") - 1, 0, self.element_count - 1)
         for e in np.unique(element):
             indices = np.nonzero(element == e)[0]
@@ -144,6 +146,7 @@ def element_orders(element_count: int, order: int, ratios: tuple[float, ...]) ->
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_mesh_pairs)
 def equal_edges(element_count: int) -> tuple[float, ...]:
     """Edges of `element_count` elements of equal length on [0, 1]."""
+    # A quotient is equal for equal edges of different meshes; a multiple of the rounded length is not.
     return tuple(k / element_count for k in range(element_count + 1))
 
 

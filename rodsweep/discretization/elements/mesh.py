@@ -44,6 +44,7 @@ class Mesh(Elements):
     """Elements with matrices over all nodes. `node_count` is the number of nodes without the tip. Meshes with
     equal edges and orders compare equal, also in different processes."""
 
+    # The matrices follow from edges and orders, and an array comparison has no single truth value.
     matrices: NodeMatrices = field(compare=False, repr=False)
 
     def __reduce__(self) -> tuple[Any, tuple[tuple[float, ...], int, tuple[float, ...]]]:
@@ -99,6 +100,7 @@ def shape_from_strains(mesh: Mesh, strains: Array, clamp: Array) -> Array:
     for e, (element, length) in enumerate(zip(mesh.node_ranges, mesh.lengths, strict=True)):
         values, angles, integrals, ends = shape_integration_matrices(mesh.orders[e], gauss_point_count)
         h1, h2, Pi = (strain[..., element.start + e : element.stop + e] for strain in strains)
+        # The angle comes first, because it turns the strains in the integrals of x and y.
         theta = start[2] + length * (Pi @ angles)
         cos = np.cos(theta)
         sin = np.sin(theta)
@@ -143,6 +145,7 @@ def shape_integration_matrices(order: int, gauss_point_count: int = 0) -> ShapeI
 def integration_matrix(nodes: Array, upper_limits: Array) -> Array:
     """Matrix (m, n) from values at `nodes`, (n,), to integrals of the interpolating polynomial along an
     element of length 1, from its start to `upper_limits`, (m,). All coordinates are in [-1, 1]."""
+    # n Gauss points integrate the interpolant, of degree n - 1, exactly.
     points, weights = gauss_legendre_rule(len(nodes))
     return np.array(
         [

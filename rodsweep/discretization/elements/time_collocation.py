@@ -58,6 +58,7 @@ def radau_method(stage_count: int) -> CollocationMethod:
         x = x - legendre.legval(x, legendre_coefficients) / legendre.legval(
             x, legendre.legder(legendre_coefficients)
         )
+    # The end of the interval is exactly a node, so that the next interval starts from a computed state.
     x[-1] = 1.0
     moments = np.zeros(stage_count)
     moments[0] = 1.0

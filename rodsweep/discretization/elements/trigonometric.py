@@ -75,6 +75,7 @@ def hermite_coefficients_of_columns(values: Array, slopes: Array, signs: Array) 
         for a in range(columns):
             # The second half of the period doubles or cancels the sum of a harmonic.
             factor = 2 * (1 + signs[a] * (1 - 2 * (k % 2))) / m
+            # By symmetry a field that repeats has even harmonics only, one that changes its sign odd ones.
             if factor == 0:
                 continue
             S = 0.0
@@ -226,6 +227,7 @@ def time_of_rise_through_mean(samples: Array) -> float:
     n = len(samples)
     deviation = samples - samples.mean()
     indices_after_minimum = (int(np.argmin(deviation)) + np.arange(n + 1)) % n
+    # The series may cross its mean often; the first rise after the minimum is the same for every phase.
     k = int(np.argmax(deviation[indices_after_minimum] >= 0))
     return float(
         _bisect_rising_zero(

@@ -69,6 +69,7 @@ class ArmPencil:
             [gauss_points, mesh.one_sided_nodes.reshape(mesh.element_count, -1)], axis=1
         )
         slopes = slope.T * wg
+        # The clamp is not an unknown and gets the index -1.
         self._y_indices: NDArray[np.int64] = (
             np.arange(mesh.element_count)[:, None] * mesh.order + np.arange(mesh.order + 1) - 1
         )
@@ -116,8 +117,10 @@ class ArmPencil:
         s = 2 * n + np.arange(n).reshape(self.mesh.element_count, self.order)
         pairs = [(y, s), (s, y), (theta, theta), (y, theta), (theta, s), (s, theta)]
         keys = [_flat_entry_positions(rows, columns, size) for rows, columns in pairs]
+        # The last key is the entry of the follower force at the tip: row y(1), column theta(1).
         keys += [(s * size + s).ravel(), np.array([(n - 1) * size + 2 * n - 1])]
         all_keys = np.concatenate(keys)
+        # The diagonal is complete, so that a shift A - sigma B keeps the pattern.
         diagonal = np.arange(size) * (size + 1)
         pattern = np.unique(np.concatenate([all_keys[all_keys >= 0], diagonal]))
         positions = np.where(all_keys < 0, len(pattern), np.searchsorted(pattern, all_keys))

@@ -121,6 +121,7 @@ def _graded_edges(rod: Rod, start: float, stop: float, element_count: int) -> li
     the radii at both ends."""
     if element_count == 1:
         return [float(stop)]
+    # The break itself, unrounded: edges are compared exactly with the positions of jumps.
     if rod.taper == 1:
         edges: Array = np.linspace(start, stop, element_count + 1)[1:]
     else:
@@ -128,4 +129,5 @@ def _graded_edges(rod: Rod, start: float, stop: float, element_count: int) -> li
             _relative_radius_at(rod, start), _relative_radius_at(rod, stop), element_count + 1
         )[1:]
         edges = (1 - radii) / (1 - rod.taper)
+    # The last edge is the break itself, unrounded, as it is compared exactly with the positions of jumps.
     return [*edges[:-1].tolist(), float(stop)]

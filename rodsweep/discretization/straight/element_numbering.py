@@ -43,8 +43,10 @@ def element_numbering(element_count: int, order: int, components: tuple[int, ...
     velocities = [SE2_DIMENSION * last_node + c * (last_node + 1) + nodes for c in components]
     unknowns_per_node = 2 * len(components)
     node = np.tile(np.arange(order + 1), unknowns_per_node)
+    # A single element is not condensed: a factorisation of all its unknowns can pivot freely.
     interior_nodes = np.flatnonzero((node > 0) & (node < order)) if element_count > 1 else np.array([], int)
     ends = np.setdiff1d(np.arange(len(node)), interior_nodes)
+    # A stable sort keeps the components in order at each end, so that right ends match the next left ends.
     ends = ends[np.argsort(node[ends], kind="stable")]
     interface_indices = np.arange(element_count)[:, None] * unknowns_per_node + np.arange(len(ends))
     unknowns = np.concatenate([*stresses, *velocities], axis=1)

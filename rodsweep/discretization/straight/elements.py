@@ -112,7 +112,9 @@ class StraightElements:
 
     def assemble(self, element_vectors: Values) -> Values:
         """Sum of element contributions, (elements, local), as a vector (unknowns,)."""
+        # One more entry collects the stresses at the tip, which are not unknowns.
         x = np.zeros(self.form.unknown_count + 1, element_vectors.dtype)
+        # Nodes between elements occur twice in the indices, where x[...] += would add only one of the two.
         np.add.at(x, self.numbering.state_indices, element_vectors)
         return x[:-1]
 
@@ -190,6 +192,7 @@ class ElementFactors:
         x = self._solve_unrefined(b, adjoint)
         if self.interior is None:
             return x
+        # Vectors of elements are rows here, so that K x is x K^T, and K^H x is x conj(K).
         rows = self.K.conj() if adjoint else self.K.T
         return x + self._solve_unrefined(b - elements.assemble(elements.gather(x) @ rows), adjoint)
 
@@ -208,6 +211,7 @@ class ElementFactors:
         if elimination is not None:
             K_ei, solved_K_ie = elimination.coupling_matrices(adjoint)
             solved_b_i = solve_factorised(elimination.interior_factors, b[interior].T, adjoint).T
+            # End nodes occur twice in the indices, where b_e[...] -= would subtract only one of the two.
             np.subtract.at(b_e, numbering.interface_indices, solved_b_i @ K_ei.T)
         x_e[is_unknown] = solve_factorised(self.interface, b_e[is_unknown], adjoint)
         x[ends] = x_e[numbering.interface_indices]

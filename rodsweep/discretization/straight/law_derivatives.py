@@ -112,6 +112,7 @@ def _write_derivatives_at_jumps(derivatives: LawDerivativesAtRest, law: Law, nod
     for component, (value, force_derivative) in enumerate(
         zip(tangent, tangent**2 * (fractions * slopes * nu_derivative / T**2).sum(axis=-1), strict=True)
     ):
+        # Components 0 and 2 of the stress; the shear component 1 is linear in every law.
         derivatives.tangent[2 * component, nodes] = value
         derivatives.force_derivatives.tangent[2 * component, nodes] = force_derivative
     derivatives.force_derivatives.nu[nodes] = (means * nu_derivative).sum(axis=-1)

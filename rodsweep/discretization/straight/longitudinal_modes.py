@@ -56,6 +56,7 @@ def longitudinal_modes(rod: Rod, mode_count: int) -> tuple[Array, Array]:
     if not rod.c1 > 0:
         raise ValueError("an inextensible rod (k1 = inf) has no longitudinal modes")
     mesh = arm_elements(rod, np.pi * mode_count, settings.first_mesh_accuracy)
+    # At least one more unknown than modes, rounded up to whole elements.
     order = max(mesh.order, -(-(mode_count + 1) // mesh.element_count))
     eigenvalues = _leading_eigenvalues(rod, mesh, order, mode_count)
     while True:

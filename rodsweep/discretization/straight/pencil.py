@@ -225,6 +225,7 @@ def _assemble_blocks(
     terms = np.zeros((6, len(pattern)))
     position = size
     for term, _, _, block in blocks:
+        # Blocks of neighbouring elements share entries, which += with repeated indices would count once.
         np.add.at(terms[term], positions[position : position + block.size], block.ravel())
         position += block.size
     terms *= unknown_scales[rows] * unknown_scales[columns]

@@ -47,6 +47,7 @@ def tip_layer_ratio(rod: Rod) -> float:
         return tip_layer_factor(rod)
     edges = _element_edges(rod)
     x, _ = gauss_lobatto_rule(TIP_LAYER_ORDER)
+    # Two points more than the order, for coefficients that vary within an element.
     points, weights = gauss_legendre_rule(TIP_LAYER_ORDER + 2)
     value = lagrange_interpolation_matrix(x, points)
     slope = value @ differentiation_matrix(x)
@@ -55,6 +56,7 @@ def tip_layer_ratio(rod: Rod) -> float:
     stiffness = 1 / coefficients.c3 * weights * (2 / lengths)[:, None]
     foundation = coefficients.g * coefficients.nu / coefficients.c2 * weights * (lengths / 2)[:, None]
     ratio = 0.0
+    # From clamp to tip, because the ratio d/m of everything before acts on an element like a spring.
     for element_stiffness, element_foundation in zip(stiffness, foundation, strict=True):
         K = (slope.T * element_stiffness) @ slope + (value.T * element_foundation) @ value
         ratio = _layer_ratio_at_right_end(K, ratio)

@@ -88,4 +88,6 @@ class WholeRodFactors:
 def straight_matrices(form: MixedForm, components: tuple[int, ...]) -> StraightElements | WholeRodMatrices:
     """A and M of the form `form` about its straight rod. components: indices of the components of stresses
     and velocities to which A and M are restricted."""
-    return (StraightElements if form.rod.is_uniform_and_linear else WholeRodMatrices)(form, components)
+    if form.rod.is_uniform_and_linear:
+        return StraightElements(form, components)
+    return WholeRodMatrices(form, components)

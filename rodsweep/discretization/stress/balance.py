@@ -78,6 +78,7 @@ def write_forces(g: LieAlgebra, E: Array, S: Array, out: Array, c: NodalRod, m: 
     stresses from `write_strains_and_stresses`, (d, nodes + 1) each."""
     size = len(m.weights)
     out[:, :] = 0.0
+    # The stress at the tip is 0 and has no column.
     for j in range(size - 1):
         s = [S[a, j] for a in g.components]
         for i in range(size):

@@ -44,6 +44,7 @@ def tip_matrices(mesh: Elements) -> TipMatrices:
     return TipMatrices(
         values_at_gauss_points=np.concatenate([m.values_at_gauss_points for m in matrices]),
         angles_at_gauss_points=np.concatenate([m.angles_at_gauss_points for m in matrices]),
+        # Integrals from 0 to the last node span the whole element: they are the Gauss weights.
         gauss_weights=np.ascontiguousarray(matrices[0].integrals_to_nodes[:, -1]),
         element_integrals=np.concatenate([m.angles_at_nodes[:, -1] for m in matrices]),
         element_lengths=np.ascontiguousarray(mesh.lengths),

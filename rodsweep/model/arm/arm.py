@@ -61,6 +61,7 @@ class SlenderArm:
 
     def __post_init__(self) -> None:
         """Converts quantities to SI. Raises InputError for invalid quantities, NotSlender for a short arm."""
+        # A NumPy number becomes a plain number, as messages and files show it.
         object.__setattr__(self, "poisson", getattr(self.poisson, "tolist", lambda: self.poisson)())
         si_values = {name: arm_quantity_in_si(name, getattr(self, name)) for name in UNITS}
         texts = None if self.segments is None else segment_texts(self.segments)
@@ -69,6 +70,7 @@ class SlenderArm:
         object.__setattr__(self, "si_segments", segments_of(texts or ()))
         refuse_wrong_choices(self)
         refuse_wrong_combinations(self)
+        # An arm of segments has length and modulus from them; the checks before ensure that a shape exists.
         self.si.length = self.shape.length
         self.si.young = self.shape.base.young
         refuse_out_of_range(self)
@@ -89,6 +91,7 @@ class SlenderArm:
             return shape_of_segments([(L, section, E or self.si.young) for L, section, E in self.si_segments])
         if self.tip_radius is not None:
             radii = ((0.0, self.si.radius), (1.0, self.si.tip_radius))
+            # A cone needs its two ends only, as the parameter taper implies the sections between.
             ends = tuple(Station(u, Circle(radius), self.si.young) for u, radius in radii)
             return ArmGeometry(self.si.length, ends, self.si.tip_radius / self.si.radius)
         section: Section = Tube(self.si.radius, self.si.inner_radius)
@@ -147,6 +150,7 @@ class SlenderArm:
         `density_difference` the material has the density of the fluid."""
         fluid = self.si.fluid_density
         difference = self.si.density_difference
+        # The fluid in the bore moves with the arm and adds to its mass.
         density = fluid + (0.0 if isnan(difference) else difference)
         return density * station.section.area + fluid * station.section.bore_area
 

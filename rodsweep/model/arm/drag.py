@@ -86,6 +86,7 @@ def drag_estimates(viscosity: float, length: float, radius: float, half_height: 
     min_rotational = pi * half_height**2
     max_rotational = 4 * pi * half_height**2
     translational_drags = (gray_hancock_drag(slenderness), lighthill_drag(slenderness))
+    # The geometric mean, because the rotational drag is known only up to a factor, from pi to 4 pi.
     drag_factors = [(*cox_drag(slenderness), (min_rotational * max_rotational) ** 0.5)]
     drag_factors += [
         (*translation, rotational)

@@ -100,6 +100,7 @@ def neglected_effects(
     """
     drag = smallest_drag(arm) if drag is None else drag
     omega, forces, tip_amplitude = np.broadcast_arrays(*(np.asarray(x, float) for x in (rate, F, amplitude)))
+    # A rate may come from an eigenvalue of negative imaginary part.
     omega = abs(omega)
     effects = [
         arm_inertia_effect(arm, omega, drag),
@@ -115,6 +116,7 @@ def neglected_effects(
         wall_effects = [
             wall_flattening_effect(L, t.radius, t.inner_radius, arm.poisson, tip_amplitude) for t in tubes
         ]
+        # The weakest tube decides; `fmax` ignores amplitudes that are unknown.
         effects.append(max(wall_effects, key=lambda effect: np.fmax.reduce(np.ravel(effect.value))))
     return tuple(effects)
 
@@ -128,6 +130,7 @@ def worst_validity(effects: Iterable[Effect], *, of_cycles: bool) -> NDArray[np.
 
 def smallest_drag(arm: SlenderArm) -> Drag:
     """The drag estimate with the smallest gamma2, for which the motion of the arm is fastest."""
+    # Rates in Hz scale with 1/gamma2, so inertia is judged at its largest.
     return min(arm.drags, key=lambda drag: drag.gamma2)
 
 
@@ -150,6 +153,7 @@ def arm_inertia_effect(arm: SlenderArm, omega: Array, drag: Drag) -> Effect:
 
 def fluid_inertia_effect(arm: SlenderArm, omega: Array, drag: Drag) -> Effect:
     """Phase lag of the drag, caused by the inertia of the fluid. omega: in rad/s, (...,)."""
+    # The largest drag has the smallest logarithm, and with it the largest lag.
     logarithm = 4 * pi * arm.si.viscosity / max(local_drag.gamma2 for local_drag in arm.drags_along(drag))
     # Vorticity diffuses over a wavelength of the bending wave, not over the radius.
     k = FLUTTER_WAVENUMBER / arm.si.length
@@ -158,6 +162,7 @@ def fluid_inertia_effect(arm: SlenderArm, omega: Array, drag: Drag) -> Effect:
         name="inertia of the fluid",
         value=drag_phase_lag(relative_frequency, logarithm),
         limit=INERTIA_LIMIT,
+        # The relative frequency is proportional to rate over viscosity, thus to 1/viscosity^2.
         viscosity_factor=np.sqrt(relative_frequency / frequency_of_phase_lag(INERTIA_LIMIT, logarithm)),
     )
 
@@ -170,14 +175,17 @@ def compression_effect(arm: SlenderArm, F: Array) -> Effect:
 def equivalent_base_force(arm: SlenderArm, F: ArrayLike) -> Array:
     """Force that compresses the base as much as F compresses the weakest section, in the shape of F, (...,).
     F: in k3/L^2. The result is nan for rubber, whose constitutive law includes large compression."""
+    # At the base a force F compresses by F/k1, at the weakest section by F over the crushing force.
     crushing_ratio = arm.crushing_force / arm.k1
     return np.asarray(F, float) / crushing_ratio if crushing_ratio < inf else np.full(np.shape(F), np.nan)
 
 
 def weight_effect(arm: SlenderArm, F: Array) -> Effect:
     """Ratio of weight minus buoyancy to the weight that buckles the upright arm, shaped as F, (...,)."""
+    # A lighter arm is pulled up as much as a heavier one is pulled down.
     weight_density = abs(arm.si.density_difference) * GRAVITY
     weight = weight_density * arm.cross_section.area * arm.si.length
+    # For a uniform arm the closed value is exact, where the quadrature is not.
     ratio_of_uniform_arm = weight / (SELF_BUCKLING_WEIGHT * arm.force_scale)
     value = (
         arm.shape.weight_over_buckling_weight(weight_density) if arm.shape.varies else ratio_of_uniform_arm

@@ -35,6 +35,7 @@ def refuse_wrong_choices(arm: "SlenderArm") -> None:
     """Raises InputError for an invalid Poisson's ratio, drag name, law or section of the arm. A swelling
     section requires a Poisson's ratio of 0.5."""
     poisson: Any = arm.poisson
+    # Python counts `True` as the number 1.
     is_number = isinstance(poisson, Real) and not isinstance(poisson, bool | np.bool_)
     if not is_number or not -1 < poisson <= INCOMPRESSIBLE_POISSON:
         raise InputError(f"poisson = {short_repr(poisson)} is not a number above -1 and up to 0.5")
@@ -60,6 +61,7 @@ def refuse_wrong_choices(arm: "SlenderArm") -> None:
         law_of(arm.law, arm.section)
     except ValueError as error:
         raise InputError(str(error)) from None
+    # Only incompressibility tells how the area changes with the stretch.
     if arm.section == "swelling" and poisson != INCOMPRESSIBLE_POISSON:
         raise InputError(
             f"poisson = {poisson} contradicts section = swelling, which is for incompressible rubber; "
@@ -96,6 +98,7 @@ def _refuse_sections(arm: "SlenderArm") -> None:
     ):
         if getattr(arm, name) is not None and arm.radius is None:
             raise InputError(f"{arm.text_of(name)} needs a radius; {reason}")
+    # Both given, neither given, or one side of a rectangle only.
     if (arm.radius is None) == (width_and_height == (None, None)) or (
         arm.radius is None and None in width_and_height
     ):
@@ -104,6 +107,7 @@ def _refuse_sections(arm: "SlenderArm") -> None:
         raise InputError(
             f"radius: give either a radius, or width and height, or segments; the arm has {given_sizes}"
         )
+    # A missing size is nan here, for which the comparison is false.
     if arm.si.inner_radius >= arm.si.radius:
         raise BoreTooWide(f"{arm.text_of('inner_radius')} is not below {arm.text_of('radius')}")
     if arm.tip_radius is None:
@@ -137,11 +141,13 @@ def _refuse_wrong_segments(arm: "SlenderArm") -> None:
             raise InputError(
                 f"segments, number {number}: young is missing; give young for this segment or for the arm"
             )
+        # The profile of the arm would refuse such a row, with a message about u instead of segments.
         if segment.length < MIN_ROW_DISTANCE * total:
             raise InputError(
                 f"segments, number {number}: the length is {segment.length / total:.2g} of the arm's length; "
                 f"it must be at least {MIN_ROW_DISTANCE:g}, so make this segment longer or leave it out"
             )
+    # Negated, so that nan is refused too.
     if arm.length is not None and not abs(arm.si.length - total) <= LENGTH_TOLERANCE * total:
         unit = unit_of(arm.length, "m")
         summed = f"{value_in_unit(total, unit, 'm'):.6g} {unit}"
@@ -173,6 +179,7 @@ def refuse_out_of_range(arm: "SlenderArm") -> None:
             f"{length}, with this section and Young's modulus, makes stiffnesses or the unit of force "
             "overflow or underflow; check the units"
         )
+    # Tested last, because a length or radius that overflows leaves no ratio to test.
     if slenderness < MIN_FORMULA_SLENDERNESS:
         raise NotSlender(
             f"{length} is {slenderness:.3g} radii, with {_radius_text(arm)}; the drag of a slender arm needs "
@@ -193,6 +200,7 @@ def refuse_crushed(arm: "SlenderArm") -> None:
     """Raises InputError if the load crushes the arm at its weakest cross-section. An arm without load, or
     with a load given relative to flutter, is not checked."""
     load = arm.load
+    # A load relative to flutter has no value before flutter is solved.
     if load is None or arm.share_of_flutter is not None or CRUSHED_FORCE_RATIO * arm.crushing_force > arm.F:
         return
     limit = arm.crushing_force * arm.load_scale

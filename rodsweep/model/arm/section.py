@@ -74,11 +74,13 @@ class Tube:
     @property
     def area(self) -> float:
         """Area of the material, A = pi (a^2 - b^2), in m^2."""
+        # As a product, because the difference of the squares would lose digits for a thin wall.
         return pi * (self.radius - self.inner_radius) * (self.radius + self.inner_radius)
 
     @property
     def second_moment(self) -> float:
         """Second moment of area I = pi (a^4 - b^4)/4, in m^4."""
+        # Through the area, which keeps its digits for a thin wall.
         return self.area * (self.radius**2 + self.inner_radius**2) / 4
 
     @property

@@ -102,6 +102,7 @@ class ArmGeometry:
     def _cone_profile(self, drag_index: int) -> Profile:
         """Profile of a cone: factors of gamma1 and gamma2. All other factors are 1, because the parameter
         `taper` implies them. drag_index: index of the drag estimate in DRAG_NAMES."""
+        # A single interval would be a straight line, as `Profile` has no neighbour for its slopes.
         interval_count = max(2, ceil(abs(log(self.taper)) / log(MAX_RADIUS_RATIO)))
         # Neighbouring radii have equal ratios, since the drag depends on the logarithm of the radius.
         radii = self.taper ** (np.arange(interval_count + 1) / interval_count)
@@ -124,6 +125,7 @@ class ArmGeometry:
             np.array(self._stiffnesses_and_drags(place, poisson, drag_index))
             for place in (station, self.base)
         )
+        # Overflow is refused later, with a message that names the quantities.
         with np.errstate(all="ignore"):
             return tuple((values / base_values).tolist())
 
@@ -154,14 +156,17 @@ class ArmGeometry:
         lengths, area, stiffness = self._sections_at_midpoints()
         # Integrals up to a midpoint include half of the interval around the midpoint.
         volume = area * lengths
+        # Weight beyond a section, so the sum runs from the tip.
         volume_beyond = np.cumsum(volume[::-1])[::-1] - volume / 2
         theta = np.ones(len(lengths))
-        ratio = previous_ratio = 0.0
+        ratio = 0.0
         for _ in range(BUCKLING_MAX_ITERATIONS):
             moment_step = volume_beyond * theta * lengths
             angle_step = (np.cumsum(moment_step[::-1])[::-1] - moment_step / 2) * lengths / stiffness
             theta = np.cumsum(angle_step) - angle_step / 2
-            previous_ratio, ratio = ratio, float(theta[-1])
+            previous_ratio = ratio
+            # The largest angle is at the tip, so the iterates keep one size.
+            ratio = float(theta[-1])
             theta /= ratio
             if abs(ratio - previous_ratio) <= BUCKLING_TOLERANCE * ratio:
                 break
@@ -176,6 +181,7 @@ class ArmGeometry:
             area = base.section.area * radius ** RADIUS_POWERS["k1"]
             stiffness = base.young * base.section.second_moment * radius ** RADIUS_POWERS["k3"]
             return np.full(len(u), self.length / len(u)), area, stiffness
+        # Every segment has whole subintervals, so no midpoint lies on a jump.
         interval_count = max(4, BUCKLING_NODE_COUNT // len(self.stations))
         lengths = np.diff([0.0, *(station.end for station in self.stations)]) * self.length
         areas = [station.section.area for station in self.stations]
@@ -191,6 +197,7 @@ def shape_of_segments(segments: Sequence[tuple[float, Circle | Tube, float]]) ->
     """Geometry of an arm made of segments. segments: (length in m, section, Young's modulus in Pa) of each
     segment, from the base to the tip."""
     ends = np.cumsum([length for length, _, _ in segments])
+    # The last end is 1 exactly, whatever the rounding of the sum.
     end_positions = [*(ends[:-1] / ends[-1]).tolist(), 1.0]
     stations = [
         Station(u, section, young) for u, (_, section, young) in zip(end_positions, segments, strict=True)

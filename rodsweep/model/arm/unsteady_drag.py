@@ -33,10 +33,12 @@ def drag_phase_lag(s: ArrayLike, logarithm: float) -> Array:
     and Lambda/(4 pi eta) in steady flow. The phase, of the shape of s, is 3 s/(4 Lambda) for small s.
     """
     z = 1j * np.asarray(s, float)
+    # In the closed formula 1/2 and -(1/z) log(1 + z)/2 cancel for small z.
     series_for_small_s = z * (3 / 4 - z * (5 / 12 - z * (7 / 24 - z * (9 / 40))))
     with np.errstate(invalid="ignore", divide="ignore"):  # nan where nothing moves; 1/z is not used at 0
         closed_formula = 0.5 + (1 - 1 / z) * np.log1p(z) / 2
     return np.asarray(
+        # 0 minus the angle instead of -angle, which would be -0 at rest.
         0.0
         - np.angle(logarithm - np.where(z.imag < MAX_SERIES_FREQUENCY, series_for_small_s, closed_formula))
     )
@@ -48,6 +50,7 @@ def frequency_of_phase_lag(phase: float, logarithm: float) -> float:
     low_log = log(LOWEST_FREQUENCY)
     high_log = 2 * logarithm  # here the real part of the mobility is -1/2, so the phase is above pi/2
     for _ in range(REFINEMENT_COUNT):
+        # A call with 64 values costs little more than with one, so few wide divisions beat bisection.
         edges = np.linspace(low_log, high_log, SUBINTERVAL_COUNT + 1)
         index = np.count_nonzero(drag_phase_lag(np.exp(edges[1:-1]), logarithm) < phase)  # the phase rises
         low_log = float(edges[index])

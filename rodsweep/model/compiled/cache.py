@@ -50,6 +50,7 @@ def cache_directories() -> list[Path]:
     set, otherwise in the package, then under XDG_CACHE_HOME or ~/.cache."""
     if directory := os.environ.get("NUMBA_CACHE_DIR"):
         return [Path(directory) / "rodsweep"]
+    # First next to the package, so that an installation compiled once serves all its users.
     caches = [PACKAGE_DIRECTORY / "__pycache__"]
     if directory := os.environ.get("XDG_CACHE_HOME"):
         caches.append(Path(directory) / "rodsweep")
@@ -80,10 +81,12 @@ class KernelCache(_Cache):
         # compiler.
         rtsys.initialize(target_context)
         name = self._cache_file_name(sig, target_context.codegen(), _texts_at_first_use)
+        # All directories are read, as the file may have been written by a user with other rights.
         for directory in self._directories:
             content = _read(directory / name)
             if content is not None:
                 return CompileResult._rebuild(target_context, *pickle.loads(content))
+        # Only now, because this imports the compiler, which a run with a full cache never needs.
         use_fixed_shape_message()  # numba compiles the function next
         return None
 
@@ -91,10 +94,13 @@ class KernelCache(_Cache):
         """Writes the compiled function `data` for the signature `sig` to disk. Nothing is written if the code
         contains memory addresses, or if a global value that the code reads has changed since the first use of
         the function. If no directory is writable, a warning is issued."""
+        # An empty mapping reads all texts anew, so that the two names differ if a value has changed.
         name = self._cache_file_name(sig, data.codegen, {})
         has_changed = name != self._cache_file_name(sig, data.codegen, _texts_at_first_use)
+        # Addresses differ in each process, and code of changed values would be found under a wrong name.
         if data.library.has_dynamic_globals or data.lifted or has_changed:
             return
+        # The serialiser of numba also stores functions and types that the standard one refuses.
         content = dumps(data._reduce())
         failures = []
         for directory in self._directories:
@@ -145,16 +151,19 @@ def _read(path: Path) -> bytes | None:
         return None
     checksum = checked_bytes[:DIGEST_BYTES]
     content = checked_bytes[DIGEST_BYTES:]
+    # A damaged file would crash the process only when its machine code runs.
     return content if sha256(content).digest() == checksum else None
 
 
 def _write(path: Path, content: bytes) -> None:
     """Writes `content` to the file `path` atomically: other processes see the complete file or no file."""
     path.parent.mkdir(parents=True, exist_ok=True)
+    # Each process writes its own file, so that ranks which compile the same kernel do not mix their bytes.
     temporary_file = path.with_name(f".{uuid4().hex}")
     try:
         temporary_file.write_bytes(sha256(content).digest() + content)
         os.replace(temporary_file, path)
     except OSError:
+        # A full disk must not leave partial files behind.
         temporary_file.unlink(missing_ok=True)
         raise

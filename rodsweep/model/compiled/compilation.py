@@ -36,13 +36,16 @@ def c_callback(function: Callable, signature: Any) -> Any:
     """A callback for C code: `function`, compiled at once for numba's signature `signature`. The attribute
     `address` of the callback is the C function pointer."""
     callback: Any = CFunc(function, numba.core.sigutils.normalize_signature(signature), locals={}, options={})
+    # The key names the calling convention, as the same function may be compiled as a kernel too.
     callback._cache = KernelCache(function, {"signature": "C"}, cache_directories())
     callback.compile()
     return callback
 
 
 def _compiled(function: Callable[P, R], **options: Any) -> Callable[P, R]:
+    # Python's error model would add a test for zero to each division, and prevent vector instructions.
     dispatcher: Any = numba.njit(error_model="numpy", **options)(function)
     if not numba.config.DISABLE_JIT:
+        # Set directly, because numba has no public way to choose the files of its cache.
         dispatcher._cache = KernelCache(function, dispatcher.targetoptions, cache_directories())
     return dispatcher

@@ -49,6 +49,7 @@ TextCache = MutableMapping[FunctionType, FunctionText]
 
 def kernel_of(function: Any, options: Mapping[str, Any]) -> Kernel:
     """The kernel of `function`. options: numba's compiler options, by name."""
+    # Sorted, so that options in another order have the same text.
     return Kernel(function, repr(sorted((name, _in_fixed_order(value)) for name, value in options.items())))
 
 
@@ -59,7 +60,9 @@ def kernel_digest(kernel: Kernel, cache: TextCache) -> str:
     pending = [kernel]
     while pending:
         function, options = pending.pop()
+        # Kernels may call each other in a circle.
         if function not in texts:
+            # The first text is kept: numba compiled that code, even if a global value has changed since.
             text_of_function = cache.get(function) or _text_of_function(function, options)
             cache[function] = text_of_function
             texts[function] = text_of_function.text
@@ -71,9 +74,11 @@ def type_text(numba_type: Any) -> str:
     """Text of the numba type of an argument, with the field names that numba's own name of the type omits.
     The text also contains the module of a NamedTuple, because compiled code refers to the class by its
     module. Raises TypeError for a function type, which does not determine the code of the function."""
+    # The code of a function passed as an argument would not be part of the digest.
     if isinstance(numba_type, types.Callable):
         raise TypeError(f"kernels take no functions as arguments: {numba_type}")
     items = numba_type.types if isinstance(numba_type, types.BaseTuple) else ()
+    # Scalar types are their own dtype, which would never end.
     if hasattr(numba_type, "dtype") and numba_type.dtype is not numba_type:
         items = (*items, numba_type.dtype)
     fields = getattr(numba_type, "fields", "")
@@ -85,6 +90,7 @@ def _text_of_function(function: FunctionType, options: str) -> FunctionText:
     """Name, options, bytecode and global values of a function as text, and the kernels that it calls."""
     lines = [_qualified_name(function), options]
     values = _ValueTextConverter(function)
+    # Values of enclosing functions are compiled in as constants, like globals.
     cell_contents = [cell.cell_contents for cell in function.__closure__ or ()]
     lines += map(values.text, (function.__defaults__, function.__kwdefaults__, *cell_contents))
     for code in _code_objects(function.__code__):
@@ -99,6 +105,7 @@ def _values_read(function: FunctionType, instructions: Iterable[dis.Instruction]
     """Global values of `function` that `instructions` read, by name; of a `KernelConstants` object only the
     fields that are read. Raises NameError for a name that is neither a global name nor a builtin."""
     values = {}
+    # Only the fields that are read count, so that other settings can change without a new compilation.
     for instruction, next_instruction in pairwise(instructions):
         if instruction.opname in GLOBAL_READ_INSTRUCTIONS and instruction.argval in function.__globals__:
             value = function.__globals__[instruction.argval]
@@ -120,6 +127,7 @@ def _code_objects(code: CodeType) -> Iterator[CodeType]:
     yield code
     for constant in code.co_consts:
         if isinstance(constant, CodeType):
+            # Comprehensions and inner functions have code objects of their own among the constants.
             yield from _code_objects(constant)
 
 
@@ -128,9 +136,11 @@ def _code_lines(code: CodeType, instructions: Iterable[dis.Instruction]) -> list
     left out because an added docstring changes them."""
     counts = code.co_argcount, code.co_posonlyargcount, code.co_kwonlyargcount, code.co_flags & VARIADIC_FLAGS
     lines = [code.co_name, repr((counts, code.co_varnames, code.co_freevars, code.co_cellvars))]
+    # Since Python 3.11 the blocks of `try` are not in the bytecode but in this table.
     lines.append(code.co_exceptiontable.hex())
     for instruction in instructions:
         value = instruction.argval
+        # The `repr` of a code object contains its address.
         argument = value.co_name if isinstance(value, CodeType) else repr(_in_fixed_order(value))
         lines.append(f"{instruction.opname} {argument}")
     return lines
@@ -165,6 +175,7 @@ class _ValueTextConverter:
         """Name of a function or module; a function of this package becomes a kernel. Else TypeError."""
         if hasattr(value, "_defn"):  # an intrinsic of numba
             value = value._defn
+        # A called kernel enters with its own code, so that a change there recompiles its callers too.
         if isinstance(value, Dispatcher):
             self.called_kernels.append(kernel_of(value.py_func, value.targetoptions))
             return _qualified_name(value.py_func)
@@ -172,6 +183,7 @@ class _ValueTextConverter:
             return value.__name__
         if isinstance(value, FunctionType) and self._is_in_own_package(value.__module__):
             self.called_kernels.append(Kernel(value, ""))
+        # The versions of NumPy and numba in the name of the file stand for the code of their functions.
         if isinstance(value, FunctionType | BuiltinFunctionType):
             return _qualified_name(value)
         raise TypeError(

@@ -35,6 +35,7 @@ class _SettingsType(types.Type):
 
     def __init__(self, settings: KernelConstants) -> None:
         self.settings = settings
+        # Types are compared by name, so settings with other values give another type, and other code.
         super().__init__(name=repr(settings))
 
     def type_and_value(self, name: str) -> Any:
@@ -62,6 +63,7 @@ class _FieldTypeResolver(AttributeTemplate):
 
 @lower_constant(_SettingsType)
 def _lower_settings_object(context: Any, builder: Any, kind: _SettingsType, settings: KernelConstants) -> Any:
+    # At run time the object is empty: each field is a constant in the code.
     return context.get_dummy_value()
 
 

@@ -42,6 +42,7 @@ class UnrolledOverAlgebra(Generic[P, R]):
     def compiled_for(self, g: LieAlgebra) -> Callable[P, R]:
         """The function for the algebra `g`, unrolled and compiled, without the argument for the algebra."""
         if g not in self._compiled:
+            # Compiled once per algebra: each compilation takes seconds.
             self._compiled[g] = compiled_for_vectors(self.unrolled_for(g))
         return self._compiled[g]
 
@@ -49,10 +50,13 @@ class UnrolledOverAlgebra(Generic[P, R]):
         """The function as Python code whose loops over the Lie algebra `g` are unrolled. The function itself
         is not compiled, but the functions with this decorator that it calls are unrolled and compiled.
         """
+        # The source is unrolled rather than the bytecode, which has no loops to recognise.
         tree = ast.parse(dedent(inspect.getsource(self.function)))
+        # Tracebacks then show the lines of the original file.
         ast.increment_lineno(tree, self.function.__code__.co_firstlineno - 1)
         definition: Any = tree.body[0]
         algebra_name = definition.args.args.pop(0).arg
+        # Otherwise the decorator would wrap the copy once more.
         definition.decorator_list = []
         definition.returns = None
         for argument in definition.args.args:
@@ -63,6 +67,7 @@ class UnrolledOverAlgebra(Generic[P, R]):
             value = self.function.__globals__.get(name)
             if isinstance(value, UnrolledOverAlgebra):
                 called_functions.add(name)
+                # Called functions are specialised for the same algebra, which then is no argument any more.
                 namespace[name] = value.compiled_for(g)
             elif name in self.function.__globals__:
                 namespace[name] = value
@@ -114,6 +119,7 @@ class _UnrollingTransformer(ast.NodeVisitor):
         if not self._has_known_value(node.iter):
             return self.generic_visit(node)
         jump_statements = ast.Break | ast.Continue | ast.Return
+        # Without a loop in the result such a statement would have no loop to act on.
         if node.orelse or any(isinstance(part, jump_statements) for part in ast.walk(node)):
             raise TypeError(f"line {node.lineno}: an unrolled loop has no break, continue, return or else")
         iterations = [
@@ -137,6 +143,7 @@ class _UnrollingTransformer(ast.NodeVisitor):
         value = node.value
         if not (isinstance(value, ast.ListComp) and isinstance(target, ast.Name)):
             return self.generic_visit(node)
+        # A list of arrays costs compiled code an allocation and references; separate names cost nothing.
         self.shared_state.unrolled_lists.add(target.id)
         loop = value.generators[0]
         assignments = []
@@ -156,6 +163,7 @@ class _UnrollingTransformer(ast.NodeVisitor):
     def visit_Call(self, node: ast.Call) -> Any:
         call = self.generic_visit(node)
         if isinstance(call.func, ast.Name) and call.func.id in self.shared_state.unrolled_functions:
+            # The first argument is the algebra, which the compiled function does not have.
             call.args = call.args[1:]
         return call
 
@@ -175,6 +183,7 @@ class _UnrollingTransformer(ast.NodeVisitor):
     def _has_known_value(self, node: ast.AST) -> bool:
         """Whether an expression contains names, and all of them have known values."""
         names = self._names_read_by(node)
+        # A bare constant has no name and is copied unchanged.
         return bool(names) and names <= self.known_values.keys()
 
     def _names_read_by(self, node: ast.AST) -> frozenset[str]:
@@ -190,9 +199,9 @@ class _UnrollingTransformer(ast.NodeVisitor):
         """Value of the expression `node`. Raises NameError if a name in it is not in `known_values`."""
         code = self.shared_state.compiled_expressions.get(node)
         if code is None:
-            code = self.shared_state.compiled_expressions[node] = compile(
-                ast.Expression(node), "<known>", "eval"
-            )
+            code = compile(ast.Expression(node), "<known>", "eval")
+            self.shared_state.compiled_expressions[node] = code
+        # Known values need no builtins, and an accidental call shows as an error.
         return eval(code, {"__builtins__": {}}, dict(self.known_values))
 
 

@@ -33,6 +33,7 @@ def factors_along(profile: Profile | None, taper: Any, u: Array) -> dict[str, Ar
     (n, *u.shape)."""
     if isinstance(taper, np.ndarray) or u.size > FACTOR_CACHE_SETTINGS.max_points:
         return _factors_along(profile, taper, u)
+    # Arrays cannot be keys of a cache, but their bytes can.
     return _cached_factors(profile, float(taper), u.tobytes(), u.shape)
 
 
@@ -51,12 +52,14 @@ def _factors_along(profile: Profile | None, taper: Any, u: Array) -> dict[str, A
         factors = dict.fromkeys(FACTOR_NAMES, np.ones(u.shape))
     else:
         factors = dict(zip(FACTOR_NAMES, profile.factors_at(u), strict=True))
+    # A uniform rod skips the products with 1, the most frequent case.
     if isinstance(taper, np.ndarray) or taper != 1:
         radius = 1 - (1 - taper) * u
         square = radius * radius  # a power of NumPy takes as long as ten products
         radius_to_power = {2: square, 4: square * square}
         for name, exponent in RADIUS_POWERS.items():
             factor = radius_to_power[exponent]
+            # Not in place: without a profile all names share one array of ones.
             factors[name] = factors[name] * factor if profile else factor
     return factors
 
@@ -75,6 +78,7 @@ def smallest_factor_along(profile: Profile | None, taper: float, name: str) -> f
         (1 - (1 - taper) * u) ** exponent * row[column]
         for u, row in zip(profile.u, profile.rows, strict=True)
     ]
+    # The product of a cubic and a power may have a minimum between rows, which only samples find.
     fractions = (np.arange(FACTOR_SAMPLE_COUNT) + 0.5) / FACTOR_SAMPLE_COUNT
     points = (profile.breaks[:-1, None] + np.diff(profile.breaks)[:, None] * fractions).ravel()
     factors_between_rows = (1 - (1 - taper) * points) ** exponent * profile.factors_at(points)[column]

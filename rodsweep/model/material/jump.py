@@ -86,6 +86,7 @@ def _is_negligible(step: LawUnknowns, unknowns: LawUnknowns) -> bool:
 def unknowns_before_jump(law: int, sides: Array, q: LawUnknowns) -> LawUnknowns:
     """The unknowns a on the base side of a jump, from the mean unknowns q. law: number of the constitutive
     law. sides: both sides, (2, 7). Newton's method solves the equations of equal stresses on both sides."""
+    # With stresses as unknowns a linear rod has the same unknown on both sides.
     if law == LINEAR_LAW:
         return q
     base_side = _section_of_side(sides[0])
@@ -104,6 +105,7 @@ def unknowns_before_jump(law: int, sides: Array, q: LawUnknowns) -> LawUnknowns:
         J = TangentMatrix(
             S.N1 + T.N1 * ratio1, S.N3 + T.N3 * ratio3, S.M1 + T.M1 * ratio1, S.M3 + T.M3 * ratio3
         )
+        # A direct formula for two unknowns, as a call of a linear solver would cost more than the rest.
         step = _solve_tangent_system(J, t.N - s.N, t.M - s.M)
         # No side may be crushed by a step, since the neo-Hookean stress is infinite at h1 = 0.
         fraction = min(
@@ -127,6 +129,7 @@ def unknowns_behind_jump(sides: Array, q: LawUnknowns, a: LawUnknowns) -> LawUnk
 def stress_at_jump(law: int, sides: Array, q1: float, q3: float) -> Stress:
     """Stresses N and M at a jump, minus their values at rest, for the mean unknowns q1, q3. law: number of
     the constitutive law. sides: both sides, (2, 7)."""
+    # The stress is equal on both sides, so one side suffices.
     a = unknowns_before_jump(law, sides, LawUnknowns(q1, q3))
     return stress_beyond_rest(law, _section_of_side(sides[0]), a.q1, a.q3)
 
@@ -137,6 +140,7 @@ def _compliance_at_jump(law: int, sides: Array, a: LawUnknowns, b: LawUnknowns) 
     the constitutive law. a, b: unknowns on the base side and on the tip side. sides: both sides, (2, 7)."""
     S = stress_tangent(law, _section_of_side(sides[0]), a.q1, a.q3)
     T = stress_tangent(law, _section_of_side(sides[1]), b.q1, b.q3)
+    # Compliances of the two sides add in the mean, stiffnesses do not, so both tangents are inverted.
     s = S.N1 * S.M3 - S.N3 * S.M1
     t = T.N1 * T.M3 - T.N3 * T.M1
     s1 = sides[0, 3] / s
@@ -157,6 +161,7 @@ def side_increments_at_jump(
     sides: both sides, (2, 7)."""
     a = unknowns_before_jump(law, sides, q)
     b = unknowns_behind_jump(sides, q, a)
+    # First the common stress that the mean increment causes, then the increment of each side by its own law.
     stresses = _solve_tangent_system(_compliance_at_jump(law, sides, a, b), change.q1, change.q3)
     S = stress_tangent(law, _section_of_side(sides[0]), a.q1, a.q3)
     T = stress_tangent(law, _section_of_side(sides[1]), b.q1, b.q3)
@@ -205,5 +210,6 @@ def stress_parameter_derivative_at_jump(
         )
         q1_derivative += sides[i, 3] * unknowns_derivative.q1
         q3_derivative += sides[i, 4] * unknowns_derivative.q3
+    # The stress must change so that its effect on the mean cancels that of the parameter.
     out = _solve_tangent_system(_compliance_at_jump(law, sides, a, b), q1_derivative, q3_derivative)
     return Stress(out.q1, out.q3)

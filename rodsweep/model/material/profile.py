@@ -40,8 +40,10 @@ class Profile:
             first, last = _digits(self.u[0]), _digits(self.u[-1])
             raise ValueError(f"the rows go from u = {first} to {last}; they must go from 0 to 1")
         for a, b in zip(self.u[:-1], self.u[1:], strict=True):
+            # Negated, so that nan is refused too.
             if not a <= b:
                 raise ValueError(f"u = {_digits(b)} follows u = {_digits(a)}; u must not decrease")
+            # Distance 0 is a jump, which the elements follow exactly; only nearly equal rows are a problem.
             if 0 < b - a < MIN_ROW_DISTANCE * (1 - ROW_ROUNDING):
                 raise ValueError(
                     f"two rows near u = {a:g} differ by {b - a:.2g} in u; allowed: 0 (a jump) or at least "
@@ -57,6 +59,7 @@ class Profile:
                         f"the factor of {name} at u = {value:g} is {factor:g}; it must be finite and above 0"
                     )
         with np.errstate(over="ignore", invalid="ignore"):
+            # Slopes between finite factors may overflow, and no message could explain that later.
             is_finite = np.isfinite(self._cubic_coefficients).all()
         if not is_finite:
             raise ValueError(
@@ -86,6 +89,7 @@ class Profile:
             slopes = _monotone_slopes(u[part], y)
             lower, upper = h * slopes[:-1], h * slopes[1:]
             from_lower = _hermite_cubics(y[:-1], y[1:], lower, upper)
+            # Seen from its upper end an interval runs backwards, so slopes change sign and place.
             from_upper = _hermite_cubics(y[1:], y[:-1], -upper, -lower)
             coefficients.append(np.stack([from_lower, from_upper], axis=1))
         return np.ascontiguousarray(np.concatenate(coefficients, axis=2).transpose(0, 3, 1, 2))
@@ -98,6 +102,7 @@ class Profile:
         exponent = RADIUS_POWERS.get(name, 0)
         rows = []
         for u, row in zip(self.u, self.rows, strict=True):
+            # The radius to its power multiplies the factor later, so it is divided out here.
             factor = max(row[column], min_factor / (1 - (1 - taper) * u) ** exponent)
             rows.append(row[:column] + (factor,) + row[column + 1 :])
         return Profile(self.u, tuple(rows))
@@ -105,6 +110,7 @@ class Profile:
     def factors_at(self, u: Array) -> Array:
         """Factors at points u, in the order of `FACTOR_NAMES`, (factors, *u.shape). No u may be a break."""
         breaks = self.breaks
+        # At u = 1 the search returns one interval too many.
         interval = np.minimum(np.searchsorted(breaks[1:], u, side="right"), len(breaks) - 2)
         from_left, from_right = u - breaks[interval], breaks[interval + 1] - u
         # Powers of the distance from the nearer end keep the digits of a factor that falls to a small part of
@@ -119,6 +125,7 @@ class Profile:
 def _hermite_cubics(first: Array, last: Array, first_slope: Array, last_slope: Array) -> Array:
     """Coefficients of cubic polynomials on [0, 1], cubes first, (4, intervals, factors). first, last: values
     at 0 and at 1. first_slope, last_slope: slopes at 0 and at 1. Each is (intervals, factors)."""
+    # The increment is formed first, as first and last may be large and nearly equal.
     increment = last - first
     return np.array(
         [
@@ -141,6 +148,7 @@ def _monotone_slopes(u: Array, values: Array) -> Array:
     h = np.diff(u)[:, None]
     chords = np.diff(values, axis=0) / h
     slopes = np.zeros_like(values)
+    # A single interval has no neighbour for a slope, and becomes linear.
     if len(u) == 2:
         return np.repeat(chords, 2, axis=0)
     w1 = 2 * h[1:] + h[:-1]
@@ -155,7 +163,9 @@ def _monotone_slopes(u: Array, values: Array) -> Array:
             (2 * h[end_interval] + h[next_interval]) * chords[end_interval]
             - h[end_interval] * chords[next_interval]
         ) / (h[end_interval] + h[next_interval])
+        # The one-sided formula may point against the data; a flat start does not overshoot.
         slope = np.where(slope * chords[end_interval] <= 0, 0.0, slope)
+        # Beyond three times the chord a cubic is no longer monotone (Fritsch and Carlson).
         changes_sign = chords[end_interval] * chords[next_interval] <= 0
         slopes[end] = np.where(
             changes_sign & (np.abs(slope) > 3 * np.abs(chords[end_interval])), 3 * chords[end_interval], slope

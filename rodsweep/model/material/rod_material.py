@@ -64,6 +64,7 @@ class RodMaterial:
     def json_text(self) -> str:
         """The material as JSON text, the input of `from_json_text`."""
         profile = None if self.profile is None else [self.profile.u, self.profile.rows]
+        # A list has a fixed order, so equal materials have equal texts.
         return json.dumps([self.law, self.section, profile])
 
     @classmethod
@@ -78,6 +79,7 @@ class RodMaterial:
     @property
     def law_number(self) -> int:
         """Number of the law in compiled code, see `stress_strain`."""
+        # Compiled code compares integers; texts are slow there.
         return list(LAWS).index((self.law, self.section))
 
     @cached_property
@@ -112,6 +114,7 @@ class RodMaterial:
 
     def relative_crushing_forces(self, tapers: Array) -> Array:
         """Result of `relative_crushing_force` for each of `tapers`, (...,), as an array of the same shape."""
+        # One at a time, because each result is cached by its taper.
         forces = [self.relative_crushing_force(taper) for taper in tapers.ravel().tolist()]
         return np.array(forces).reshape(tapers.shape)
 
@@ -135,6 +138,7 @@ class RodMaterial:
         break of the profile. The compliances belong to the undeformed arm. at_base: stiffnesses and drags at
         u = 0, and taper, by name."""
         factors = factors_along(self.profile, at_base["taper"], u)
+        # k3 and gamma2 at the base are the units, and have no entry.
         stiffness = {name: at_base.get(name, 1.0) * factors[name] for name in ("k1", "k2", "k3")}
         drag = [at_base.get(name, 1.0) * factors[name] for name in ("gamma1", "gamma2", "gamma3")]
         nu = 1 - self.constitutive_law.shortening(F / stiffness["k1"])
@@ -144,6 +148,7 @@ class RodMaterial:
         """Compliances of stretching, shear and bending at points u, (points,), divided by the compliances at
         the base. Shape (3, points). The ratio is also defined for a rigid rod, of compliance 0."""
         factors = factors_along(self.profile, taper, u)
+        # A ratio of compliances at an infinite stiffness would be 0/0, but the factors alone give it.
         return np.array([1 / factors[name] for name in ("k1", "k2", "k3")])
 
     def section_derivatives(

@@ -47,6 +47,7 @@ class TangentMatrix(NamedTuple):
 def _bending_factor(law: int, h: float) -> tuple[float, float, float]:
     """Returns (B, B', B''): bending factor of the law number `law` at the stretch h, and derivatives."""
     if law == SWELLING_SECTION:
+        # The law is that of an incompressible rubber whose section shrinks as the rod is stretched.
         a = 1 / h
         b = 1 / h**4
         return (a + 2 * b) / 3, -(a + 8 * b) / (3 * h), (2 * a + 40 * b) / (3 * h * h)
@@ -68,6 +69,7 @@ def stress_beyond_rest(law: int, material: LocalSection, q1: float, q3: float) -
     if law == LINEAR_LAW:
         return Stress(q1, q3)
     h = material.nu + material.c1 * q1
+    # The energy of bending depends on the stretch, so a bent rod has an axial force from it.
     B, B1, _ = _bending_factor(law, h)
     return Stress(q1 * _neo_hookean_secant(material.nu, h) + B1 * material.c3 * q3 * q3 / 2, B * q3)
 

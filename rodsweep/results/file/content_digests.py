@@ -54,7 +54,9 @@ def variable_digest(
 ) -> str:
     """Digest of a variable of the NumPy type `dtype` and the shape `shape`. dimensions: names of its
     dimensions. attributes: its attributes by name. blocks: its numbers as buffers in row-major order."""
+    # The byte order belongs to the storage, not to the content.
     described = [dtype.newbyteorder("<").str, list(shape), list(dimensions), _plain_attributes(attributes)]
+    # Sorted, because the order of attributes in a file is not fixed.
     digest = sha256(json.dumps(described, sort_keys=True).encode())
     for block in blocks:
         digest.update(block)
@@ -118,6 +120,7 @@ def _variables(file: h5py.File) -> Iterator[tuple[str, h5py.Dataset]]:
             raise ValueError(f"{name_text} is not a variable")
         if dataset.is_virtual or dataset.external:
             raise ValueError(f"{name_text} lies in another file")
+        # A variable under two names could be changed through the name without a digest.
         address = h5py.h5o.get_info(dataset.id).addr
         if address in offsets:
             raise ValueError(f"{name_text} is a second hard link to another variable")
@@ -172,6 +175,7 @@ def _number_buffers(dataset: h5py.Dataset) -> Iterator[Any]:
     other numbers, and big-endian numbers, come as one buffer of little-endian numbers."""
     start = dataset.id.get_offset()
     size = dataset.id.get_storage_size()
+    # Another program may have rewritten the file in its own layout, with equal content.
     if start is None or dataset.dtype.byteorder == ">":
         yield np.ascontiguousarray(dataset[...], dataset.dtype.newbyteorder("<"))
         return

@@ -153,7 +153,9 @@ def _new_dataset(file: h5py.File, variable: Variable, shape: tuple[int, ...]) ->
     final: `rodsweep.results.file.points` reads and writes points at this offset."""
     creation = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
     creation.set_layout(h5py.h5d.CONTIGUOUS)
+    # By default HDF5 allocates at the first write, and no offset would exist before.
     creation.set_alloc_time(h5py.h5d.ALLOC_TIME_EARLY)
+    # A point is recognised as missing by its fill values, so they must be on disk from the start.
     creation.set_fill_value(np.array(variable.fill, variable.dtype))
     hdf5_type = h5py.h5t.py_create(np.dtype(variable.dtype), logical=True)
     space = h5py.h5s.create_simple(shape)

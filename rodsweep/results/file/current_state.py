@@ -37,6 +37,7 @@ def read_file_and_journals(path: Path, read_result: Callable[[], ReadResult]) ->
     file keeps changing.
     """
     for _ in range(MAX_REREADS):
+        # Without journals one read is consistent, because files are replaced as a whole.
         has_journals = journal_directory(path).is_dir()
         identity = file_identity(path)
         result = read_result()

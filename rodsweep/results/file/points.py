@@ -47,6 +47,7 @@ def missing_ranges(path: Path) -> list[IndexRange]:
     """Ranges of the flat indices of missing points of a result file, in order."""
     ranges: list[IndexRange] = []
     for start, status in iterate_statuses(path):
+        # False at both ends gives every run of missing points a start and an end.
         edges = start + np.flatnonzero(np.diff(status == MISSING_STATUS, prepend=False, append=False))
         ranges += zip(map(int, edges[::2]), map(int, edges[1::2]), strict=True)
     return merged_ranges(ranges)
@@ -73,6 +74,7 @@ def stored_records(path: Path, layout: Layout) -> Iterator[np.ndarray]:
 
 def _block_points(layout: Layout) -> int:
     """Number of points in a block that is read at once, for the record size of a layout."""
+    # At least one point, however large its record.
     return min(MAX_BLOCK_POINTS, MAX_BLOCK_BYTES // layout.record_dtype.itemsize + 1)
 
 
@@ -85,6 +87,7 @@ def _selected_records(
     offsets = _variable_offsets(path, layout)
     with path.open("rb") as stream:
         for start, mask in blocks:
+            # Results that depended on all points would be wrong in a sweep with other points.
             is_selected = mask & ~np.isin(start + np.arange(len(mask)), changed)
             if is_selected.any():
                 records = np.empty(is_selected.sum(), layout.record_dtype)
@@ -92,6 +95,7 @@ def _selected_records(
                 for name, offset in offsets.items():
                     dtype = layout.record_dtype[name]
                     stream.seek(offset + start * dtype.itemsize)
+                    # One read of the whole block is faster than a seek for every selected point.
                     values = np.fromfile(stream, dtype.base, len(is_selected) * prod(dtype.shape))
                     records[name] = values.reshape(len(is_selected), *dtype.shape)[is_selected]
                 yield records
@@ -155,6 +159,7 @@ def write_records(path: Path, blocks: Iterable[np.ndarray], layout: Layout) -> b
             # Stable: the last record of a point wins.
             sorted_records = records[np.argsort(records["index"], kind="stable")]
             index = sorted_records["index"]
+            # Equal indices start a new run, so that the last record of a point is written last.
             edges = [0, *map(int, np.flatnonzero(np.diff(index) != 1) + 1), len(index)]
             runs = [(run_start, run_end, int(index[run_start])) for run_start, run_end in pairwise(edges)]
             for name, offset in offsets.items():

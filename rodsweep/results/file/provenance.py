@@ -76,7 +76,8 @@ def failure_sentence(failure: str) -> str:
     status, _, message = outcome.partition(" ")
     name_value_pairs = (pair.partition("=") for pair in points_text.split(", "))
     point_text = ", ".join(f"{name} = {float(value):.9g}" for name, _, value in name_value_pairs)
-    return f"{status}, for example at {point_text}" + f": {message}" * bool(message)
+    sentence = f"{status}, for example at {point_text}"
+    return f"{sentence}: {message}" if message else sentence
 
 
 def failure_kind(line: str) -> str:
@@ -93,6 +94,7 @@ def joined_failure_reasons(*reason_texts: str) -> dict[str, str]:
     """
     lines: dict[str, str] = {}
     for line in (line for text in reason_texts for line in text.splitlines()):
+        # The first example of a kind stays, so callers put the newest lines first.
         lines.setdefault(failure_kind(line), line)
     text = "\n".join([*lines.values()][:MAX_FAILURE_REASONS])[:MAX_ATTRIBUTE_LENGTH]
     return {FAILURE_REASONS_ATTRIBUTE: text} if text else {}
@@ -122,6 +124,7 @@ def kernels_sentence(attribute: str) -> str:
 def merged_history(attribute_sets: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     """Attributes of a merged file that describe the runs that computed its points."""
     history: dict[str, Any] = {
+        # The merged file is no shard any more.
         "shard": "",
         KERNELS_ATTRIBUTE: merged_blas_kernels(*map(blas_kernels_in, attribute_sets))[:MAX_ATTRIBUTE_LENGTH],
     }
@@ -151,6 +154,7 @@ def git_commit() -> str:
     root = Path(__file__).resolve().parents[3]
     if not (root / ".git").exists():
         return "unknown"
+    # The empty pattern matches no tag, so the text is the hash alone.
     command = ["git", "-C", str(root), "describe", "--always", "--dirty", "--abbrev=40", "--match="]
     try:
         run = subprocess.run(command, capture_output=True, text=True, timeout=10, check=False)

@@ -72,6 +72,7 @@ class FileReplacement:
             shutil.copyfile(source, self.copy_path)
         yield self.copy_path
         seal(self.copy_path)
+        # Content must be on disk before the new name: a power failure could otherwise leave an empty file.
         with self.copy_path.open("rb+") as file:
             os.fsync(file.fileno())
         os.replace(self.copy_path, self.path)
@@ -109,6 +110,7 @@ class ResultFileLock:
                 continue
             try:
                 fcntl.flock(self.handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                # A lock on a file that was removed meanwhile protects nothing.
                 if os.fstat(self.handle).st_nlink:
                     return
             except BlockingIOError:
@@ -126,6 +128,7 @@ class ResultFileLock:
         """Releases the lock and removes the directory if it is empty."""
         lock_path = self.directory / "lock"
         with suppress(OSError):  # the lock file was moved or deleted
+            # Only this lock's own file is removed, not one that another run has made since.
             if os.path.samestat(os.stat(lock_path), os.fstat(self.handle)):
                 lock_path.unlink()
         with suppress(OSError):  # the directory is not empty, or is a link made by the user

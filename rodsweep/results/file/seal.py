@@ -53,6 +53,7 @@ def seal(path: Path) -> None:
         ranges = _large_pieces(file)
     with path.open("r+b") as stream:
         end = _hdf5_end(stream)
+        # A former checksum lies behind HDF5's own end of the file.
         stream.truncate(end)
         checksum = {"end": end, "pieces": ranges, "frame": _checksum(stream, _left_out_pieces(ranges, end))}
         stream.seek(end)
@@ -79,6 +80,7 @@ def has_valid_structure_checksum(path: Path) -> bool:
         try:
             stored_checksums = json.loads(data[len(CHECKSUM_HEAD) :])
             ranges = [(int(start), int(length)) for start, length in stored_checksums["pieces"]]
+            # Before the checksum, since a writer that closes the file meanwhile is no damage.
             is_locked = _is_locked_for_writing(stream)
             is_valid = stored_checksums["end"] == end and stored_checksums["frame"] == _checksum(
                 stream, _left_out_pieces(ranges, end)
@@ -123,6 +125,7 @@ def _large_pieces(file: h5py.File) -> list[ByteRange]:
 def _left_out_pieces(ranges: list[ByteRange], end: int) -> Iterator[ByteRange]:
     """Yields the byte ranges from 0 to `end` that the sorted byte ranges `ranges` leave out."""
     position = 0
+    # An empty piece at the end closes the last gap.
     for start, size in [*ranges, (end, 0)]:
         if not 0 <= position <= start <= end:
             raise ChecksumMismatch("its checksum cannot be read")

@@ -60,6 +60,7 @@ class ResultFileWriter:
             self.journal_directory = self.replacement.journal_directory
             try:
                 self._open(replaces, extends)
+            # Any exception, even a stop by the user, must release the lock.
             except BaseException:
                 self.close()
                 raise
@@ -102,6 +103,7 @@ class ResultFileWriter:
         """Replaces the file of a smaller config by the plan's file, with all points that can be reused."""
         extension = extension_of(header, points_of_file(self.path, header.layout), self.plan)
         require_room(self.path, self.plan)
+        # Points that are only in the journals belong to the smaller config too.
         blocks = read_journals(self.journal_directory, header.layout, header.fingerprint, header.points)
         self._add_blocks(blocks, header.layout, header.fingerprint, {})
         stored_count = header.points - index_count(self.missing())
@@ -114,6 +116,7 @@ class ResultFileWriter:
                 with h5py.File(copy, "r+") as file:
                     file.attrs.update(history)
             if lost_count:
+                # The backup is made before the file is replaced, at the end of this block.
                 backup = self._back_up_file()
                 self.notes.append(
                     f"{lost_count} of {stored_count} stored points are computed again; until then {backup} "
@@ -196,6 +199,7 @@ class ResultFileWriter:
         """Writes the records in `blocks`, (n,) each, of journals with the fingerprint into the file; deletes
         the journals. additions: variables that end the file; None if points are missing."""
         with disk_refusals(self.path, self._kept_points_clause):
+            # Listed before they are read, so that a journal that appears later is not deleted unread.
             journals = journals_with_fingerprint(self.journal_directory, fingerprint)
             first_block = next(blocks, None)
             reasons = read_reasons(self.journal_directory, layout, fingerprint)
@@ -236,6 +240,7 @@ class ResultFileWriter:
 
     def _header(self) -> ResultHeader:
         """Header of the existing file; raises InputError if the file is not a complete result."""
+        # Taken before reading, so that a replacement in between is noticed later.
         identity = file_identity(self.path)
         header = header_of_existing_file(self.path, self.plan, self.journal_directory)
         self.replacement.last_identity = identity

@@ -92,9 +92,11 @@ def open_checked(path: Path, checks_values: bool = True) -> tuple[h5py.File, Res
             f"{path} is a config, not a result file; `rodsweep run` makes a result file from it"
         )
     with damage_refusals(path):
+        # Before HDF5 opens the file, because damaged structures can make it crash or loop.
         is_framed = has_valid_structure_checksum(path)
         file = h5py.File(path, "r")
         try:
+            # Without the checksum another program has rewritten the file, so the numbers are always compared.
             return file, header_of(path, file, check_content=checks_values or not is_framed)
         except BaseException:
             file.close()
@@ -129,6 +131,7 @@ def header_of(path: Path, file: h5py.File, check_content: bool = True) -> Result
     config = json.loads(attributes["config_resolved"])
     attributes.setdefault("task", config["task"])
     layout = layout_of(config)
+    # Readers compute offsets from the layout, so a wrong shape would give wrong numbers without an error.
     require_variables_of_layout(file, layout)
     fingerprint = fingerprint_of(config, points_of_open_file(file, layout).identifying_arrays)
     return ResultHeader(path, attributes, config, fingerprint, layout, file["status"].size)
@@ -175,6 +178,7 @@ def require_variables_of_layout(file: h5py.File, layout: Layout) -> None:
         dataset = file[name]
         if not isinstance(dataset, h5py.Dataset) or dataset.shape != extents or dataset.dtype != kind:
             raise ValueError(f"its variable {name} does not fit its config")
+        # Points are read without HDF5 at computed offsets, which only contiguous data have.
         if dataset.id.get_offset() is None or dataset.chunks or not dataset.id.get_storage_size():
             raise ValueError(
                 f"its variable {name} is chunked, compressed or without data, as after a rewrite by another "

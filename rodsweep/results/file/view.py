@@ -198,6 +198,8 @@ def _view(path: Path) -> ResultView:
         variables = FileVariables(path, file, recent)
         stored = (name for name in ALL_QUANTITIES if name in file)
         units = {name: str(file[name].attrs[TYPED_UNIT]) for name in stored if TYPED_UNIT in file[name].attrs}
-    names, axes = header.layout.parameters, header.layout.arm_axes
+    layout = header.layout
     attributes = header.attributes | journalled_reasons(header)
-    return ResultView(path, attributes, variables, names, flags, len(recent), axes, units)
+    return ResultView(
+        path, attributes, variables, layout.parameters, flags, len(recent), layout.arm_axes, units
+    )

@@ -54,6 +54,7 @@ class ArrayStore:
     def put(self, number: int, arrays: Arrays) -> None:
         """Stores arrays by name under `number`; replaces earlier arrays of this number."""
         stream = io.BytesIO()
+        # In memory first, as the checksum is needed before anything is written.
         np.savez(stream, **arrays)
         content = self.header + stream.getvalue()
         path = self._path(number)
@@ -61,6 +62,7 @@ class ArrayStore:
         # Ranks of a killed run live on for a moment and must not write to the same file.
         copy = path.with_name(f"{path.name}-{os.getpid()}-{os.urandom(4).hex()}")
         copy.write_bytes(content + _checksum(content))
+        # Atomic, so that a reader finds the old or the new state, never a part.
         os.replace(copy, path)
 
     def get(self, number: int) -> Arrays | None:
@@ -72,6 +74,7 @@ class ArrayStore:
         checksum = data[-CHECKSUM_BYTES:]
         if not content.startswith(self.header) or _checksum(content) != checksum:
             return None
+        # Without pickles a damaged or foreign file cannot run code.
         with np.load(io.BytesIO(content[len(self.header) :]), allow_pickle=False) as arrays:
             return dict(arrays)
 

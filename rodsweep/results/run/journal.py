@@ -46,6 +46,7 @@ class Journal:
         """Record of a point, of the layout's NumPy type, reused for every point."""
         self.variable_names = tuple(variable.name for variable in layout.variables)
         self.directory = directory
+        # A killed run may live on for a moment, so a restarted one must not write to its files.
         self.name = f"rank-{rank:06d}-{os.getpid()}"
         self._create()
         self._write(_journal_header(fingerprint))
@@ -59,6 +60,7 @@ class Journal:
         """
         # One assignment, because assigning single fields takes three times as long.
         self.record[()] = (index, *(values[name] for name in self.variable_names))
+        # One call for all, so that a kill mostly leaves whole records behind.
         self._write(b"".join(map(_with_checksum, (*self._text_records(reasons), self.record.tobytes()))))
 
     def append_all(
@@ -79,6 +81,7 @@ class Journal:
         """Yields records that hold lines of text instead of the values of a point."""
         chunk_bytes = self.record.itemsize - INDEX_BYTES
         for line in lines:
+            # Text has the length of other records, so that readers need no table of positions.
             text = line.encode()
             chunks = [text[offset : offset + chunk_bytes] for offset in range(0, len(text), chunk_bytes)]
             for number, chunk in enumerate(chunks, 1):
@@ -91,8 +94,10 @@ class Journal:
         If the file was moved or deleted, the journal is written again first.
         """
         empty = os.fstat(self.handle).st_size == self.header_size
+        # A user may have moved or deleted the directory during the run; the open file still has all points.
         if not empty and not self._is_in_place():
             self._write_anew()
+        # Only here: a synchronous write for each point would take longer than many solves.
         os.fsync(self.handle)
         os.close(self.handle)
         if empty:
@@ -232,6 +237,7 @@ def _record_rows(path: Path, layout: Layout, fingerprint: str) -> Iterator[np.nd
         file.seek(len(_journal_header(fingerprint)))
         while block := file.read(max(1, BYTES_PER_READ // size) * size):
             byte_array = np.frombuffer(block, np.uint8)
+            # The last record may be cut off by a kill.
             yield byte_array[: len(byte_array) // size * size].reshape(-1, size)
 
 

@@ -118,6 +118,7 @@ class BranchCycle:
         the map over the period. Symmetric cycle: eigenvalues of the map over half a period, composed with the
         reflection."""
         values = self.cycle.converged_orbit.matrix.multipliers_over_solved_part
+        # The multiplier nearest to 1 belongs to the motion along the orbit itself.
         return np.delete(values, int(np.argmin(np.abs(values - 1))))
 
     def arc_length_condition(self, length: float) -> BorderCondition:
@@ -199,6 +200,7 @@ def _step_of_length(start: BranchCycle, accuracy: float, length: float) -> StepR
         start.scale.directional_derivative(solved.orbit, tangent) @ start.unit_tangent
     )  # both have unit length
     cycle = branch_cycle_with_calibrated_errors(start, solved, tangent, length, length, accuracy)
+    # On another mesh the error contains the difference of the meshes and says little about the predictor.
     if start.next_mesh is None:
         cycle = replace(cycle, prediction_error=prediction_error)
     return StepResult(cycle, control_error, cosine)

@@ -69,6 +69,7 @@ def _multiplier_modulus_error(point: BranchCycle) -> float:
     plus a multiple of the error of the trivial multiplier, whose exact value is 1."""
     cycle = point.cycle
     relative_error = cycle.errors.multiplier_error / max(cycle.largest_multiplier, 1.0)
+    # The trivial multiplier is exactly 1: its distance from 1 shows the effect of the mesh.
     return relative_error + REFINEMENT_SETTINGS.multiplier_error_factor * cycle.trivial_multiplier_error
 
 
@@ -93,6 +94,7 @@ class RangePassage:
         within their errors."""
         if self.index != other.index:
             return False
+        # Small cycles near a Hopf point have uncertain heights, whereas the Hopf point is known.
         if self.hopf is not None and other.hopf is not None:
             return self.hopf is other.hopf
         (period, period_error, height, height_error) = self._period_and_height
@@ -118,6 +120,7 @@ class RangePassage:
             return point.period, point.period_error, point.tip_y_max, point.tip_y_max_error
         measures = self.cycle.cycle.measures
         errors = self.cycle.cycle.errors
+        # Mirror images exchange the largest and the smallest y.
         height = max(measures.tip_y_max, -measures.tip_y_min)
         return measures.period, errors.period_error, height, errors.amplitude_error
 
@@ -204,6 +207,7 @@ class BranchCurve:
     def index_of_first_special_point(self, special_points: Sequence[SpecialPoint]) -> int:
         """Index in `special_points` of the first special point of this branch, -1 if `special_points` does
         not have it or if this point is not located. The branch is closed if it returns to this point."""
+        # An unlocated point has only the values of a cycle beside it.
         own_points = [point for point in self.special_points[:1] if not point.message]
         located = [(i, point) for i, point in enumerate(special_points) if not point.message]
         return next(
@@ -215,16 +219,19 @@ class BranchCurve:
         opposite directions."""
         cycle_count = len(self.points)
         backward_points = [
+            # Reversed, the cycle before a point is the cycle that was behind it.
             replace(point, index_of_cycle_before=cycle_count - 2 - point.index_of_cycle_before)
             for point in reversed(self.special_points)
         ]
         forward_points = [
+            # One cycle belongs to both parts, and is counted once.
             replace(point, index_of_cycle_before=point.index_of_cycle_before + cycle_count - 1)
             for point in forward.special_points
         ]
         return BranchCurve(
             start_hopf=self.end_hopf,
             start_breaking=self.end_breaking,
+            # The first cycle, common to both directions, is taken from `forward`.
             points=[*self.points[:0:-1], *forward.points],
             special_points=[*backward_points, *forward_points],
             end_hopf=forward.end_hopf,

@@ -167,6 +167,7 @@ class BranchCalibration:
         """A calibration in which the errors of period, largest y, extrema and path equal the parameter error
         at equal deflection, in space and in time; the error of the multiplier is unchanged."""
         indices = [PERIOD_INDEX, Y_INDEX, EXTREMUM_INDEX, PATH_INDEX]
+        # Copies, because many cycles share one calibration.
         parts = [self.at_equal_parameter.space_errors.copy(), self.at_equal_parameter.time_errors.copy()]
         for part, parameter_error in zip(parts, self.parameter_errors, strict=True):
             part[indices] = parameter_error
@@ -199,6 +200,7 @@ class BranchCalibration:
             self.at_equal_parameter,
             space_errors=mean_errors[0],
             time_errors=mean_errors[1],
+            # The interpolated errors contain their growth since the last measurement.
             error_growth=np.ones(2),
         )
         return BranchCalibration(calibration, mean_errors[2], sensitivity)

@@ -201,9 +201,12 @@ def _with_interpolated_errors(
     parameter changes more slowly than at `start` and `end`, as near a fold: the errors at `start` and `end`
     are then no bound.
     """
+    # Errors are interpolated only between cycles on one mesh.
     if mesh_of(start.orbit) != mesh_of(point.orbit):
-        start, fraction = end, 1.0
+        start = end
+        fraction = 1.0
     ends = (start, end)
+    # Near a fold, errors at equal parameter grow with 1/rate; interpolation over a long step misses this.
     is_slow = abs(point.parameter_rate) < BRANCH_MESH_SETTINGS.min_parameter_rate_ratio * min(
         abs(measured.parameter_rate) for measured in ends
     )

@@ -53,6 +53,7 @@ class BranchSearch:
 
     def __post_init__(self) -> None:
         hopfs = [hopf for region in self.regions for hopf in region.limits.hopfs]
+        # A branch within the range may end at a Hopf point just beyond its end.
         self.limits = replace(self.limits, hopfs_beyond=hopfs)
 
     def follow_all(self, starts: Iterable[SpecialPoint]) -> None:
@@ -60,6 +61,7 @@ class BranchSearch:
         special points `starts`."""
         self.follow_within_range()
         self.follow_into_range()
+        # Before the given starts, which may lie on the same branches.
         self.follow_through(self._folds_passed_into_range())
         self.follow_through(starts)
         self._add_failures_at_range_ends()
@@ -72,6 +74,7 @@ class BranchSearch:
     def follow_into_range(self) -> None:
         """Follows branches beyond the range, in `regions`, and branches that enter the range from there."""
         for region in self.regions:
+            # The work allowed beyond the range depends on the work that the branches within took.
             region.begin()
         self.follow_beyond()
         for region in self.regions:
@@ -101,6 +104,7 @@ class BranchSearch:
             [hopf.parameter_coordinate for hopf in self.limits.hopfs], self.limits.coordinate_range
         )
         for hopf_index in range(hopf_count):
+            # The branch was followed from its other end already.
             if any(curve.end_hopf == hopf_index for curve in self.curves):
                 continue
             with solve_part(
@@ -133,6 +137,7 @@ class BranchSearch:
         """Follows the branches through the special points `starts` that lie on no branch so far, and the
         branches of asymmetric cycles from symmetry breakings on these branches."""
         for start in starts:
+            # Tested for each start anew, as the branch of one start may pass the next.
             if lies_on_any(start, self.curves):
                 continue
             place = f"{_WORDS[start.kind]} at {self.name} = {start.parameter_value:.9g}"
@@ -147,6 +152,7 @@ class BranchSearch:
         """Follows the branches that leave the range, beyond its ends; where a branch enters the range again,
         it continues as a further branch. Then follows the branches from symmetry breakings on further
         branches."""
+        # The list grows inside the loop: a branch that enters may leave again.
         while (passage := next(self._passages_to_follow(), None)) is not None:
             self.followed_passages.append(passage)
             for region in self.regions:
@@ -175,11 +181,13 @@ class BranchSearch:
         """Appends the branch that enters the range at `entry`, unless a branch so far leaves the range there.
         left_at: place at which the branch left the range before."""
         known_passages = [p for p in self._passages() if p is not left_at and p.is_same_as(entry)]
+        # The branch that leaves there leads to this entry, so it need not be followed in the other direction.
         self.followed_passages += known_passages
         limits = self._limits_left()
         if known_passages:
             return
         if limits.max_cycles < 1:
+            # A branch that enters was found but not followed, so nothing beyond counts as searched.
             region.stop_at(region.range_end)
             return
         limits = replace(limits, breakings=symmetry_breakings_in([c.special_points for c in self.curves]))

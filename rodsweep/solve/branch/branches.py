@@ -81,6 +81,7 @@ def solve_branches(
             lambda cause: BranchesOfRod(status=BranchStatus.failed, message=cause),
         )
     finally:
+        # The limit of the work belongs to this rod, and a large buffer is freed for other solvers.
         memory.release()
 
 
@@ -104,14 +105,17 @@ def _solve_branches_or_raise(
     if not low < high:
         reason = f"the force crushes the rod everywhere in the range of {request.along}"
         return BranchesOfRod(status=BranchStatus.ok, message=reason, proved=True)
+    # The rod's own value along the path may be one at which it is crushed.
     path = ParameterPath(rod.with_values(**{request.along: low}), request.along)
     crossings = find_axis_crossings(path, low, high, request.certify)
     ends = (path.coordinate(low), path.coordinate(high))
     # The smallest drag of the range is at one of its ends.
     keeps_omega = any(has_small_rotational_drag(path.rod_at(end)) for end in ends)
+    # The coordinate may pass 0, where a relative step would have no length.
     unit = BRANCH_SETTINGS.min_coordinate_unit_ratio * abs(ends[1] - ends[0])
     hopfs, failures = _hopf_branch_starts(path, crossings, keeps_omega, unit)
     end_reasons = _end_reason(low > request.start), _end_reason(high < request.stop)
+    # The compliance 1/k decreases with k, so both ends and their reasons change places.
     if path.is_compliance_path:
         ends = ends[::-1]
         end_reasons = end_reasons[::-1]
@@ -125,6 +129,7 @@ def _solve_branches_or_raise(
         status=status,
         message=message,
         crossings=crossings.thresholds,
+        # A search that began later has counted at another value.
         unstable_at_start=crossings.unstable_at_start if crossings.searched_interval[0] == low else -1,
         proved=crossings.proved_to_the_end,
         curves=tuple(search.curves),
@@ -167,6 +172,7 @@ def _status_and_message(
         if special.message
     ]
     special_points = [point for curve in curves for point in curve.special_points]
+    # Special points are solved to their own accuracy even if less is asked of the branch.
     tolerance = max(request.accuracy, SPECIAL_POINT_SETTINGS.accuracy)
     is_inaccurate = any(point.error > tolerance * abs(point.parameter_value) for point in special_points)
     if any(not curve.unit_circle_crossings_explained for curve in curves):

@@ -77,12 +77,14 @@ def branch_through(
     incomplete: BranchCurve | None = None
     reason: Unsolvable | None = None
     accuracy = limits.accuracy
+    # The accuracy asked for is tried in any case, even below `min_accuracy`.
     while accuracy == limits.accuracy or accuracy >= DETACHED_BRANCH_SETTINGS.min_accuracy:
         try:
             curve = follow_detached_branch(start, name, replace(limits, accuracy=accuracy))
         except WorkLimitReached:
             raise
         except Unsolvable as error:
+            # The first failure, at the accuracy asked for, is the one to report.
             reason = reason or error
         else:
             if is_known(curve):
@@ -102,6 +104,7 @@ def follow_in_both_directions(first_cycle: BranchCycle, limits: BranchLimits) ->
     directions."""
     curve = follow_from_cycle(BranchCurve(start_hopf=-1), first_cycle, limits)
     if not curve.closed:
+        # The first cycle is part of both directions but counts once.
         remaining_limits = replace(limits, max_cycles=limits.max_cycles - len(curve.points) + 1)
         backward_curve = follow_from_cycle(
             BranchCurve(start_hopf=-1), turned_back(first_cycle), remaining_limits
@@ -148,6 +151,7 @@ def _tangent_towards_larger_cycles(orbit: Orbit, name: str, limits: BranchLimits
     mesh = mesh_from_tails(orbit, limits.accuracy, cheapest_stage_count(limits.accuracy))
     orbit = mesh.interpolated_orbit(orbit)
     tip_y = abs(float(orbit.form.tip_coordinates(orbit.start_state)[1]))
+    # The unit is given as a tip deflection; this ratio converts it to the deflection of the arc length.
     min_deflection_unit = abs(deflection_of(orbit)) * BRANCH_START_SETTINGS.min_deflection_amplitude / tip_y
     scale = ArcLengthScale.at_orbit(orbit, name, min_deflection_unit, limits.min_coordinate_unit)
     tangent = tangent_at(orbit, scale, ALONG_DEFLECTION, BorderedMatrix(orbit, scale, limits.workspace))
@@ -167,6 +171,7 @@ def _cycle_on_other_side(tangent: _Tangent, distance: float, limits: BranchLimit
     )
     step_size = relative_change(tangent.orbit, distance * tangent.change[:-1])
     prediction_error = relative_change(predicted, solved_orbit.orbit.values - predicted.values)
+    # Newton's method may have jumped to another branch.
     if prediction_error > DETACHED_BRANCH_SETTINGS.max_prediction_error_ratio * step_size:
         raise Unsolvable("the cycle found is far from its prediction")
     low, high = limits.coordinate_range

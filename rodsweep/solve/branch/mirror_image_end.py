@@ -32,6 +32,7 @@ def passes_hopf_point(start: BranchCycle, end: BranchCycle) -> bool:
     The sign of the tip's y is no criterion: on a large cycle an extremum of y may pass through 0."""
     mesh = mesh_of(end.orbit)
     layout = end.orbit.form.layout
+    # Moments can be multiplied only at the same nodes.
     start_moment = layout.stress_field(mesh.interpolated_orbit(start.orbit).start_state, "m3")
     return float(start_moment @ layout.stress_field(end.orbit.start_state, "m3")) < 0
 
@@ -42,9 +43,9 @@ def end_or_shorter_step_at_mirror_image(
     """The end of a branch that reaches its mirror image between two cycles (a failure if no known Hopf point
     or symmetry breaking is near), or `start` with half the step, if `start` is too far from this end. Raises
     Unsolvable if no shorter step is allowed."""
-    return (_end_at_hopf_or_shorter_step if start.orbit.is_symmetric else _end_at_breaking_or_shorter_step)(
-        start, end, limits
-    )
+    if start.orbit.is_symmetric:
+        return _end_at_hopf_or_shorter_step(start, end, limits)
+    return _end_at_breaking_or_shorter_step(start, end, limits)
 
 
 def _end_at_hopf_or_shorter_step(
@@ -79,9 +80,11 @@ def _known_hopf_end_or_shorter_step(
     shorter: `start` with a shorter step, or None if no shorter step is allowed."""
     for number, hopf in enumerate(limits.hopfs):
         if _shrinks_to(start, hopf, limits.accuracy):
+            # The parameter must still turn before the Hopf point, which a smaller cycle shows.
             if _has_fold_ahead(start, hopf) and shorter is not None:
                 return shorter
             return BranchEnd(hopf_as_special_point(hopf), complete=True, end_hopf=number)
+    # The branch ends at the end of the range then, which it passes before the Hopf point.
     for hopf in limits.hopfs_beyond:
         if _shrinks_to(start, hopf, limits.accuracy):
             end_before_hopf = end_at_range_end_near_hopf(start, hopf, limits)
@@ -134,6 +137,7 @@ def _end_at_breaking_or_shorter_step(
         return replace(start, next_arc_length=arc_length_between(start, end) / 2)
     if index >= 0:
         breaking = limits.breakings[index]
+        # The message and the orbit belong to the point on the symmetric branch, where they are stored.
         special = replace(breaking.special_point, message="", orbit=None)
         return BranchEnd(special, complete=True, end_breaking=breaking)
     message = "the cycles become symmetric, but no symmetry breaking is known there"

@@ -45,6 +45,7 @@ def cycle_at_range_end(
     tolerance = BRANCH_END_SETTINGS.range_end_tolerance
     end_distances = beyond(0.0), beyond(segment.length)
     inner_length = 0.0
+    # The step begins at the end of the range, so its first zero is not the one that is sought.
     if abs(end_distances[0]) <= tolerance * abs(end_distances[1]):
         inner_length = _length_within_range(beyond, segment.length)
         end_distances = beyond(inner_length), end_distances[1]
@@ -76,6 +77,7 @@ def cycle_at_end_beside_zero(start: BranchCycle, low: float, accuracy: float) ->
     rate = float(start.tangent[-1])
     coordinate = start.parameter_coordinate
     name = start.scale.parameter_name
+    # -1 stands for all negative values, which a parameter allows or forbids together.
     may_be_negative = PARAMETERS[name].allowed.contains(-1.0)
     if may_be_negative or low < 0 or rate >= 0 or -coordinate / rate > start.next_arc_length:
         return None
@@ -143,6 +145,7 @@ def _range_end_passed_before_fold(
             slopes[0] + slopes[1] - 2 * increment,
         )
     )
+    # A real root of a real polynomial has an imaginary part of exactly 0 in NumPy.
     fractions = [float(root.real) for root in cubic.roots() if root.imag == 0 and 0 < root.real < 1]
     return (index, length * min(fractions)) if fractions else (-1, 0.0)
 

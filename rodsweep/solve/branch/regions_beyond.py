@@ -33,10 +33,14 @@ def _region(path: ParameterPath, index: int, limits: BranchLimits, margin: float
     far_end = _far_end(end, index, path.name)
     low, high = sorted(map(path.parameter.value, (end, far_end)))
     bounds = path.parameter.allowed.schema_bounds
-    low, high = max(bounds.get("minimum", low), low), min(bounds.get("maximum", high), high)
+    low = max(bounds.get("minimum", low), low)
+    high = min(bounds.get("maximum", high), high)
+    # The path moves one parameter; the two others of the crushing load keep the values of the rod.
     base_values = {"F": path.rod.F, "k1": path.rod.k1, "taper": path.rod.taper}
     low, high = uncrushed_interval(path.rod.material, base_values, (path.name, low, high), margin)
-    far_end = (min, max)[index](path.coordinate(low), path.coordinate(high))
+    # Along a compliance the larger value has the smaller coordinate, so coordinates are compared.
+    farther = min if index == 0 else max
+    far_end = farther(path.coordinate(low), path.coordinate(high))
     # The unknowns of a branch cannot change within the branch.
     has_small_drag = has_small_rotational_drag(path.rod_at(far_end))
     if not low < high or has_small_drag and not limits.keeps_omega:
@@ -44,6 +48,7 @@ def _region(path: ParameterPath, index: int, limits: BranchLimits, margin: float
     region_limits = replace(
         limits,
         hopfs_beyond=limits.hopfs,
+        # The range is ordered by coordinate; the region touches the range at its upper or at its lower end.
         coordinate_range=(end, far_end) if index == 1 else (far_end, end),
         end_reasons=(BranchEndReason.range_end, BranchEndReason.range_end),
         max_cycles=BEYOND_RANGE_SETTINGS.max_cycles,
@@ -65,11 +70,13 @@ def _hopf_points(
     try:
         search = find_axis_crossings(path, low, high, certify=False)
     except FAILURES:
+        # Hopf points may be missing everywhere, so nothing beyond the end of the range counts as searched.
         return [], [limits.coordinate_range[1 - index]]
     hopfs = []
     lost_at = _ends_of_search(path, index, limits, search)
     for crossing in search.thresholds:
         others = (hopf.crossing for hopf in limits.hopfs_beyond)
+        # A Hopf point at the end of the range is found by both searches, and belongs to the range.
         if any(abs(crossing.value - other.value) <= crossing.error + other.error for other in others):
             continue
         try:
@@ -88,6 +95,7 @@ def _ends_of_search(
     if search.ended_early:
         # The search begins at the smallest coordinate.
         end = max(map(path.coordinate, search.searched_interval))
+        # Below the range the missing part is the one next to the range, so nothing there counts as searched.
         ends.append(end if index == 1 else limits.coordinate_range[1])
     if not isnan(search.open_range[0]):
         unsearched = [path.coordinate(value) for value in search.open_range]
@@ -99,6 +107,7 @@ def _far_end(end: float, index: int, name: str) -> float:
     """Coordinate of the parameter `name` at the far end of the region beyond the end `end` of a range, which
     is not negative. index: 0 below the range, 1 above."""
     factor = 1 + BEYOND_RANGE_SETTINGS.relative_extent
+    # Along the force the region ends at 0, from below which no cycle comes.
     return end * factor if index == 1 else end / factor * (name != "F")
 
 
@@ -107,6 +116,7 @@ def extended_range(name: str, low: float, high: float) -> tuple[float, float]:
     from `low` to `high`; crushed rods are not considered."""
     parameter = PARAMETERS[name]
     ends = sorted(float(parameter.coordinate(value)) for value in (low, high))
+    # An end at 0 or below has no region beyond it, as in `_region`.
     far_ends = [end if end <= 0 else _far_end(end, index, name) for index, end in enumerate(ends)]
     values = [float(parameter.value(end)) for end in far_ends]
     return min(values), max(values)

@@ -48,6 +48,7 @@ def extended_to_whole_period(orbit: Orbit) -> Orbit:
     twice as many time intervals."""
     interval_count = 2 * orbit.interval_count
     grading = orbit.grading.doubled
+    # In units of half a period, which the symmetric orbit covers.
     times = 2 * node_times(interval_count, orbit.stage_count, grading)
     is_second_half = times > 1
     points = orbit.states_at(np.where(is_second_half, times - 1, times))
@@ -67,6 +68,7 @@ def asymmetry(orbit: Orbit) -> Array:
 
 def _bending_moments(states: Array, orbit: Orbit) -> Array:
     """Bending moments, (..., nodes), of states, (..., n), at the nodes of an orbit's mesh."""
+    # Moments are unknowns of the state, whereas positions would need an integration over the arms.
     return orbit.form.layout.stress_field(states, "m3")
 
 
@@ -77,11 +79,13 @@ def reaches_symmetric_cycle(
     changes sign or almost vanishes; or the parameter turns back near a symmetry breaking in `breakings`,
     because a mesh without the symmetry of the cycle perturbs the crossing of the branches."""
     start_asymmetry = asymmetry(start.orbit)
+    # The scalar product needs both asymmetries at the same nodes.
     orbit_on_mesh = end.orbit.on_mesh(start.orbit.form.mesh, end.orbit.interval_count, end.orbit.stage_count)
     # The asymmetry changes sign where the branch passes a symmetric cycle, and is small near this cycle.
     max_asymmetry = BRANCH_END_SETTINGS.lost_asymmetry_ratio * float(start_asymmetry @ start_asymmetry)
     if float(asymmetry(orbit_on_mesh) @ start_asymmetry) < max_asymmetry:
         return True
+    # Past the symmetric cycle the branch runs back as its own mirror image, so the parameter turns there.
     turns_back = start.parameter_rate * end.parameter_rate < 0 and _is_nearly_symmetric(start)
     return turns_back and _symmetry_breaking_ahead(start, breakings, accuracy) >= 0
 
@@ -119,6 +123,7 @@ def _symmetry_breaking_ahead(
     at which the extrapolated asymmetry vanishes; -1 if no entry fits or the asymmetry does not decrease."""
     orbit = start.orbit
     current_asymmetry = asymmetry(orbit)
+    # The asymmetry is linear in the states, so that of the tangent is its derivative.
     change = asymmetry(replace(orbit, values=start.tangent[:-1]))
     # Minus half the derivative of the squared asymmetry: positive if a symmetric cycle lies ahead.
     decrease = -float(current_asymmetry @ change)
@@ -136,6 +141,7 @@ def _symmetry_breaking_ahead(
         tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(
             start.parameter_coordinate - symmetric_coordinate
         )
+        # The extrapolation is exact at the symmetry breaking, where only the errors of the two cycles remain.
         tolerance += max(BRANCH_END_SETTINGS.parameter_tolerance, accuracy) * abs(symmetric_coordinate)
         period_tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(
             orbit.period - symmetric_orbit.period

@@ -101,6 +101,7 @@ class LeaderExchangeSearch:
             place = self.path.text_at(p)
             text = f"the spectrum at {place} has the status {spectrum.status.name}: {spectrum.message}"
             raise Unsolvable(text.rstrip(": "))
+        # A copy, because the stored spectrum is shared.
         w = spectrum.eigenvalues.copy()
         slope = np.empty(SAMPLED_MODE_COUNT, dtype=complex)
         for i, guess in enumerate(spectrum.eigenvalues):

@@ -16,15 +16,18 @@ def minimum_of_cubic(a: float, b: float, slope_a: float, slope_b: float) -> tupl
     minimum = min(a, b)
     argument = 0.5
     discriminant = square_term * square_term - 3 * cubic_term * slope_a
+    # A straight line has both terms 0, and its minimum at an end.
     if discriminant >= 0 and (square_term or cubic_term):
         # The root of slope_a + 2 square t + 3 cube t^2 at the minimum, computed without cancellation.
         root = math.sqrt(discriminant)
         t = 0.5
+        # Of the two forms of the root only the one without a difference of nearly equal numbers is used.
         if square_term + root > 0:
             t = -slope_a / (square_term + root)
         elif cubic_term:
             t = (root - square_term) / (3 * cubic_term)
         value = a + t * (slope_a + t * (square_term + t * cubic_term))
+        # The cubic also has its minimum outside the interval, where no sample is needed.
         if 0 < t < 1 and value < minimum:
             minimum = value
             argument = t
@@ -48,18 +51,23 @@ def next_sample_between(left: SpectrumSample, right: SpectrumSample) -> NextSamp
         (left.squared_pair_difference(), right.squared_pair_difference()),
         (left.leading_growth_gap(), right.leading_growth_gap()),
     ):
+        # Neither sample has such an eigenvalue among the computed ones, so none is near the leading one.
         if a is None and b is None:
             continue
         if a is None or b is None:
             value, slope = a or b or (0.0, 0.0)
+            # Known at one sample only, the gap may close within the interval; 2 is a safety factor.
             if abs(value) < 2 * abs(slope) * distance:
                 return NextSample(0.5, False)
             continue
         smallest_value = min(abs(a[0]), abs(b[0]))
         # By the trapezoidal rule smooth slopes explain the change between the samples.
         unexplained_change = _unexplained_change(a, b, distance)
+        # The gap is mirrored to be positive, so that one test, of a minimum, serves both signs.
         sign = math.copysign(distance, a[0])
         minimum, fraction = minimum_of_cubic(abs(a[0]), abs(b[0]), sign * a[1], sign * b[1])
+        # Two samples of one kind have gaps of one sign, so the product is 0 only where a sample itself lies
+        # at an exchange.
         if a[0] * b[0] <= 0 or minimum < SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * smallest_value:
             return NextSample(fraction, True)
         if unexplained_change > SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * max(
@@ -93,9 +101,11 @@ def next_two_stay_below(left: SpectrumSample, right: SpectrumSample) -> bool:
 def two_pairs_exchange_lead(left: SpectrumSample, right: SpectrumSample) -> bool:
     """Whether the slopes show that the first two pairs at `left` are the first two pairs at `right` in the
     opposite order, and exclude that one of the two pairs becomes real between the samples."""
+    # Four complex eigenvalues are two pairs; a real one among them would be an exchange of another kind.
     if any(w.imag == 0 for sample in (left, right) for w in sample.w):
         return False
     distance = right.p - left.p
+    # The index changes from 0 to 2 because the same pair is first at one sample and second at the other.
     return _changes_sign_once(left.growth_gap(0, 2), right.growth_gap(2, 0), distance) and all(
         _stays_positive(left.squared_frequency(i), right.squared_frequency(2 - i), distance) for i in (0, 2)
     )
@@ -140,6 +150,7 @@ def _stays_positive(left: tuple[float, float], right: tuple[float, float], dista
     minimum, _ = minimum_of_cubic(a, b, distance * slope_a, distance * slope_b)
     unexplained_change = _unexplained_change(left, right, distance)
     return (
+        # The limit 0 refuses a negative value at a sample, for which the first part alone would hold.
         minimum >= SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * smallest_value > 0
         and unexplained_change
         <= SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * max(smallest_value, abs(b - a))

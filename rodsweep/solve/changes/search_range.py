@@ -59,6 +59,7 @@ class IntervalQueue:
         self.start_p = edges[0]
         self.length = edges[-1] - edges[0]
         self.end = SearchEnd(edges[-1])
+        # Reversed, so that `pop` takes the leftmost interval without moving the others.
         self._queue = list(zip(edges[:-1], edges[1:], strict=True))[::-1]
         self._unsearched_end = edges[-1]
         self._halvings = 0
@@ -72,10 +73,12 @@ class IntervalQueue:
                 self._halvings += 1
                 middle = (self.end.p + self._unsearched_end) / 2
                 self._queue.append((self.end.p, middle))
+                # The new end holds only if the half is searched; a failure moves it back.
                 self.end = SearchEnd(middle, self.end.reason)
             if not self._queue:
                 break
             yield self._queue.pop()
+        # Raised after the halvings, because a search of any part is a result.
         if self.end.reason and self.end.p <= self.start_p:
             raise Unsolvable(self.end.reason)
 
@@ -86,6 +89,7 @@ class IntervalQueue:
     def stop_at(self, p: float, reason: str) -> None:
         """Ends the search at path variable `p`, up to which it is complete. reason: why the search ends."""
         self._queue.clear()
+        # The end is wanted here, so no half beyond it is tried.
         self._halvings = SEARCH_RANGE_SETTINGS.max_halvings_after_failure
         self.end = SearchEnd(p, reason)
 

@@ -58,6 +58,7 @@ class SpectrumSample:
         gap, slope = self._times_relaxation_time(
             (self.w[0] - self.w[1]).real, (self.slope[0] - self.slope[1]).real
         )
+        # The derivative of w itself is infinite at a double eigenvalue, that of the square is not.
         return gap**2, 2 * gap * slope
 
     def leading_growth_gap(self) -> tuple[float, float] | None:
@@ -65,6 +66,7 @@ class SpectrumSample:
         leading eigenvalue. w: first complex eigenvalue if w1 is real, first real eigenvalue if w1 is complex;
         None if there is no such w at this sample."""
         for i, w in enumerate(self.w[1:], 1):
+            # Eigenvalues are sorted by growth, so the first of the other kind can take the lead first.
             if (w.imag != 0) != self.oscillates:
                 return self.growth_gap(0, i)
         return None
@@ -78,10 +80,13 @@ class SpectrumSample:
         """
         first = 2 if self.oscillates else 1
         a, b = self.w[first : first + 2].tolist()
+        # Sum and product of two eigenvalues are smooth even where they become a pair; of one half of a pair
+        # they are not.
         if not (a.imag == b.imag == 0 or a.imag * b.imag < 0):
             return None
         slope_a, slope_b = self.slope[first : first + 2].tolist()
         leading_growth, slope = float(self.w[0].real), float(self.slope[0].real)
+        # For a pair this is the squared distance, for two real ones it is positive while both stay below.
         product = ((leading_growth - a) * (leading_growth - b)).real
         product_slope = (
             (slope - slope_a) * (leading_growth - b) + (leading_growth - a) * (slope - slope_b)
@@ -102,7 +107,9 @@ class SpectrumSample:
     def growth_gap_of_leading_pair(self) -> tuple[float, float]:
         """Returns (tau Re((w1 + w2)/2 - w3), derivative of this product with respect to p), tau:
         `relaxation_time`, for the first three eigenvalues w1, w2, w3."""
-        (first_gap, first_slope), (second_gap, second_slope) = self.growth_gap(0, 2), self.growth_gap(1, 2)
+        # Each of the two alone has an infinite slope at the double eigenvalue; their mean has not.
+        first_gap, first_slope = self.growth_gap(0, 2)
+        second_gap, second_slope = self.growth_gap(1, 2)
         return (first_gap + second_gap) / 2, (first_slope + second_slope) / 2
 
     def squared_frequency(self, i: int) -> tuple[float, float]:

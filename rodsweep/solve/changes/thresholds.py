@@ -45,6 +45,7 @@ class Thresholds:
 def solve_thresholds(rod: Rod, request: ThresholdsRequest) -> Thresholds:
     """All thresholds of `rod` for forces from 0 to `request.F_max`, or to just below the crushing force if
     smaller; a failure is returned as a status, never raised."""
+    # At the crushing force the axial stretch is 0 and the equations are singular.
     end = end_below_crushing(rod, request.F_max)
 
     def search() -> Thresholds:
@@ -68,12 +69,15 @@ def thresholds_with_status(
     accuracy. certify: whether a proof is requested. max_thresholds: maximum number of thresholds in the
     list."""
     status = ThresholdStatus.ok
+    # A part of the range that was not searched hides more than any other doubt, so it comes first.
     if result.ended_early:
         status = ThresholdStatus.ended_early
     elif not math.isnan(result.open_range[0]):
         status = ThresholdStatus.window_open
+    # Exceeds, because a search that fills the list exactly has found all that it holds.
     elif len(result.thresholds) > max_thresholds:
         status = ThresholdStatus.list_full
+    # A proof is checked last: an inaccurate list is worse than an unproved one.
     elif any(c.error > accuracy * abs(c.value) for c in result.thresholds):
         status = ThresholdStatus.accuracy_not_reached
     elif certify and not result.proved:
@@ -92,4 +96,5 @@ def warm_up() -> None:
 def filament_flutter_force() -> float:
     """Force, in k3/L^2, at which the filament (k1 = k2 = inf, gamma3 = 0) flutters (De Canio et al. 2017)."""
     result = find_thresholds(ParameterPath(Rod(F=0.0, k1=math.inf, k2=math.inf, gamma3=0.0), "F"), 0.0, 60.0)
+    # The onset of oscillation comes before flutter, so the first threshold is not the one wanted.
     return next(c.value for c in result.thresholds if c.kind == ThresholdKind.hopf)

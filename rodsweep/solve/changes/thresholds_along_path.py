@@ -84,6 +84,7 @@ class PathCrossings:
         if search_end.p == self.search_end.p:
             return self
         crossings = [c for c in self.crossings if self.path.coordinate(c.value) <= search_end.p]
+        # A gap that only begins before the end is kept: its part within the searched range is still open.
         gaps = [gap for gap in self.gaps if min(map(self.path.coordinate, gap)) <= search_end.p]
         return replace(self, crossings=crossings, gaps=gaps, search_end=search_end)
 

@@ -42,17 +42,20 @@ class ModeCounter:
 
     def count_at(self, value: float) -> int:
         """Number of unstable modes at the parameter value `value`, by the winding number; -1 if undecided."""
+        # Unstable modes are those to the right of the imaginary axis.
         number = self.problem.count_right_of(0.0, self.path.coordinate(value)).number
         return -1 if number is None else number
 
     def count_between(self, a: float, b: float) -> int:
         """Number of unstable modes at a position between the parameter values a and b, known already or by
         the winding number; -1 if the count is undecided at all positions tried."""
+        # For nonuniform arms the search for crossings has counted the modes of some rods already.
         known_count = self.problem.known_count_near_middle(
             *sorted((self.path.coordinate(a), self.path.coordinate(b)))
         )
         if known_count is not None:
             return known_count
+        # Near a pair almost on the axis a count is undecided, and another position may be farther from it.
         for fraction in UNSTABLE_MODE_COUNT_SETTINGS.count_positions:
             number = self.count_at(a + fraction * (b - a))
             if number >= 0:
@@ -63,6 +66,7 @@ class ModeCounter:
         """Number of unstable modes at `start`, or, if that count is undecided, at a position before all
         crossings `crossings`, all gaps and `stop`; -1 if undecided."""
         number = self.count_at(start)
+        # Up to the first crossing or gap the number cannot change, so any position there gives the count.
         first_position = min([stop, *(c.value for c in crossings), *(a for a, _ in self.gaps)])
         return number if number >= 0 else self.count_between(start, first_position)
 
@@ -79,10 +83,13 @@ class ModeCounter:
         start = parameter_ends[0]
         for crossing in ordered_thresholds:
             kind = crossing.kind
+            # Exchanges of the leading eigenvalue do not move an eigenvalue across the axis.
             if kind in (ThresholdKind.hopf, ThresholdKind.hopf_reverse):
                 unstable_count = self._count_before(start, crossing.value, unstable_count)
                 start = crossing.value
                 if unstable_count >= 0:
+                    # Eigenvalues cross in conjugate pairs, as the determinant is real for real w; none
+                    # crosses at w = 0.
                     unstable_count += 2 if kind == ThresholdKind.hopf else -2
                 if kind == ThresholdKind.hopf_reverse and unstable_count == 0:
                     kind = ThresholdKind.restabilization
@@ -97,8 +104,10 @@ class ModeCounter:
         if gaps_between:
             # A gap may hide crossings, so the modes are counted again after the gap.
             a = max(gap[1] for gap in gaps_between)
+        # Without gaps the directions of the crossings give the number; a count only confirms it.
         elif not self.certify:
             return unstable_count
+        # So close to two crossings their pairs are almost on the axis, and the count would be undecided.
         if b - a <= UNSTABLE_MODE_COUNT_SETTINGS.min_crossing_distance * abs(b):
             return -1 if gaps_between else unstable_count
         count = self.count_between(a, b)

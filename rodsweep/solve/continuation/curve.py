@@ -98,6 +98,7 @@ class StepControl:
     def require_small_errors(self, result: StepResult[Solution]) -> StepResult[Solution]:
         """The result `result` itself; raises Unsolvable if its prediction error or angle is so large that the
         solution may lie on another curve."""
+        # Negated, so that an error of nan is refused.
         if not result.prediction_error <= self.max_error:
             raise Unsolvable("the corrected solution is too far from its prediction")
         if not _angle(result.turn_cosine) <= self.max_angle:

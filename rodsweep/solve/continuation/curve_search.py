@@ -68,6 +68,7 @@ class CurveTracing(Generic[AnyCurve]):
     def traced_curves(self) -> TracedCurves[AnyCurve]:
         """All curves, with the largest distance of a seed point from its curve and the number of untraced
         seed points; valid if `missing_items` is empty."""
+        # Distances beyond the tolerance belong to seeds on no curve.
         seed_distances = [distance for distance in self.distances.values() if distance <= self.tolerance]
         return TracedCurves(
             tuple(self.curves), max(seed_distances, default=0.0), len(self.distances) - len(seed_distances)
@@ -92,6 +93,7 @@ def trace_all_curves(
             # curve.
             search.untried_seeds = [i for i in untraced if i != seed]
             break
+        # A seed whose own curve misses it would otherwise be chosen forever.
         tried_seeds.add(seed)
         curve = problem.curve(seed)
         if curve is None:
@@ -99,6 +101,7 @@ def trace_all_curves(
         for i, distance in search.distances.items():
             if distance > tolerance:
                 search.distances[i] = min(distance, problem.distance(curve, i))
+        # A seed just beyond the tolerance leads to a curve that is known already.
         if not any(problem.are_identical(curve, other) for other in search.curves):
             search.curves.append(curve)
     return search

@@ -179,6 +179,7 @@ def with_multipliers(cycle: CycleOutcome, refined: RefinedCycle) -> CycleOutcome
     """The outcome `cycle` with multipliers of the solved cycle `refined`: the largest modulus, the stored
     list (cut or padded; NO_MULTIPLIER replaces small multipliers), and their errors."""
     multipliers = padded_or_cut(refined.multipliers, MULTIPLIER_LIST_SETTINGS.length, NO_MULTIPLIER)
+    # Tiny multipliers consist of rounding errors, and would differ from run to run.
     multipliers[np.abs(multipliers) < MULTIPLIER_LIST_SETTINGS.min_modulus] = NO_MULTIPLIER
     return replace(
         cycle,

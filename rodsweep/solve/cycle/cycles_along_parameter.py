@@ -154,6 +154,7 @@ def predictor_from(solved: ConvergedOrbit, previous: CyclePredictor | None, name
         return CyclePredictor(orbit, np.zeros(1), np.ones(1), tangent[None])
     last_predictor = previous.on_mesh(mesh_of(orbit))
     # Earlier orbits have other meshes; only their tangents are interpolated to a new mesh.
+    # `on_mesh` returns the predictor itself if the mesh is the same.
     if last_predictor is not previous:
         return CyclePredictor(
             orbit, np.array([0.0, -step]), np.ones(2), np.array([tangent, last_predictor.normalised_tangent])
@@ -213,6 +214,7 @@ def orbit_in_steps(
 
     def step(length: float) -> StepResult[ConvergedOrbit]:
         end_fraction = fraction + length
+        # The last step ends exactly at the given rod, not at a rounded coordinate.
         form_at_end = (
             form if end_fraction >= 1.0 else form.with_coordinate(name, first + end_fraction * (last - first))
         )

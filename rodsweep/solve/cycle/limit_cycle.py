@@ -86,10 +86,12 @@ def _solve_cycle_or_raise(
     refined = None
     if neighbour is not None and parameter_name is not None:
         form = StressForm(rod, neighbour.predictor.orbit.form.mesh)
+        # A failed continuation is no failure of the point: the motion is integrated instead.
         with suppress(Unsolvable):
             refined = cycle_from_neighbour(neighbour, form, parameter_name, request.accuracy, workspace)
     elif neighbour is None and not request.is_recorded:
         refined = stable_cycle_near_hopf(_form_on_motion_mesh(rod), w, request, parameter_name, workspace)
+    # A motion ends at a stable cycle only; an unstable one is a hint for the integration below.
     if refined is not None and refined.verdict(request.accuracy)[0] == CycleStatus.cycle:
         cycle = with_cycle_quantities(replace(straight, status=CycleStatus.cycle), refined, request)
         return _with_neighbour(cycle, refined, neighbour, parameter_name, request.accuracy, stability)

@@ -26,6 +26,7 @@ def warm_up() -> None:
     rod = Rod(F=40.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0)
     request = REFERENCE_REQUEST
     cycle = solve_cycle(rod, request, None, "F")
+    # The second solve loads the code for the continuation along a chain.
     if cycle.neighbour is not None:
         solve_cycle(replace(rod, F=1.01 * rod.F), request, cycle.neighbour, "F")
     deviation = abs(cycle.measures.period / REFERENCE_PERIOD - 1)

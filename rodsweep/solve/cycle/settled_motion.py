@@ -42,6 +42,7 @@ class ReturnTimes:
         (k,), and duration: length of the run, both from the start of the run, in tau2."""
         for time in (self._elapsed + times).tolist():
             if self._last_return is not None:
+                # Several returns within a period of the leading mode would make the runs too short.
                 self.time_per_return = max(self.shortest, time - self._last_return)
             self._last_return = time
         self._elapsed += duration
@@ -70,6 +71,7 @@ class ReturnDistances:
                 min(max(distance, self.integration_error) / self.last, 1.0) ** period_ratio
             )
         elif isnan(self.last):
+            # A single distance above the error gives no rate; 1 stands for an unknown distance.
             self.contraction_rate = 0.0 if distance <= self.integration_error else 1.0
         if distance > self.integration_error:
             self._last_above_error = distance

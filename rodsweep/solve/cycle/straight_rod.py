@@ -58,6 +58,7 @@ class StraightRodStability:
     def stable(self) -> bool | None:
         """Whether all small motions about the straight rod decay; None if the growth rate is unknown or 0
         within its error."""
+        # The error estimate may be smaller than the rounding of w itself.
         margin = max(
             STRAIGHT_ROD_SETTINGS.min_axis_distance_in_errors * self.error,
             ROOT_SETTINGS.axis_tolerance * abs(self.w),
@@ -70,6 +71,7 @@ class StraightRodStability:
         eigenvalue is unknown."""
         if isnan(self.error):
             return default
+        # A sign within the error must not choose a time scheme or an end state.
         return 0.0 if self.stable is None else self.w.real
 
     @property
@@ -96,6 +98,7 @@ def straight_rod_stability(
     """
     forget_arm_determinants()  # made for the Hopf points of a line, on some ranks
     request = SpectrumRequest(1, STRAIGHT_ROD_SETTINGS.accuracy, certify)
+    # Following costs a few values of D, where a solve needs meshes.
     leading_w = (
         None
         if near_eigenvalues is None
@@ -107,6 +110,7 @@ def straight_rod_stability(
     if isnan(spectrum.error_estimate[0]):
         return StraightRodStability(complex(nan, nan), nan, spectrum.message)
     w = complex(spectrum.eigenvalues[0])
+    # Both eigenvalues of a pair lead; the upper one stands for them.
     return StraightRodStability(complex(w.real, abs(w.imag)), float(spectrum.error_estimate[0]))
 
 
@@ -123,6 +127,7 @@ def eigenvalues_to_follow(rod: Rod, stability: StraightRodStability) -> Complex:
             w, error = _leading_eigenvalues(rod, number)
             if not np.isfinite(w).all():
                 break
+            # With too few eigenvalues the proof fails at the next arm too, and a count would be needed there.
             if proves_leader(rod, w, error):
                 return w
             candidates.append(w)

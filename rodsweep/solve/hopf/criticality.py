@@ -59,6 +59,7 @@ def solve_criticality(rod: Rod, request: CriticalityRequest) -> Criticality:
         # Without gamma1 and the force: rods that differ only in these two share the search.
         path = ParameterPath(replace(rod.without_nonlinear_parameters, F=0.0), "F")
         hopf_points = _hopf_points(path, end, request.certify, request.max_hopf_points)
+        # The file has no room for further normal forms.
         coefficients = tuple(
             _coefficients(rod, hopf, request) for hopf in hopf_points.thresholds[: request.max_hopf_points]
         )

@@ -176,6 +176,7 @@ def _coefficients_with_errors(
 
 def _eigenvalue_derivatives(rod: Rod, w: complex) -> tuple[complex, float]:
     """Returns (dw/dF, |d^2w/dF^2|) of the root near w of the determinant D of `rod`."""
+    # A one-sided difference suffices: the second derivative only enters error estimates.
     step = HOPF_COEFFICIENT_SETTINGS.relative_force_step * abs(rod.F)
     problem = path_problem(ParameterPath(rod, "F"))
     _, slope, _ = problem.eigenvalue(w, rod.F)

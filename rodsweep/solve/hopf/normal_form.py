@@ -130,6 +130,7 @@ def normal_form(form: MixedForm, guess: complex) -> NormalForm:
     w, q, p = _eigenvalue_and_modes(transverse, guess)
     # The mode is transverse, so its quadratic fields are longitudinal: the opposite blocks are not needed.
     h20 = -longitudinal.lu_factors(2j * w.imag).solve(form.bilinear(q, q))
+    # Everything is real at the shift 0, but the solver is complex.
     h11 = -longitudinal.lu_factors(0).solve(form.bilinear(q, q.conj())).real
     c = np.vdot(p, form.bilinear(q.conj(), h20) / 2 + form.bilinear(q, h11))
     if form.law_derivatives.is_nonlinear:
@@ -207,6 +208,7 @@ def _eigenvalue_and_modes(
     docstring. Two-sided inverse iteration, shifted by the Rayleigh quotient. Raises Unsolvable."""
     w = complex(guess)
     for _ in range(NORMAL_FORM_SETTINGS.max_shifts):
+        # At the eigenvalue itself the matrix would be singular.
         shift = w * (1 + NORMAL_FORM_SETTINGS.shift_offset)
         factors = elements.lu_factors(shift)
         # Odd unknowns are transverse. The longitudinal unknowns start at 0 and remain 0.

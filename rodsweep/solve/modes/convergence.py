@@ -91,6 +91,7 @@ def _with_errors_from_coarse(coarse: ModeVectors, fine: ModeVectors, separations
     for coarse_field, fine_field in pairs:
         field_size = np.abs(fine_field).max(axis=2)
         field_change = np.abs(fine_field - coarse_field).max(axis=2)
+        # The inner where keeps the quotient that is not used from being 0/0.
         relative_change = np.where(
             field_size > 0, field_change / np.where(field_size > 0, field_size, 1.0), field_change
         )
@@ -114,4 +115,5 @@ def eigenvalue_separation(rod: Rod, w: complex) -> float:
     determinant = arm_determinant(rod)
     value = determinant.value(w)
     D_ww = abs(second_derivative(w, value.log_scale, determinant))
+    # The smallest positive number makes the distance infinite instead of dividing by 0.
     return 2 * abs(value.D_w) / max(D_ww, ulp(0.0))

@@ -77,6 +77,7 @@ def mode_vectors(rod: Rod, pencil: AnyPencil, eigenvalues: Complex, points: Arra
         nan_mode_vectors(Resolution(form.mesh.element_count, form.mesh.order), len(eigenvalues), len(points)),
         right_modes=np.stack([(evaluation @ field).T for field in form.displacements(X)]),
         mode_strains=form.strains(X, points),
+        # Z are left vectors for w; the adjoint modes belong to the conjugate of w, hence the conjugates.
         left_modes=np.stack([(evaluation @ field).T for field in form.displacements(Z.conj())]),
         pairing=pairing,
         condition=norms[0] * norms[1] / np.abs(pairing),

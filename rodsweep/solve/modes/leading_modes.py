@@ -85,6 +85,7 @@ def solve_modes(rod: Rod, request: ModesRequest) -> Modes:
         seconds=spectrum.seconds,
         message=spectrum.message,
     )
+    # Without all eigenvalues no mode can be refined, and the status of the spectrum says why.
     if not np.isfinite(spectrum.eigenvalues).all():
         return outcome
     modes = outcome_or_failure(
@@ -105,9 +106,11 @@ def _modes_by_equivalent_rod(rod: Rod, request: ModesRequest) -> Modes:
         spectrum=replace(
             spectrum, eigenvalues=rate * spectrum.eigenvalues, error_estimate=rate * spectrum.error_estimate
         ),
+        # The modes themselves are equal, as only the unit of time differs.
         vectors=replace(modes_of_linear.vectors, rounding=rate * modes_of_linear.vectors.rounding),
         growth=replace(
             growth,
+            # Rates are multiplied by `rate`, times are divided.
             transient_time=growth.transient_time / rate,
             numerical_abscissa=rate * growth.numerical_abscissa,
             abscissa_error=rate * growth.abscissa_error,
@@ -119,6 +122,7 @@ def _with_modes(rod: Rod, request: ModesRequest, outcome: Modes) -> Modes:
     """`outcome` with modes and, if requested, transient growth. The status changes if no mesh small enough
     resolves the modes, or if the largest error exceeds the accuracy."""
     spectrum = outcome.spectrum
+    # The mesh must resolve the shortest wave of all modes.
     max_q = max(eigenfunction_wave_number(rod, complex(w)) for w in spectrum.eigenvalues)
     points = lobatto_points(request.node_count)
     vectors = converged_modes(rod, spectrum.eigenvalues, points, max_q, request.accuracy)
@@ -138,12 +142,14 @@ def _with_modes(rod: Rod, request: ModesRequest, outcome: Modes) -> Modes:
             spectrum.eigenvalues.real
             > LEADING_MODE_SETTINGS.min_growth_rate_over_error * spectrum.error_estimate
         ).any()
+        # An eigenvalue on the axis within its error neither decays nor grows for certain.
         is_proved = spectrum.status != SpectrumStatus.undecided
         is_stable = True if is_proved else None
         if is_growing or spectrum.unstable_count > 0:
             is_stable = False
         growth = growth_of(rod, mesh, request.accuracy, is_stable, abs_w)
         errors |= growth.errors_by_name(abs_w)
+        # With the stability undecided, the growth may be infinite, so its error is unknown.
         result = replace(
             result, growth=growth if is_stable is not None else replace(growth, growth_error=nan)
         )

@@ -69,6 +69,7 @@ def maximum_propagator_norm(
     low, high = time_range
     time_count = max(2, int(np.ceil(np.log(high / low) / np.log(settings.first_grid_ratio))) + 1)
     times = np.geomspace(low, high, time_count, dtype=np.float64)
+    # The ends are set exactly, since `geomspace` rounds them.
     times[[0, -1]] = time_range
     squared_norms, curvatures = _squared_norms_and_curvature_bounds(propagator, times)
     i = int(squared_norms.argmax())
@@ -83,6 +84,7 @@ def maximum_propagator_norm(
         bound = np.sqrt(_squared_norm_bound(h, left, right, curvature, abscissa))
         sufficient_bound = max(maximum[0], min_norm) * (1 + tolerance)
         is_open = bound > sufficient_bound
+        # Intervals that are given up still bound the norm from above, if loosely.
         is_abandoned = halving == settings.max_halvings or int(is_open.sum()) > settings.max_open_intervals
         upper_bound = max(upper_bound, bound[~is_open | is_abandoned].max(initial=0.0))
         if is_abandoned or not is_open.any():

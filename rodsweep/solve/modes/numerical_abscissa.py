@@ -50,6 +50,7 @@ def numerical_abscissa(rod: Rod, pencil: AnyPencil) -> float:
     shift = bound + 1 if bound < inf else rod.F**2 + 1
     for _ in range(settings.max_shifts):
         H = shifted_inverse(A, B, shift)
+        # H is symmetric but for rounding errors, and `eigvalsh` would read only one of its triangles.
         eigenvalues = np.linalg.eigvalsh((H + H.T) / 2)
         # A positive eigenvalue: an eigenvalue of the operator lies above the shift.
         if eigenvalues[-1] > -settings.min_positive_ratio * eigenvalues[0]:

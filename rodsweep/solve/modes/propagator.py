@@ -69,9 +69,11 @@ class Propagator:
         # G is the inverse of L: its eigenvalues near 0 are the infinite eigenvalues of the pencil, which
         # carry no dynamics.
         w = 1 / values[finite]
+        # `lexsort` sorts by its last key first.
         order = np.lexsort((-w.imag, -w.real))
         self.w: Complex = w[order].astype(complex)
         self.right = right_vectors[:, finite[order]]
+        # The rows of the inverse are left eigenvectors in the order of the right ones.
         self.left = np.linalg.inv(right_vectors)[finite[order]].T
         self.generator: Array = np.zeros((0, 0))
         self.overlap: Array = np.zeros((0, 0))

@@ -166,6 +166,7 @@ def transient_growth(
             peak = maximum_propagator_norm(fine, (first_time, end_time), abscissa, maximum[0], tolerance)
             maximum = max(maximum, (peak.norm, peak.time))
             upper_bound = max(upper_bound, peak.upper_bound)
+        # With more modes, only the times before the present first time are left to search.
         end_time = first_time
         # |exp(L t)| <= exp(abscissa t) bounds the growth over the early times that the modes do not resolve.
         early_bound = exp(min(abscissa * first_time, NORM_MAXIMUM_SETTINGS.max_exponent))

@@ -180,6 +180,7 @@ class CallbackWorkspace:
         self._set_context_fields(
             {"small_error": tolerance * norm_per_rms, "rounding": rounding_size * norm_per_rms}
         )
+        # Frees steps that an interrupted run has left.
         take_steps(self.context)
 
     def set_extrapolation_points(self, arkimex_type: str) -> None:

@@ -110,6 +110,7 @@ def rod_of(c: Any) -> NodalRod:
     drag = double_array_at(c.drag, (d, m))
     mobility = double_array_at(c.mobility, (d, m))
     laplacian = double_array_at(c.mobility_laplacian, (d, m, m))
+    # A view of length 0, because an empty array would be allocated at every call.
     empty = integers_at(c.rest_strain, 0)
     jumps = integers_at(c.jumps, c.jump_count)
     sides = double_array_at(c.jump_sides, (c.jump_count, 2, CONSTANTS_PER_JUMP_SIDE))

@@ -65,6 +65,7 @@ def bent_state_with_tip_at(system: ExplicitSystem, x: float, y: float) -> Array:
     fraction_step = FIXED_TIP_SETTINGS.first_step_fraction
     while solved_fraction < 1 and fraction_step > FIXED_TIP_SETTINGS.min_step_fraction:
         fraction = min(1.0, solved_fraction + fraction_step)
+        # In polar coordinates the path of targets does not pass through the clamp.
         radius, angle = start_radius_and_angle + fraction * (end_radius_and_angle - start_radius_and_angle)
         solution = bending.newton_to_target(Pi, force, radius * np.array([np.cos(angle), np.sin(angle)]))
         if solution is None:

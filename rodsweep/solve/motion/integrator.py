@@ -162,6 +162,7 @@ class Integrator:
         ts = self.ts
         scheme = self.scheme
         self._limit = limit
+        # A state of 0 would make all tolerances 0.
         state_size = float(np.abs(z).max()) or 1.0
         self.vector.array_w[:] = z
         ts.setTolerances(rtol=0.0, atol=scheme.tolerance * state_size)
@@ -174,6 +175,7 @@ class Integrator:
         ts.setMaxTime(duration)
         ts.setMaxSteps(limit.max_steps)
         ts.setTimeStep(first_step or INTEGRATOR_SETTINGS.first_step_ratio * duration)
+        # The first step must not extrapolate from an earlier run.
         ts.restartStep()
         ts.setConvergedReason(PETSc.TS.ConvergedReason.CONVERGED_ITERATING)
         if limit.is_reached is None:

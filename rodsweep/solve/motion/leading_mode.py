@@ -44,5 +44,8 @@ def leading_mode(system: ExplicitSystem) -> LeadingMode:
     real, imag = (system.transverse_velocities(rest_state, part) for part in (z.real, z.imag))
     tip = complex(real[-1], imag[-1])
     min_tip = float(np.hypot(real, imag).max()) / MAX_DEFLECTION
-    tip_scale = tip if abs(tip) >= min_tip else min_tip * (tip / abs(tip) if tip else 1.0)
-    return LeadingMode(complex(eigenvalues[leading_index]), z / tip_scale)
+    # A tip near a node of the mode would scale the deflection elsewhere without limit.
+    if abs(tip) < min_tip:
+        phase = tip / abs(tip) if tip else 1.0
+        tip = min_tip * phase
+    return LeadingMode(complex(eigenvalues[leading_index]), z / tip)

@@ -61,6 +61,7 @@ def store_step(c: Any, scratch: int, ts: int) -> int:
     row[0] = doubles_at(scratch, 1)[0]
     row[1:] = z
     release_read(outputs[1], scratch + 16)
+    # A state that has left the model is stored too: the message states its h1.
     c.stored += 1
     # z1 is the first of three fields; h1 = 0 where z1 equals `crushed`.
     nodes = n // 3
@@ -97,6 +98,7 @@ def take_steps(context: Any) -> Array:
     row_count = int(context["stored"])
     column_count = int(context["unknowns"]) + 1
     rows = _copied_rows(address, row_count, column_count) if row_count else np.empty((0, column_count))
+    # Freeing the address 0, of a run without steps, does nothing.
     _free_address(address)
     context["rows"] = context["stored"] = context["capacity"] = 0
     return rows

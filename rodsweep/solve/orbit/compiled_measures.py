@@ -81,6 +81,7 @@ def tip_path(states: Array, time_scales: Array, p: OrbitEquations, m: TipMatrice
     rates = np.empty((3, len(states), size))
     write_node_stresses(states, S)
     write_strain_rates(states, rates, p)
+    # The series is in the mesh time in periods, so dE/dt is multiplied by dt/dtau.
     for a in range(len(rates)):
         for k in range(len(states)):
             for i in range(size):
@@ -158,6 +159,7 @@ def write_strain_rates(states: Array, out: Array, p: OrbitEquations) -> None:
         for a in range(3):
             for i in range(size - 1):
                 out[a, k, i] = G[a, i] / p.node_matrices.weights[i]
+            # The strain at the tip is constant, as the stress there is prescribed.
             out[a, k, size - 1] = 0.0
 
 

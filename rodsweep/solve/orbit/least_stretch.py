@@ -41,6 +41,7 @@ def least_stretch_between_nodes(motion: "CycleMotion", nodal_minimum: float) -> 
     `safe_nodal_stretch`, else the smallest sampled value if it exceeds `safe_sampled_stretch`, else the
     minimum found by a search around the position of the smallest sampled value.
     """
+    # Negated, so that nan is returned without a search.
     if not nodal_minimum <= LEAST_STRETCH_SETTINGS.safe_nodal_stretch:
         return nodal_minimum
     return min(nodal_minimum, least_stretch(motion, LEAST_STRETCH_SETTINGS.safe_sampled_stretch))
@@ -64,6 +65,7 @@ def least_stretch(motion: "CycleMotion", safe_stretch: float = inf) -> float:
     def least_at(u: Array) -> Array:
         return least_of_series(c @ mesh.one_sided_evaluation_matrix(u).T)
 
+    # A position at a jump belongs to the element on its right, so both sides are taken from the nodes.
     left_indices = [index_before_jump(int(node), mesh.element_nodes) for node in form.nodal_rod.jumps]
     jump_minimum = float(
         least_of_series(c[:, left_indices + [index + 1 for index in left_indices]]).min(initial=inf)

@@ -28,6 +28,7 @@ def mesh_from_tails(orbit: Orbit, accuracy: float, stage_count: int) -> OrbitMes
     `max_interval_ratio`."""
     current_mesh = mesh_of(orbit)
     tails = tails_of(orbit)
+    # The errors are quadratic in the tails, hence the square roots.
     max_space_tail = (
         ORBIT_MESH_SETTINGS.accuracy_fraction * accuracy / ORBIT_MESH_SETTINGS.space_error_factor
     ) ** 0.5
@@ -65,6 +66,7 @@ def grading_and_interval_ratio(orbit: Orbit, max_tail: float, stage_count: int) 
         stage_count / orbit.stage_count
     )
     edges = np.append(0.0, np.cumsum(interval_lengths(*orbit.time_mesh[::2])))
+    # The tip turns twice a period: once in a solved half, twice in a whole period.
     fitted = fitted_grading(tails, edges, stage_count, 2 // orbit.symmetry.period_parts)
     middles = (edges[1:] + edges[:-1]) / 2
     full_lengths = np.diff(edges) * (orbit.interval_count - 1)
@@ -88,6 +90,7 @@ def regraded(mesh: OrbitMesh, orbit: Orbit) -> OrbitMesh:
     )
     if interval_ratio > ORBIT_MESH_SETTINGS.max_regraded_ratio or grading == mesh.grading:
         return mesh
+    # One more interval, because the last two have half the length.
     interval_count = max(ORBIT_MESH_SETTINGS.min_intervals, ceil(interval_ratio * mesh.full_intervals) + 1)
     return replace(mesh, interval_count=interval_count, grading=grading)
 

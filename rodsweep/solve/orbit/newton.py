@@ -99,6 +99,7 @@ def newton(
         matrix_distance += damping_factor * change
         if not orbit.period > 0:
             raise Unsolvable("Newton's method for the cycle diverges: the period is not positive")
+        # The matrix is new if this step is the first one made with it.
         is_matrix_new = matrix_distance == damping_factor * change
         # Expected error after this step: quadratic in the step if the matrix is new, otherwise by the ratio
         # of the last two steps.

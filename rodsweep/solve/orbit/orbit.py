@@ -73,6 +73,7 @@ class Orbit:
     @property
     def states_at_interval_starts(self) -> Array:
         """States at the starts of the intervals, (K, n)."""
+        # The last stage of an interval is the start of the next.
         return self.all_states[: -1 : self.stage_count]
 
     @property
@@ -191,6 +192,7 @@ def interval_lengths(interval_count: int, grading: TimeGrading = UNIFORM_TIME) -
     lengths = np.append(np.ones(interval_count - 2), (0.5, 0.5)) / (interval_count - 1)
     if grading.is_uniform:
         return lengths
+    # The last edge is exactly 1, not a rounded sum.
     edges = np.append(np.append(0.0, np.cumsum(lengths[:-1])), 1.0)
     return np.diff(grading.times(edges))
 

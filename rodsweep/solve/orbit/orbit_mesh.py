@@ -142,6 +142,7 @@ class OrbitMesh:
         order, interval_count, stage_count = map(int, counts)
         grading = TimeGrading(float(amplitudes[0]), float(amplitudes[1]), int(harmonic))
         edges, ratios = (tuple(part.tolist()) for part in np.split(positions, [len(positions) // 2 + 1]))
+        # Orders that are all equal are stored as no ratios, because equal meshes must compare equal.
         return cls(edges, order, interval_count, stage_count, () if min(ratios) == 1 else ratios, grading)
 
     @property

@@ -83,6 +83,7 @@ class TimeGrading:
             return times
         lower = np.zeros_like(times)
         upper = np.ones_like(times)
+        # After a few bisections Newton's method converges for every allowed amplitude.
         for _ in range(TIME_GRADING_SETTINGS.bisections):
             middle = (lower + upper) / 2
             is_below = self.times(middle) < times

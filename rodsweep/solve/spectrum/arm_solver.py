@@ -26,12 +26,15 @@ class ArmSolver(ShiftInvertSolver):
 
     def load(self, rod: Rod, shift: float) -> LoadedPencil:
         self.matrices = matrices = self.pencil.matrices(rod)
+        # One sum tests all entries at once: inf or nan anywhere makes it non-finite.
         if not np.isfinite(matrices.A.sum() + matrices.B.sum() + shift):
             raise FloatingPointError(
                 "with these parameters matrix entries exceed the largest floating-point number"
             )
+        # B is diagonal, so the column of each entry is the number of its row.
         self.B.setValuesCSR(self.row_starts, self.row_starts[:-1], matrices.B)
         self.B.assemble()
+        # The matrices stay unshifted, as the displacements are computed from them later.
         values = matrices.A.copy()
         values[self.is_diagonal_entry] -= shift * matrices.B
         if self.is_dense:

@@ -105,6 +105,7 @@ def candidates_on_mesh(
         mesh_eigenvalues = solver.solve(problem.rod, problem.shift, requested_count, to_rounding)
         vectors = solver.vectors(len(mesh_eigenvalues)) if needs_vectors else None
     except PETSC_ERRORS as error:
+        # After an error inside PETSc its objects are unusable.
         destroy_pooled_solvers()
         failure = cause_of(error)
     kept_roots = problem.refined_roots(
@@ -120,11 +121,13 @@ def compare_with_count(problem: TransverseProblem, roots: Roots, mode_count: int
     eigenvalues."""
     w: Any = roots.w.tolist()  # for so few numbers Python is faster than NumPy
     errors: Any = roots.error.tolist()
+    # A proof is far cheaper than a count, so it is tried first.
     line = line_for_proof(w[mode_count - 1], errors[mode_count - 1])
     is_complete, evaluations = problem.prove_completeness(line, roots)
     if is_complete:
         found_count, is_line_clear = _count_right_of(line, w, errors)
         return CountComparison(EigenvalueCount(found_count, evaluations), found_count, is_line_clear)
+    # A count fails close to an eigenvalue that is not among those found; another line may be free.
     for line in lines_for_count(w, mode_count):
         count = problem.count(line, roots)
         if count.number is not None:
@@ -162,16 +165,20 @@ def lines_for_count(w: list[complex], mode_count: int) -> list[float]:
     wide_gap_ratio = (
         CANDIDATE_SETTINGS.wide_gap_if_unstable if w[0].real > 0 else CANDIDATE_SETTINGS.wide_gap_ratio
     )
+    # Left of the imaginary axis too, so that one count also gives the number of unstable modes.
     rightmost_end = min(w[mode_count - 1].real, 0.0)
     real_parts = [rightmost_end] + [value.real for value in w if value.real < rightmost_end]
     gaps = []
     for right, left in zip(real_parts[:-1], real_parts[1:], strict=True):
+        # Relative, because the spacing of the eigenvalues grows with their moduli.
         width = (right - left) / abs(left)
         if width > CANDIDATE_SETTINGS.min_gap_ratio:
+            # Wider gaps count as equal, because eigenvalues far to the left converge last.
             gaps.append((min(width, wide_gap_ratio), (left + right) / 2))
     gaps.sort(key=lambda gap: -gap[0])  # stable sort: the first wide gap stays first
     last_real_part = real_parts[-1]
     last_line = last_real_part - CANDIDATE_SETTINGS.last_line_distance_ratio * (
+        # If all found eigenvalues grow, the line must still lie left of the axis.
         abs(w[-1]) if last_real_part < 0 else abs(w[0].real) + 1.0
     )
     return [*(middle for _, middle in gaps[: CANDIDATE_SETTINGS.max_count_lines - 1]), last_line]

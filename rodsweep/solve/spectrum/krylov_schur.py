@@ -40,23 +40,27 @@ class UniformSolver(ShiftInvertSolver):
         super().__init__(self.pencil, self.pencil.nodal_masses)
         if self.is_dense:
             self.dense_terms = self.pencil.dense_terms()
+        # No rod has this drag, so the first load writes B.
         self.loaded_gamma3 = -1.0
         self.mass_diagonal: Array = np.ones(self.pencil.unknown_count)
 
     def load(self, rod: Rod, shift: float) -> LoadedPencil:
         rod, deflection_ratio = _equivalent_filament(rod)
+        # The filament's eigenvalues are those of the rod times this factor, and so is the shift.
         shift *= deflection_ratio**2
         coefficients = self.pencil.term_coefficients(rod)
         if not math.isfinite(coefficients.sum() + shift):
             raise FloatingPointError(
                 "with these parameters matrix entries exceed the largest floating-point number"
             )
+        # B depends on this drag only, so most rods of a sweep keep it.
         if rod.rotational_drag != self.loaded_gamma3:
             self.loaded_gamma3 = rod.rotational_drag
             self.mass_diagonal = self.pencil.mass_diagonal(rod)
             self.B.setValuesCSR(self.row_starts, self.row_starts[:-1], self.mass_diagonal)
             self.B.assemble()
         if self.is_dense:
+            # PETSc stores dense matrices by columns, so the array is written transposed.
             _write_shifted_matrix(
                 self.A.getDenseArray().T, coefficients, self.dense_terms, shift * self.mass_diagonal
             )

@@ -142,6 +142,7 @@ class ArmProblem(TransverseProblem):
             COMPLETENESS_SETTINGS.additional_eigenvalues if modes_to_prove and self.has_bound else 0
         )
         growth, _ = most_amplified_local_waves(rod)
+        # So far right that the eigenvalues nearest to it are mostly the rightmost.
         self.shift = KRYLOV_SETTINGS.shift_over_growth_rate * float(growth.max())
 
     def move_shift_right(self) -> None:
@@ -157,6 +158,7 @@ class ArmProblem(TransverseProblem):
         """Roots of D refined from `mesh_eigenvalues`, (n,); if a proof is requested, and until one fails,
         only from the eigenvalues that the proof needs."""
         needed_mask, max_abs_w = self._eigenvalues_for_proof(mesh_eigenvalues)
+        # Infinite values are dropped by the refinement; all others keep their indices.
         return roots_of_arm(
             np.where(needed_mask, mesh_eigenvalues, np.inf), self._determinant, self._hull, max_q, max_abs_w
         )
@@ -187,6 +189,7 @@ class ArmProblem(TransverseProblem):
 
     def prove_completeness(self, line: float, roots: Roots) -> tuple[bool, int]:
         is_complete, evaluations = prove_complete(line, roots.w, roots.error, self._determinant, self._hull)
+        # The next mesh then refines all eigenvalues, as a count needs them.
         self._has_proof_failed |= not is_complete
         return is_complete, evaluations
 

@@ -201,10 +201,10 @@ class SpectrumSearch:
         if self.best is not None:
             return _best_spectrum(self.best, self.problem, self.request)
         if self.disagreement is not None:
-            counted, found_count = self.disagreement.count.number, self.disagreement.found_count
+            counted = self.disagreement.count.number
             reason = (
                 f"the winding number counts {counted} eigenvalues right of a vertical line, but the meshes "
-                f"give {found_count}"
+                f"give {self.disagreement.found_count}"
             )
             return failed_spectrum(SpectrumStatus.modes_missing, self.request, reason)
         if self.is_leader_unresolved:

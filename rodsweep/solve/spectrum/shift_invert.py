@@ -109,6 +109,7 @@ class ShiftInvertSolver(ABC):
         distance = (
             (1 - pattern.node_positions[1:]) * pattern.node_count / KRYLOV_SETTINGS.start_vector_width_ratio
         )
+        # Every mode moves the tip, so a vector concentrated there contains all of them.
         first[: pattern.node_count] = np.exp(-(distance**2)) * np.sqrt(mass)
         first[pattern.node_count : 2 * pattern.node_count] = (
             KRYLOV_SETTINGS.start_vector_rotation * first[: pattern.node_count]
@@ -130,6 +131,7 @@ class ShiftInvertSolver(ABC):
         eps.setTarget(0.0)
         spectral_transform = eps.getST()
         spectral_transform.setType(SLEPc.ST.Type.SINVERT)
+        # With the target 0, A itself is factorised, without a shifted copy.
         spectral_transform.setMatMode(SLEPc.ST.MatMode.INPLACE)
         ksp = spectral_transform.getKSP()
         ksp.setType(PETSc.KSP.Type.PREONLY)
@@ -167,8 +169,10 @@ class ShiftInvertSolver(ABC):
         tolerance = KRYLOV_SETTINGS.tight_tolerance if to_rounding else KRYLOV_SETTINGS.loose_tolerance
         vector_count = self.krylov_size_option or max(2 * requested_count, requested_count + spare_vectors)
         self.eps.setTolerances(self.tolerance_option or tolerance, KRYLOV_SETTINGS.max_restarts)
+        # Beyond the finite eigenvalues only the infinite ones remain, which shift-and-invert maps to 0.
         vector_count = min(vector_count, max_count + KRYLOV_SETTINGS.max_vectors_beyond_finite)
         self.eps.setDimensions(requested_count, vector_count, vector_count)
+        # A fixed start instead of SLEPc's random one gives the same bits in every run.
         self.eps.setInitialSpace(self.start_vector)
         self.eps.solve()
         converged_count = self.eps.getConverged()
@@ -182,6 +186,7 @@ class ShiftInvertSolver(ABC):
         for i in range(count):
             self.eps.getEigenvector(i, real, imag)
             X[:, i] = real.array + 1j * imag.array
+        # The solver works on the equivalent filament, whose deflection has another scale.
         X[: self.node_count] *= self.loaded_pencil.deflection_ratio
         real.destroy()
         imag.destroy()

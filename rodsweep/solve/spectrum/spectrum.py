@@ -109,6 +109,7 @@ def modes_at_lobatto_nodes(
         return None
     solver = problem.solver(mesh)
     y, theta = solver.displacements(vectors[:, : request.modes], problem.rod)
+    # Polynomials of the elements are evaluated exactly; interpolation between nodes would lose digits.
     evaluation_matrix = solver.pencil.evaluation_matrix(lobatto_points(request.vector_node_count))
     tip_factors = factors_to_unit_tip(y, theta)
     return np.stack([(evaluation_matrix @ y * tip_factors).T, (evaluation_matrix @ theta * tip_factors).T])
@@ -128,6 +129,7 @@ def spectrum_or_failure(solve: Callable[[], Spectrum], request: SpectrumRequest)
     """The spectrum that `solve` returns; a failure is returned as a status, never raised."""
 
     def failed(cause: str) -> Spectrum:
+        # A solver that failed may be left in a state in which its next solve fails too.
         destroy_pooled_solvers()
         return failed_spectrum(SpectrumStatus.failed, request, cause)
 

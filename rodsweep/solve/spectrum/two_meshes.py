@@ -63,6 +63,7 @@ def _spectrum_or_raise(rod: Rod, request: SpectrumRequest) -> Spectrum:
         mesh_accuracy(request.accuracy, needs_vectors=True) if request.vector_node_count else request.accuracy
     )
     mesh: AnyMesh = problem.mesh_for(modes, mesh_tolerance)
+    # Without D only a second mesh tells the error.
     coarser_eigenvalues = _leading_eigenvalues(problem, mesh, modes)
     best_spectrum: Spectrum | None = None
     smallest_error = math.inf
@@ -152,9 +153,11 @@ def _errors_between_meshes(w: Complex, coarser_w: Complex, rounding_scale: float
     of its two neighbours. Near a double eigenvalue the stated rounding errors are larger than elsewhere.
     """
     distances = np.abs(w[:, None] - coarser_w).min(axis=1) / np.abs(w)
+    # In a cluster the nearest eigenvalue of the coarser mesh may be a neighbour's, so neighbours count too.
     padded_distances = np.pad(distances, 1)
     max_distances = np.max([padded_distances[:-2], padded_distances[1:-1], padded_distances[2:]], axis=0)
     separations = np.abs(w[:, None] - w) + np.diag(np.full(len(w), np.inf))
+    # Close eigenvalues are ill-conditioned: near a double one an error is the root of the rounding.
     crowding_factor = np.sqrt(1 + np.abs(w) / separations.min(axis=1, initial=np.inf))
     errors: Array = TWO_MESH_SETTINGS.mesh_error_factor * max_distances * np.abs(
         w
@@ -174,6 +177,7 @@ def _spectrum_of_mesh(
     modes = request.modes
     is_accurate = bool((error[:modes] <= request.accuracy * np.abs(w[:modes])).all())
     vectors = None
+    # Eigenvectors of a mesh that is not accepted would be thrown away.
     if request.vector_node_count and is_accurate:
         vectors = problem.solver(mesh).vectors(len(w))[:, eigenvalues.indices]
     unstable_count = int((w.real > 0).sum())

@@ -44,6 +44,7 @@ def grid_of_arms(
     point.
     """
     arms, statuses = zip(*(_arm_or_status(arm_config, v) for v in arm_config.values_of_arms()), strict=True)
+    # The load is an axis of its own, as all loads on one arm share its search for flutter.
     loads = arm_config.quantity_axes[arm_config.load_key].array() if arm_config.load_key else np.zeros(1)
     grid = dict(zip(given_parameters, np.meshgrid(*given_parameters.values(), indexing="ij"), strict=True))
     shape = (len(arms), len(loads), next(iter(grid.values())).size if grid else 1)
@@ -52,10 +53,12 @@ def grid_of_arms(
     units = {name: _quantity_of_arms(arms, attrgetter(name)) for name in ARM_SCALES}
     forces = _unit_load_forces(arm_config, arms, grid.get("taper"), find_force)
     unit_load_F = np.vectorize(attrgetter("F"), otypes=[float])(forces)
+    # A copy, because a broadcast array cannot be written.
     codes = np.broadcast_to(_along_dimension(0, statuses), shape).copy()
     if arm_config.load_key in LOAD_OF_RATIO:
         codes = _with_flutter_codes(codes, unit_load_F)
     if arm_config.load:
+        # An arm that does not flutter has no load relative to flutter.
         table["F"] = np.where(np.isinf(unit_load_F), np.nan, unit_load_F) * _along_dimension(1, loads)
         if arm_config.load_key in LOAD_OF_RATIO:
             units[arm_config.load] = table["F"] * units[SCALE_NAME[arm_config.load]]
@@ -66,6 +69,7 @@ def grid_of_arms(
         if materials:
             ratios = _quantity_of_arms(arms, lambda arm: arm.crushing_force / arm.k1)
         is_crushed = np.broadcast_to(table["F"] >= CRUSHED_FORCE_RATIO * table["k1"] * ratios, shape)
+        # A reason found earlier stays: a crushing force means nothing for an arm outside the model.
         codes[(codes == SLENDER) & is_crushed] = CRUSHED
     if (codes != SLENDER).all():
         _refuse_grid_without_rods(arm_config, given_parameters, bool((codes == NO_FLUTTER).any()), forces)
@@ -107,6 +111,7 @@ def _unit_load_forces(
     )
     forces = np.empty((len(arms), 1, len(given_tapers)), object)
     for i, arm in enumerate(arms):
+        # Each taper is searched once, although it occurs in many combinations.
         force_by_taper = {
             taper: _unit_load_force(arm_config, arm, taper, find_force) for taper in set(given_tapers)
         }
@@ -156,6 +161,7 @@ def _refuse_grid_without_rods(
     """Raises ValueError with the reason why the rod model applies to no point. given_parameters: values,
     (n,), of the parameters that replace the arm's parameters, by name. has_arm_without_flutter: whether some
     arm does not flutter. forces: result of `_unit_load_forces`."""
+    # The first arm is made once more, because its own message is better than a general one.
     arm_config.arm_of(arm_config.first_values, with_load=True)
     for force in forces.ravel():
         if force.failure:

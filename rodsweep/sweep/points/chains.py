@@ -110,6 +110,7 @@ class ChainSolver:
             if self.stop:
                 return
             outcome, state = self.work.solve_from(index, state)
+            # A point is stored before its checkpoint: a killed run repeats a point rather than losing it.
             if self.missing[index]:
                 yield index, outcome
             if index != order[-1]:
@@ -121,9 +122,11 @@ class ChainSolver:
         of the points of the chain in the order of solution. The checkpoint is used if no point up to the
         checkpoint is missing; otherwise the chain starts again without an initial state."""
         checkpoint = self.checkpoints.read(chain_number)
+        # The grid may have been extended or reversed since the checkpoint was written.
         if checkpoint is None or checkpoint[0] not in order:
             return 0, None
         position = order.index(checkpoint[0]) + 1
+        # A missing point before the checkpoint can be reached only from the start of the chain.
         if self.missing[order[:position]].any():
             return 0, None
         return position, checkpoint[1]

@@ -30,12 +30,14 @@ def read_points(
     try:
         if path.exists() and not path.is_file():  # opening a pipe would wait for its other end
             raise InputError(f"parameters.points: {path} is not a file")
+        # Spreadsheet programs write a byte-order mark, which utf-8-sig removes.
         with path.open(newline="", encoding="utf-8-sig") as file:
             rows = csv.reader(_lines(file, path))
             header = [cell.strip() for cell in next(rows, [])]
             if sorted(header) != sorted(names):
                 raise InputError(f"{path}: {_header_fault(header)}; it must name {enumeration(names, 'and')}")
             columns = [array("d") for _ in header]  # a Python list would take eight times the memory
+            # Empty lines, as at the end of many files, are no points.
             for row in filter(None, rows):
                 numbers = _row_numbers(row, header, f"{path}, line {rows.line_num}", material)
                 for column, number in zip(columns, numbers, strict=True):
@@ -65,6 +67,7 @@ def _header_fault(header: list[str]) -> str:
 
 def _lines(file: TextIO, path: Path) -> Iterator[str]:
     """Yields the lines of a text file; raises InputError for a line of LONGEST_LINE characters or more."""
+    # A file without line breaks must not be read into memory as one line.
     while line := file.readline(LONGEST_LINE):
         if len(line) == LONGEST_LINE:
             raise InputError(
@@ -86,6 +89,7 @@ def _row_numbers(row: list[str], header: list[str], row_text: str, material: Rod
             raise InputError(f"{row_text}: {name} = {cell.strip()[:40]!r} is not a number") from None
     parameters: dict[str, Any] = {**NEUTRAL_VALUES, **dict(zip(header, numbers, strict=True))}
     try:
+        # The rod itself checks combinations such as F below k1, so that no rule is written twice.
         Rod(**parameters, material=material)
     except ValueError as error:
         raise InputError(f"{row_text}: {error}") from None

@@ -47,6 +47,7 @@ def rods_needing_flutter_force(
     from ...verdict.relative_load import rods_by_plane
 
     shapes = ((arm, taper) for arm in _unloaded_arms(arm_config) for taper in tapers)
+    # A mapping drops equal rods and keeps their order, which must be the same on all ranks.
     return list(dict.fromkeys(rod for arm, taper in shapes for rod, _ in rods_by_plane(arm, material, taper)))
 
 
@@ -85,6 +86,7 @@ def flutter_force_of_arm(
     flutter_force = inf
     for rod, scale in rods_by_plane(arm, material, taper):
         rod_force = flutter_forces[rod]
+        # The failed plane might have the smaller force, so the other plane alone proves nothing.
         if rod_force.failure:
             return rod_force
         flutter_force = min(flutter_force, rod_force.F * scale)

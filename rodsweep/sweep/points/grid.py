@@ -54,6 +54,7 @@ def points_of(config: Config, directory: Path, flutter_forces: FlutterForces | N
             forces = flutter_forces or {
                 rod: flutter_force_of_rod(rod) for rod in rods_for_flutter_forces(config)
             }
+            # The forces are solved once for all points, or were solved on several ranks before.
             find_flutter_force = partial(
                 flutter_force_of_arm, flutter_forces=forces, material=config.stated_rod_material
             )
@@ -81,10 +82,12 @@ def _crushing_codes(axes: dict[str, Array], material: RodMaterial) -> NDArray[np
         name: axes[name].reshape([-1 if axis_name == name else 1 for axis_name in axes]) for name in axes
     }
     ratios = material.relative_crushing_forces(columns.get("taper", np.ones(1)))
+    # The usual case, without an array for all points.
     if axes["F"].max() < axes["k1"].min() * ratios.min():
         return None
     shape = tuple(map(len, axes.values()))
     is_crushed = np.broadcast_to(CRUSHED_FORCE_RATIO * columns["k1"] * ratios <= columns["F"], shape).ravel()
+    # A grid of crushed rods only is refused elsewhere, with a message.
     return None if is_crushed.all() else np.where(is_crushed, CRUSHED, SLENDER).astype(np.int8)
 
 

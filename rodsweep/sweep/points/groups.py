@@ -76,6 +76,7 @@ class PointGroups:
         position_of_group, line = np.divmod(np.arange(*groups)[:, None], self.line_count)
         positions = position_of_group * GROUP_POINTS + np.arange(GROUP_POINTS)
         index = indices_along(self.shape, self.axis, line, positions)
+        # Positions beyond the end of a line are indices of other points.
         return (missing[index] & (positions < self.shape[self.axis])).sum(axis=1)
 
     def unsolved_ranges(self, missing: Sequence[IndexRange]) -> list[IndexRange]:

@@ -71,6 +71,7 @@ class Shard:
         own_ranges: list[IndexRange] = []
         for start, end in ranges:
             block_number = start // block_size
+            # The first block at or after `start` that belongs to this shard.
             block_number += (self.number - 1 - block_number) % self.shard_count
             while block_number * block_size < end:
                 own_ranges.append(

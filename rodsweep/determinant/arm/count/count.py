@@ -80,6 +80,7 @@ def count_right_of(
     if line >= hull.box(max(-line, 0.0))[0]:
         return EigenvalueCount(0, 0)
     known_w = known_w[errors < CONTOUR_SETTINGS.max_known_error_ratio * np.abs(known_w.real - line)]
+    # D divided by one factor of a pair would not be real on the real axis, and half a box would not suffice.
     known_w = known_w[has_conjugate(known_w)]
     height = np.maximum(np.abs(known_w.imag), abs(line))
     known_w = known_w[np.abs(known_w.real - line) < CONTOUR_SETTINGS.max_known_distance_ratio * height]
@@ -89,6 +90,7 @@ def count_right_of(
         return EigenvalueCount(None, lost.node_count, str(lost))
     except FloatingPointError as unresolved:
         return EigenvalueCount(None, 0, str(unresolved))
+    # D is real at both ends of the contour, on the real axis: the phase changes by a multiple of pi.
     count = round(phase_change / math.pi)
     if abs(phase_change / math.pi - count) > WINDING_SETTINGS.integer_tolerance:
         return EigenvalueCount(None, node_count, NO_INTEGER_MESSAGE)
@@ -136,6 +138,7 @@ def _phase_change(
     )
     first_node = phase_node(corners[0], known_w, trial_radii, hull, (samples[1], propagators))
     traversal = ContourTraversal(0, 0.0, 0.0, 1, first_node, 0.0, 0.0, 0.0)
+    # Compiled code cannot make propagators; it returns here whenever it needs others, and continues.
     while True:
         traversal = _continue_traversal(traversal, (corners, largest_w), known_w, hull, samples, propagators)
         if traversal.required_w_bound == 0:
@@ -163,6 +166,7 @@ def _continue_traversal(  # noqa: PLR0913, PLR0917 - state and constants of one 
     while side < len(corners) - 1:
         end = corners[side + 1]
         length = abs(end - corners[side])
+        # The comparison is exact because t is set to the length itself at a corner.
         if t == length:
             side, t, growth = side + 1, 0.0, 0.0
             continue
@@ -170,6 +174,7 @@ def _continue_traversal(  # noqa: PLR0913, PLR0917 - state and constants of one 
             return ContourTraversal(side, t, change, nodes, node, growth, step, math.inf)
         if step == 0:
             step = min(_overlapping_distance(node.valid_radius, growth), length - t)
+        # The last node of a side is the corner itself, where the next side starts, not a rounded sum.
         w = end if step == length - t else corners[side] + (end - corners[side]) / length * (t + step)
         unit = mean_wave_number_and_w_scale(w, samples[0])[1]
         first = CONTOUR_SETTINGS.first_radius_in_lengths * unit
@@ -181,6 +186,7 @@ def _continue_traversal(  # noqa: PLR0913, PLR0917 - state and constants of one 
             return ContourTraversal(side, t, change, nodes, node, growth, step, min_W)
         neighbour = phase_node(w, known_w, (unit, min(radius, level[0] - abs(w))), hull, (samples[1], level))
         nodes += 1
+        # A node that proves too far away still shows how fast the valid radius changes.
         growth = (neighbour.valid_radius - node.valid_radius) / step
         if abs(neighbour.w - node.w) < node.valid_radius + neighbour.valid_radius:
             change += _phase_between(node, neighbour, samples[1])
@@ -196,6 +202,7 @@ def _continue_traversal(  # noqa: PLR0913, PLR0917 - state and constants of one 
 def _is_lost(node: PhaseNode, node_count: int) -> bool:
     """Whether the phase is lost: the valid radius of the node is too small, or there are too many nodes."""
     min_radius = CONTOUR_SETTINGS.min_valid_radius_ratio * abs(node.w)
+    # Negated, so that a valid radius of nan counts as lost.
     return not node.valid_radius > min_radius or node_count > CONTOUR_SETTINGS.max_nodes
 
 

@@ -51,6 +51,7 @@ def modes_near_axis(determinant: ArmDeterminant, max_frequency: float, known_w: 
     eigenvalues = known_w[: NEAR_AXIS_SETTINGS.max_modes]
     height = NEAR_AXIS_SETTINGS.first_height
     while height < max_frequency:
+        # Newton's iterates move up by at most this ratio, so all of them stay within the propagators' W.
         W, propagators = determinant.propagators_for(
             (1 + NEAR_AXIS_SETTINGS.max_distance_ratio) * height, CONTOUR_SETTINGS.max_W_ratio
         )
@@ -96,6 +97,7 @@ def _mode_near(
         slope = value.D_w / value.D - dominant_exponent_slope(w, samples)
         for k in range(len(known_w)):
             slope -= 1 / (w - known_w[k]) if w != known_w[k] else 0j
+        # The step, 1/slope, would leave the neighbourhood of the starting point. Negated, to end at nan too.
         if not abs(slope) * NEAR_AXIS_SETTINGS.max_distance_ratio * guess.imag > 1:
             break
         step = 1 / slope

@@ -74,6 +74,7 @@ def sampled_point_indices(first_index: int, last_index: int) -> list[int]:
         first_index + (last_index - first_index) * k // step_count for k in range(1, step_count)
     ]
     middle = further_indices.pop(step_count // 2 - 1)
+    # The middle comes first because all other arms are compared with it.
     return [middle, first_index, last_index, *further_indices]
 
 
@@ -96,6 +97,7 @@ def proves_no_crossing(
     intervals = zip(hulls.a[overlaps].tolist(), hulls.c[overlaps].tolist(), strict=True)
     # Largest |Im w| right of the line in the hulls of all arms.
     top = max(EigenvalueHull(a, c).box(max(-line, 0.0))[1] for a, c in intervals)
+    # The upper half of the line suffices only if D stays real after the division by known eigenvalues.
     if not math.isfinite(top) or not all(has_conjugate(w_of_arm).all() for w_of_arm in w):
         return False
     samples = [ArmDeterminant(rod).gauss_samples for rod in rods]
@@ -110,6 +112,7 @@ def proves_no_crossing(
         (CONTOUR_SETTINGS.first_radius_in_lengths * scale, NO_CROSSING_SETTINGS.min_radius * scale),
         arms,
     )
+    # The family's propagators cost nothing here, but end at its W; arms with a higher line need others.
     if height < top and radius > 0:
         try:
             W = NO_CROSSING_SETTINGS.w_bound_ratio * abs(complex(line, top))
@@ -200,6 +203,7 @@ def _has_small_change(node: LineNode, radius: float, arm: int, arms: ArmsOfInter
         h = (node.L - node.exponent_and_slope[1]) * (v - node.w) + growth
         if node.exponent_and_slope[0] != 0:
             h += dominant_exponent(v, samples) - node.exponent_and_slope[0]
+        # The logarithms are added before exp: each exponential alone may overflow.
         ratio = D / node.D * cmath.exp(S - node.log_scale - h)
         for n in node.divided_indices:
             if _is_too_close_to_divide(v, arms.known_eigenvalues[arm, n], arms.known_errors[arm, n]):

@@ -70,19 +70,24 @@ def phase_node(
     for |v| <= W on the largest circle about w."""
     value = determinant_from_propagators(w, arm[1][0], arm[1][1])
     if not abs(value.D) > CONTOUR_SETTINGS.rounding_safety_factor * value.rounding_error:
+        # The sign of D is rounding here. A valid radius of 0 makes the traversal give up at this node.
         return PhaseNode(w, value.D, 0j, (0j, 0j), 0.0, 0.0)
     direction = value.D / abs(value.D)
     L = value.D_w / value.D
     for n in range(len(known_w)):
         difference = w - known_w[n]
+        # Multiplication by the conjugate of a unit vector divides by it.
         direction *= difference.conjugate() / abs(difference)
         L -= 1 / difference
     distance, normal = distance_and_normal(complex(w.real, abs(w.imag)), hull.a, hull.c)
     reach = 0.0
     if distance > 0:
+        # S is positive in exact arithmetic, but rounding of L can exceed it far away from all eigenvalues.
         S = max((normal * L).real, 0.0) / distance
+        # The r at which the bound S r^2/2/(1 - r/d)^2 of the module docstring equals the allowed error.
         reach = 1 / (1 / distance + math.sqrt(S / (2 * CONTOUR_SETTINGS.max_tangent_error)))
     node = PhaseNode(w, direction, L, (0j, 0j), reach, 0.0)
+    # The radius from the hull is proved and needs no further value of D, so it is used if it is long enough.
     return node if reach > trial_radii[0] else _node_inside(node, value, known_w, trial_radii, arm)
 
 
@@ -126,6 +131,7 @@ def _node_inside(
         if reach > best.valid_radius:
             best = PhaseNode(w, node.direction, node.L, wave, reach, rho)
         elif best.radius > 0:
+            # The valid radius has passed its maximum: smaller circles only make it smaller.
             break
         if best.radius > 0 and best.valid_radius >= target:
             break
@@ -136,6 +142,7 @@ def _node_inside(
 @compiled
 def _valid_radius(rho: float, M: float, excess: float) -> float:
     """Distance from w within which f changes by less than max_change |D|, if |f| <= M |D| at radius rho."""
+    # As f'(w) = 0, Cauchy's estimate is |f(v) - f(w)| <= M |D| r^2/(rho (rho - r)), solved here for r.
     q = excess / M
     return rho * (math.sqrt(q * q + 4 * q) - q) / 2 if q > 0 else 0.0
 

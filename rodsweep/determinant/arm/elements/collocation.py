@@ -161,6 +161,7 @@ def _fill_batch_terms(
         fill_drag_rates(W, coefficients, values, rates)
         _integrate(Q, rates[SM], values[SM])
         add_start_value(SM, start, values)
+        # theta^s and theta^m depend on each other, and so do y^theta and y^m: one of each pair is eliminated.
         add_theta_s_rates(F, start, coefficients, values, rates)
         _integrate_eliminated(matrices, rates[TS], values[TS])
         add_eliminated_start_value(TS, start, matrices, values)
@@ -176,6 +177,7 @@ def _fill_batch_terms(
         add_rates_by_y_theta(F, coefficients, values, rates)
         _integrate(Q, rates[YM], values[YM])
         add_start_value(YM, start, values)
+        # The rates are needed once more, with the complete y^m, for the value at the end of the element.
         fill_y_theta_rates(coefficients, values, rates)
         if _write_end_terms(weights, rates, n, terms):
             return n + 1

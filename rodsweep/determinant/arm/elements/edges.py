@@ -43,6 +43,7 @@ def element_edges(W: float, squares: Array, tapers: Array, points: Array, breaks
             while k < parts - 1 and integral + interval_density[k] * part < target:
                 integral += interval_density[k] * part
                 k += 1
+            # The minimum is needed where rounding puts the target just beyond the last part.
             edges.append(start + part * (k + min((target - integral) / (interval_density[k] * part), 1.0)))
         # Exactly on the break: beyond it the coefficients jump.
         edges.append(breaks[interval + 1])
@@ -61,6 +62,7 @@ def _elements_per_length(W: float, squares: Array, tapers: Array, points: Array)
             drag, load, rate, bend = squares[:, arm, i]
             waves = max(waves, drag * W + abs(load) + 2 * math.sqrt(W * (abs(rate) + bend * W)))
         density[i] = math.sqrt(waves) / ARM_ELEMENT_SETTINGS.max_exponent
+        # The smallest taper has the apex nearest to the tip, the largest the apex nearest to the clamp.
         for taper in (tapers.min(), tapers.max()):
             if taper != 1:
                 apex_position = 1 / (1 - taper)

@@ -56,6 +56,7 @@ def _solve_linear_system(system: Array, row_copy: Array) -> None:
         for j in range(columns):
             row_copy[j] = system[pivot_row, j] * scale
             system[pivot_row, j] = system[column, j]
+        # All other rows are reduced at once (Gauss-Jordan), without the short loops of a back substitution.
         for i in range(ARM_ELEMENT_SETTINGS.stages):
             factor = system[i, column]
             for j in range(columns):

@@ -62,6 +62,7 @@ def add_theta_s_rates(F: float, start: float, coefficients: Array, values: Array
     for i in range(ARM_ELEMENT_SETTINGS.stages):
         for c in range(ARM_ELEMENT_SETTINGS.width):
             rates[TS, i, c] -= coefficients[C3, i, c] * values[SM, i, c]
+        # The elimination leaves out the start value of theta^m, so its share of theta^s is added here.
         for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
             c = TM * ARM_ELEMENT_SETTINGS.lane_count + lane
             rates[TS, i, c] += F * start * coefficients[C3, i, c]

@@ -82,6 +82,7 @@ def averaged_regions(u: Array, coefficients: Array, F: float, only_smallest: boo
 @compiled
 def _with_points_where_window_ends_jump(u: Array, h: float) -> Array:
     """The points u of an arm, (points,), and two more near each u at the distance h from a jump; sorted."""
+    # Each jump adds at most four points: two window ends, with a point on either side of each.
     points = np.empty(5 * len(u))
     count = len(u)
     points[:count] = u
@@ -106,10 +107,12 @@ def _grid_positions(x: Array, grid: Array) -> GridPositions:
     fraction = np.empty(len(x))
     i = 0
     for n in range(len(x)):
+        # x increases, so the search continues where the last one ended.
         while i < len(grid) - 2 and grid[i + 1] < x[n]:
             i += 1
         width = grid[i + 1] - grid[i]
         interval[n] = i
+        # The two points at a jump may coincide.
         fraction[n] = min(max((x[n] - grid[i]) / width, 0.0), 1.0) if width > 0 else 0.0
     return GridPositions(interval, fraction)
 
@@ -151,6 +154,7 @@ def _write_regions_of_trial(
         A2 = slopes[i] ** 2 / (gamma2 * c2)
         B2 = F * F * alpha[i] * c3 / gamma2
         drag = gamma3 * alpha[i] * c2
+        # Without a load t nu equals g; the rounded difference must not be divided by a drag near 0.
         a2_clamp = max(a2_clamp, squared_block_norm(A2, B2, g - t[i] * nu if loads[i] > 0 else 0.0, drag))
         a2_drag = max(a2_drag, squared_block_norm(A2, B2, g - alpha[i] * nu, drag))
         if min(a2_clamp, a2_drag) > max_a2:

@@ -169,6 +169,7 @@ def _smallest_region(
     smallest = (inf, 0.0)
     if not (c2 > 0).any():  # then g = nu
         smallest = (sqrt(max_weighted_force), 0.0)
+    # The norm divides by the rotational drag.
     elif (gamma3 > 0).all():
         smallest = (sqrt(least_squared_norm(alphas, coefficients.reshape(6, -1), max_weighted_force)), 0.0)
     continuous = averaged.shape[1] == 0
@@ -176,8 +177,10 @@ def _smallest_region(
         for square in varying_weight_norms(F, lengths, coefficients, chebyshev.derivative):
             smallest = _smaller_region(smallest, (sqrt(square), 0.0), max_c)
     for trial in range(averaged.shape[1]):
+        # With the largest a and the largest c of all arms, the region contains the region of every arm.
         c = (1 + HULL_SETTINGS.enlargement_fraction) * averaged[:, trial, 1].max()
         smallest = _smaller_region(smallest, (averaged[:, trial, 0].max(), c), max_c)
+    # Where c2 = 0, g equals nu: only alpha = 1 keeps (g - alpha nu)^2/c2 finite.
     if not (c2 > 0).all():
         alphas = np.ones(1)
     integrals = clamp_integrals(alphas, F, lengths, coefficients, chebyshev.integral)

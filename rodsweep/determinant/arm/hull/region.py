@@ -77,6 +77,7 @@ def distance_and_normal(w: complex, a: float, c: float) -> tuple[float, complex]
     normal = 1 + 0j
     for k in range(HULL_SETTINGS.supporting_lines):
         # Close to the imaginary axis the support function grows without bound.
+        # Slopes of the normals from 0 to infinity, as many below 1 as above.
         T = (k / (HULL_SETTINGS.supporting_lines - k)) ** 2
         if not c * T < b:
             break

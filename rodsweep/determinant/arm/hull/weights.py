@@ -37,6 +37,7 @@ def trial_constant_weights(coefficients: Array) -> Array:
     coefficients, (6, n, pieces, points)."""
     ratio = np.abs(coefficients[5] / coefficients[0])
     start = log(max(ratio.min(), HULL_SETTINGS.min_weight))
+    # At least twice the smallest weight, so that the progression has a length even if all ratios are tiny.
     log_max = log(max(ratio.max(), 2 * HULL_SETTINGS.min_weight))
     alphas = np.ones(HULL_SETTINGS.constant_weight_count + 1)
     for k in range(HULL_SETTINGS.constant_weight_count):
@@ -69,6 +70,7 @@ def varying_weight_norms(F: Array, lengths: Array, coefficients: Array, derivati
                     slope = (derivative[i] @ log_alpha) * 2 / lengths[interval]
                     A2 = slope * slope / (gamma2 * c2)
                     B2 = F[arm] * F[arm] * alpha * c3 / gamma2
+                    # The difference g - alpha nu itself would cancel where the load is small.
                     e = alpha * level[i]  # g - alpha nu
                     squared_norms[m] = max(
                         squared_norms[m], squared_block_norm(A2, B2, e, gamma3 * alpha * c2)

@@ -51,6 +51,7 @@ class StoredPointMap:
         old_places = np.unravel_index(index, self.shape)
         places = [positions[i] for positions, i in zip(self.axis_positions, old_places, strict=True)]
         is_kept = np.min(places, axis=0) >= 0
+        # Positions of -1 are replaced only to keep the conversion valid.
         new_index = np.ravel_multi_index([np.maximum(positions, 0) for positions in places], self.new_shape)
         return np.where(is_kept, new_index, -1)
 
@@ -119,10 +120,8 @@ def extension_of(header: ResultHeader, points: Points, plan: FilePlan) -> Extens
             _refuse_difference(header, config_difference(value, new_value, f"parameters.{key}"))
     _refuse_difference(header, config_difference(in_file.get("arm"), requested.get("arm"), "parameters.arm"))
     other_keys = {*in_file, *requested} - {"task", "parameters", "arm", task, "together"}
-    stored, new_rest = (
-        {option: option_value for option, option_value in each.items() if option in other_keys}
-        for each in (in_file, requested)
-    )
+    stored = {option: value for option, value in in_file.items() if option in other_keys}
+    new_rest = {option: value for option, value in requested.items() if option in other_keys}
     _refuse_difference(header, config_difference(stored, new_rest))
     longer = []
     for name, value in in_file[task].items():
@@ -182,8 +181,10 @@ def _stored_point_map(header: ResultHeader, old: Points, plan: FilePlan) -> Stor
 def _positions_on_axis(header: ResultHeader, name: str, old: Array, new: Array) -> Indices:
     """Position of every old value, (n,), on the new axis, (m,); -1 where the values differ by rounding.
     Raises InputError for an old value that is not on the new axis."""
+    # Rounding moves a value to either side, so both neighbours are compared.
     above = np.searchsorted(new, old).clip(max=len(new) - 1)
     below = (above - 1).clip(min=0)
+    # An axis may contain inf, whose difference from itself is nan.
     with np.errstate(invalid="ignore"):
         nearest_indices = np.where(np.abs(new[below] - old) < np.abs(new[above] - old), below, above)
         distance = np.abs(new[nearest_indices] - old)

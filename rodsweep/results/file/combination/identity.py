@@ -46,6 +46,7 @@ def fingerprint_of(config: dict[str, Any], columns: Sequence[Array]) -> str:
         identity["over"] = parsed.parameters.arm_axes
     digest = sha256(json.dumps(identity, sort_keys=True).encode())
     for column in columns:
+        # The length keeps columns apart whose bytes, joined, would be equal.
         digest.update(len(column).to_bytes(8, "little"))
         # -0.0 becomes 0.0, so that equal values have equal bytes.
         digest.update(np.ascontiguousarray(column + 0.0).tobytes())

@@ -59,6 +59,7 @@ class BorderCondition:
         for _ in range(ORBIT_NEWTON_SETTINGS.max_iterations):
             report()
             change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate_unit)
+            # Negated, so that a step of nan ends the search too.
             if not change <= ORBIT_NEWTON_SETTINGS.max_relative_step:
                 raise Unsolvable(
                     "Newton's method for the cycle finds no cycle of the branch near the prediction"
@@ -76,6 +77,7 @@ class BorderCondition:
                 solved = self._with_matrix_error(orbit, matrix, matrix_distance, max_matrix_distance)
                 if solved is not None:
                     return solved
+            # Tangent and multipliers need a near matrix, so one step more follows even after convergence.
             if is_converged or (matrix_distance > change and not is_contracting):
                 matrix = BorderedMatrix(orbit, self.scale, workspace)
                 matrix_distance = 0.0

@@ -156,6 +156,7 @@ class _CorrectedSubspace:
             return None
         # Schur vectors of the ordered form; the first `count` span the invariant subspace.
         _, count, real_parts, imaginary_parts, right, _, _ = dgees(_is_corrected, small, sort_t=1)
+        # The left invariant subspace of a matrix is the right one of its transpose.
         _, left_count, _, _, left, _, _ = dgees(_is_corrected, small.T, sort_t=1)
         if count != left_count or count == 0:
             return None

@@ -214,6 +214,7 @@ class BorderedMatrix:
         n + 2,). sides: right-hand sides of the stages, (K, s, n). fraction: factor on `sides`.
         """
         n = len(self.orbit.start_state)
+        # The matrix is kept for other borders: only its last row differs from call to call.
         matrix = self._matrix.copy()
         matrix[-1, :n] = border[0] / self.scale.deflection_unit * deflection_functional(self.orbit)
         # The border acts on log T, whose derivative is 1/T.

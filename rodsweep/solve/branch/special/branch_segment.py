@@ -55,6 +55,7 @@ class BranchSegment:
             workspace,
             SPECIAL_POINT_SETTINGS.max_matrix_distance,
         )
+        # The tangent is corrected with the factors of the nearby cycle, so no second matrix is factorised.
         function = FoldFunction(bordered_matrix_of(solved), self.start.unit_tangent, False)
         correct_until_converged(function, solved.orbit)
         self._last_solved = length, solved.orbit, function.null_vectors

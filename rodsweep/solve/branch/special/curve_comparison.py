@@ -29,4 +29,5 @@ def _ends(curve: SpecialPointCurve, line_axis: PlaneAxis) -> list[tuple[float, f
     """Both ends of a curve, each as (row coordinate, position along the row), from 0 to 1, in ascending
     order."""
     ends = curve.points[0], curve.points[-1]
+    # Ordered, because two traces of one curve may run in opposite directions.
     return sorted((p.row_coordinate, line_axis.coordinate(p.parameter_value)) for p in ends)

@@ -56,6 +56,7 @@ def length_before_crushing(
         load = rod.material.crushing_ratio(values["F"], values["k1"], values["taper"])
         return 1 - margin / 2 - load
 
+    # Both ends on one side of the limit: there is no root between them for brentq.
     if distance(length) >= 0 or distance(0.0) <= 0:
         return length
     return float(brentq(distance, 0.0, length, rtol=tolerance))

@@ -138,12 +138,14 @@ class SpecialCurveProblem:
 
     def _length_before_crushing(self, points: Sequence[SolvedPoint], length: float) -> float:
         """The arc length `length`, shortened as in `length_before_crushing`."""
-        margin, tolerance = END_SETTINGS.crushing_margin, END_SETTINGS.crushing_tolerance
-        return length_before_crushing(self.roles, points, length, margin, tolerance)
+        return length_before_crushing(
+            self.roles, points, length, END_SETTINGS.crushing_margin, END_SETTINGS.crushing_tolerance
+        )
 
     def margins(self, point: SolvedPoint) -> Array:
         """Margins, (7,); the curve ends where a margin becomes 0: distances from the four edges, 1 -
         `RodMaterial.crushing_ratio` - `crushing`, smallest h1, largest tip y minus `min_amplitude`."""
+        # The edges belong to the plane, whichever parameter varies along the branch.
         plane_point = self.roles.in_plane(point)
         x = self.line_axis.coordinate(plane_point.parameter)
         y = plane_point.row_coordinate

@@ -64,6 +64,7 @@ class SecantSearch:
         self.orbit = family.orbit_at_row(start, row_coordinate)
         self.distance = 0.0
         self.previous: _SecantIterate | None = None
+        # All cycles of this search measure arc length along the border, from the same origin.
         self.start_arc_length = float(family.border @ family.scale.components(start))
         self.has_previous_point_derivatives = not is_other_mesh
         """Whether the derivatives come from the previous point of the curve."""
@@ -89,6 +90,7 @@ class SecantSearch:
         rates = self.derivatives
         # Without derivatives any small step suffices: the two cycles then give derivatives.
         step = -current.test_value / rates.test_slope if rates else CURVE_SECANT_SETTINGS.first_secant_step
+        # Negated, so that a step of nan is refused too.
         if not abs(step) <= CURVE_SECANT_SETTINGS.max_secant_step:
             raise Unsolvable(
                 "the secant step to a point of the curve is too large: the cycle from which it starts is too "
@@ -130,6 +132,7 @@ class SecantSearch:
         if self.has_previous_point_derivatives:
             # Along the curve a derivative changes more where the curvature is large.
             slope_error = CURVE_SECANT_SETTINGS.previous_point_slope_error * max(1.0, self.curvature)
+        # A wrong slope can at most make the whole step wrong.
         return min(slope_error, 1.0) * abs(step)
 
     def _is_accurate_enough(self, error: float) -> bool:
@@ -164,6 +167,7 @@ class SecantSearch:
         """Derivatives across the curve from the last cycle and the cycle `current`; None if `current` is the
         first cycle, or if the two cycles are too close or have equal test functions."""
         previous = self.previous
+        # Equal values would give a slope of 0, by which the next step is divided.
         if previous is None or current.test_value == previous.test_value:
             return None
         if abs(current.distance - previous.distance) < CURVE_SECANT_SETTINGS.min_cycle_distance:
@@ -176,6 +180,7 @@ class SecantSearch:
         change = current_orbit.form.rod.coordinate(name) - previous_orbit.form.rod.coordinate(name)
         orbit_derivative = np.append(current_orbit.values - previous_orbit.values, change) / span
         test_slope = (current.test_value - previous.test_value) / span
+        # A difference quotient is the derivative at the middle of its interval, to second order.
         self._update_relative_second_derivative((current.distance + previous.distance) / 2, test_slope)
         return NormalDerivatives(
             self.line.direction, test_slope, orbit_derivative, mesh_of(previous_orbit), abs(span)
@@ -195,6 +200,7 @@ class SecantSearch:
     def _predicted_orbit(self, step: float, derivatives: NormalDerivatives) -> Orbit:
         """The last cycle, moved by `step` across the curve along `derivatives`."""
         change = step * derivatives.orbit_derivative_on_mesh_of(self.orbit)
+        # The prediction also moves the cycle away from the orbit at which the matrix was assembled.
         self.nearby_solver.matrix_distance += relative_change(self.orbit, change[:-1])
         return moved_orbit(self.orbit, self.family.scale.parameter_name, change)
 
@@ -206,6 +212,7 @@ class SecantSearch:
         tangent = tangent_at(matrix.orbit, family.scale, family.border, matrix)
         row_coordinate = self.row_coordinate + (self.distance + step) * float(self.line.direction[1])
         orbit = family.orbit_at_row(self._predicted_orbit(step, derivatives), row_coordinate)
+        # The units follow the new orbit, but keep the lower limits that the family has.
         units = family.scale.min_deflection_unit, family.scale.min_coordinate_unit
         scale = ArcLengthScale.at_orbit(orbit, family.scale.parameter_name, *units)
         derivative = scale.directional_derivative(orbit, tangent)
@@ -229,4 +236,5 @@ class SecantSearch:
         displacement = parameter.value(
             coordinate + distance * float(rates.orbit_derivative[-1])
         ) - parameter.value(coordinate)
+        # A displacement along the chord leads to another point of the curve, and is no error.
         return abs(displacement - distance * self.line.chord_slope * float(self.line.direction[1]))

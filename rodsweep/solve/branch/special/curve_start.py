@@ -49,6 +49,7 @@ def first_point_of_curve(
     if orbit is None:
         raise Unsolvable(special.message or "the cycle of the special point is not known")
     mesh = mesh_of(orbit)
+    # The special point was located to 1e-9; a curve needs less accuracy, and its error is measured anew.
     first_point = replace(
         mesh,
         order=ceil(CURVE_START_SETTINGS.order_ratio * mesh.order),
@@ -72,4 +73,5 @@ def first_point_of_curve(
         row_parameter=row,
     )
     family = CycleFamily.near_point(special.kind, row_axis, start, workspace)
+    # Along the branch, because the row is fixed at the first point.
     return family.corrected_point_with_error(orbit, row_coordinate, ALONG_BRANCH)

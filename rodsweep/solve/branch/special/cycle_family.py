@@ -115,6 +115,7 @@ class CycleFamily:
         coarser_point = self.corrected_point(start, row_coordinate, line, derivatives)
         if previous and previous.measured_error and previous.measured_error.applies_at(coarser_point):
             return replace(coarser_point, measured_error=previous.measured_error.for_next_point)
+        # Each finer mesh serves twice: for the error of the coarser point, then as the coarser one.
         for _ in range(CURVE_SECANT_SETTINGS.max_finer_meshes):
             mesh = mesh_of(coarser_point.orbit)
             finer_mesh = self.finer_mesh_than(coarser_point)

@@ -103,6 +103,7 @@ class DiagramStages:
         if not new_points:
             return self._folds_beyond_after(stages, results)
         known_points = (*self.first.special_points, *self._special_points_of_rows(stages, results))
+        # The tracer joins both lists, so a point in both would be met twice.
         known_points = tuple(point for point in known_points if point not in new_points)
         return replace(
             self.first,
@@ -207,6 +208,7 @@ def _changed_rows(stages: Sequence[Stage], results: Results) -> dict[int, dict[s
     variables_by_row: dict[int, dict[str, Array]] = {}
     for stage in stages:
         if isinstance(stage, DetachedRows):
+            # A row that failed has an empty result, and keeps the variables of its earlier stage.
             items = (item for item in range(stage.first_item, stage.end_item) if results.get(item))
             variables_by_row |= {stage.row_of(item): results[item] for item in items}
     return dict(sorted(variables_by_row.items()))
@@ -220,6 +222,7 @@ def _rows_after(tracer: SpecialCurveTracer, stages: Sequence[Stage], results: Re
     new_crossings: dict[int, tuple[RowCrossing, ...]] = {}
     for crossing in tracer.crossings(results):
         row = crossing.row_index
+        # A row solved again starts from all points known so far, because its result replaces the earlier one.
         row_crossings = new_crossings.get(row) or known_crossings.get(row, ())
         if not any(crossing.special_point.is_same_as(other.special_point) for other in row_crossings):
             new_crossings[row] = (*row_crossings, crossing)

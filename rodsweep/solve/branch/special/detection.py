@@ -40,6 +40,7 @@ class DetectedKinds(NamedTuple):
 def special_kinds_between(start: BranchCycle, end: BranchCycle) -> DetectedKinds:
     """Kinds of the special points between the cycles `start` and `end`."""
     kinds = []
+    # A fold is where the parameter turns; a multiplier near 1 is too uncertain to show it.
     if start.parameter_rate * end.parameter_rate < 0:
         kinds.append(SpecialKind.fold)
     # Two multipliers may pass -1 together or become a pair near -1; an odd difference needs a crossing.
@@ -48,15 +49,19 @@ def special_kinds_between(start: BranchCycle, end: BranchCycle) -> DetectedKinds
     count_change = abs(unstable_multiplier_count(end) - unstable_multiplier_count(start))
     # Near a fold a multiplier is 1 within its error; the counts at `start` and `end` may be wrong by one.
     count_tolerance = 1 if _has_multiplier_near_one(start) or _has_multiplier_near_one(end) else 0
+    # A pair changes the count by two; one more or less may be a multiplier near 1.
     if not kinds and count_change - count_tolerance > 1:
+        # Two real multipliers that cross together also change the count by two, but are no torus point.
         is_pair = count_change == 2 and all(map(_has_complex_pair, (start, end)))
         return DetectedKinds([SpecialKind.torus], is_pair)
+    # With two kinds in one step the changes may cancel, so the step is halved instead.
     return DetectedKinds(kinds, len(kinds) <= 1 and abs(count_change - len(kinds)) <= count_tolerance)
 
 
 def fold_and_breaking_between(start: BranchCycle, end: BranchCycle) -> list[SpecialKind]:
     """Kinds of the special points between two cycles at which further branches may begin or a branch turns
     back: fold, and symmetry breaking."""
+    # Torus points are left out: no branch of cycles begins at one, and the branch does not turn.
     kinds = [SpecialKind.fold] if start.parameter_rate * end.parameter_rate < 0 else []
     if start.orbit.is_symmetric and (_count_beyond_minus_one(start) - _count_beyond_minus_one(end)) % 2:
         kinds.append(SpecialKind.symmetry_breaking)
@@ -71,6 +76,7 @@ def _count_beyond_minus_one(point: BranchCycle) -> int:
 def _real_multipliers(point: BranchCycle) -> Array:
     """The real multipliers of a cycle over the solved time interval, (multipliers,)."""
     h = point.multipliers_over_solved_part
+    # Eigenvalue solvers return a real double multiplier as a pair with a tiny imaginary part.
     return h.real[np.abs(h.imag) <= SPECIAL_POINT_SETTINGS.real_multiplier_tolerance * np.abs(h)]
 
 
@@ -98,6 +104,7 @@ def lie_on_one_branch(start: BranchCycle, end: BranchCycle) -> bool:
     """
     has_fold = start.parameter_rate * end.parameter_rate < 0
     change = _count_beyond_one(start) - _count_beyond_one(end)
+    # Each fold moves one multiplier through 1, and a smooth branch has no other reason for an odd change.
     if not any(map(_may_be_on_either_side_of_one, (start, end))):
         return change % 2 == int(has_fold)
     is_unchanged = not has_fold and change % 2 == 0
@@ -148,4 +155,5 @@ def special_points_between(
                 middle, end, cycle_at, accuracy, halvings + 1
             )
             return first_points + second_points, first_complete and second_complete
+    # Halving has ended, so points that do not explain the counts are stored too, marked as incomplete.
     return points or [special_point_between(kind, start, end, accuracy) for kind in kinds], are_complete

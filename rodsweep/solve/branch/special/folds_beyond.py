@@ -60,6 +60,7 @@ class FoldsBeyondRange:
             for point in known_points(self.row_of(item))
             if point.kind == SpecialKind.fold and not limits[0] <= point.parameter_value <= limits[1]
         ]
+        # A row without folds gives shape (0, 3), which `np.array` alone cannot know.
         return {FOLDS: np.array(folds, dtype=float).reshape(-1, 3)}
 
     def special_points(self, results: Mapping[int, dict[str, Array]]) -> list[RowSpecialPoint]:

@@ -24,6 +24,7 @@ def trace_half_curve(
     special_points: special points of all rows. complete_rows: value of the row parameter, by index, of the
     rows whose branches are all known."""
     row_length = abs(problem.line_axis.parameter_per_coordinate(special_point.parameter_value))
+    # The stored point has no cycle; the located point that has one is recognised by its values.
     matches = [
         point
         for point in located
@@ -58,6 +59,7 @@ def _special_points_and_row_crossings(
     for i, special_point in enumerate(special_points):
         if special_point.kind == problem.kind:
             indices_by_row.setdefault(special_point.row_index, []).append(i)
+    # Rows with special points are crossed too, to recognise the points that lie on this curve.
     rows = dict(complete_rows) | {
         special_points[i[0]].row_index: special_points[i[0]].row_value for i in indices_by_row.values()
     }
@@ -72,16 +74,21 @@ def _special_points_and_row_crossings(
                 for i in indices_by_row.get(index, ())
                 if _may_be_near(problem, first, second, special_points[i])
             ]
+            # A crossing costs a cycle, so it is solved only where a point may be found or missed.
             if not low <= row_coordinate <= high or not (near_indices or index in complete_rows):
                 continue
             try:
                 crossing = problem.point_on_row(first, second, row_coordinate)
+            # Without this crossing a point may stay unmatched; then a further curve is traced through it.
             except Unsolvable:
                 continue
             distances_here = _distances(problem, crossing, {i: special_points[i] for i in near_indices})
             for i, distance in distances_here.items():
+                # A curve that turns may cross a row several times; the nearest crossing is at the point.
                 distances[i] = min(distance, distances.get(i, distance))
+            # Only on a complete row does a crossing without a special point prove that a branch was missed.
             if not distances_here and index in complete_rows:
+                # The crossing itself has no measured error; its neighbours lie within one step of it.
                 error = max(first.error, second.error)
                 crossings.append(RowCrossing.from_solved_point(index, problem.kind, crossing, error))
     return dict(sorted(distances.items())), tuple(crossings)
@@ -115,6 +122,7 @@ def _may_be_near(
     ends = sorted(problem.line_axis.coordinate(p.parameter) for p in (a, b))
     periods = sorted(p.orbit.period for p in (a, b))
     margin = CURVE_IDENTITY_SETTINGS.max_chord_distance_fraction
+    # The curve may bulge beyond its chord, hence a margin in the parameter and in the period.
     is_within = ends[0] - margin <= x <= ends[1] + margin
     period_factor = 1 + CURVE_IDENTITY_SETTINGS.period_interval_extension
     return is_within and periods[0] / period_factor <= special_point.period <= periods[1] * period_factor

@@ -63,6 +63,7 @@ class ParameterRoles:
         if self.are_exchanged_at(point) == exchanged:
             return point
         other_axis, branch_axis = self.axes_of(point)
+        # The row parameter may be 0 on the curve, where its own size is no unit.
         unit = self._min_coordinate_unit(branch_axis) if exchanged else 0.0
         return replace(
             point,
@@ -97,13 +98,16 @@ class ParameterRoles:
         last_points = [
             self.in_plane(point) for point in points[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
         ]
+        # Roles are compared in the plane, because earlier points may have exchanged roles.
         if self.need_exchange_between(*last_points[-2:]):
             return True
         rods = [point.orbit.form.rod for point in last_points]
         names = self.line_axis.name, self.row_axis.name
         coordinates = np.array([[rod.coordinate(name) for name in names] for rod in rods])
         predicted_change = lagrange_weights(arc_lengths(last_points), length) @ coordinates - coordinates[-1]
+        # A parameter that turns within the step is flat somewhere in it, even if neither chord is.
         turns = predicted_change * (coordinates[-1] - coordinates[-2]) < 0
+        # If both turn, as at a cusp, the exchange gains nothing.
         return bool(turns[1] and not turns[0]) or self._is_flat(rods[-1], *predicted_change)
 
     def need_exchange_at(self, point: SolvedPoint, slope: float) -> bool:
@@ -114,6 +118,7 @@ class ParameterRoles:
             axis.path_variable_per_coordinate(getattr(rod, axis.name))
             for axis in (self.line_axis, self.row_axis)
         )
+        # At the first point no chord exists yet, so the slope of the curve comes from the matrix.
         line_change, row_change = changes
         return self._is_flat(rod, slope * line_change, row_change)
 
@@ -125,6 +130,7 @@ class ParameterRoles:
         branch_change, other_change = (
             axis.path_variable_per_coordinate(getattr(rod, axis.name)) for axis in self.axes_of(point)
         )
+        # At a fold the parameter is stationary along the branch, so only the other one moves the fold.
         response = matrix.parameter_response(self.axes_of(point)[1].name, point.branch_direction)
         return response * other_change / branch_change
 
@@ -134,6 +140,7 @@ class ParameterRoles:
         parameters."""
         if self.kind != SpecialKind.fold:
             return False
+        # Relative changes, because the two parameters may have ranges of very different size.
         line_ratio, row_ratio = (
             abs(change) / max(abs(rod.coordinate(axis.name)), self._min_coordinate_unit(axis))
             for axis, change in ((self.line_axis, line_change), (self.row_axis, row_change))
@@ -143,5 +150,6 @@ class ParameterRoles:
     def _min_coordinate_unit(self, axis: PlaneAxis) -> float:
         """Smallest unit of the coordinate of the parameter of `axis`."""
         parameter = PARAMETERS[axis.name]
+        # The limits may be values of a stiffness, whose coordinate is its inverse.
         length = abs(parameter.coordinate(axis.stop) - parameter.coordinate(axis.start))
         return PARAMETER_ROLE_SETTINGS.min_coordinate_unit_ratio * float(length)

@@ -31,6 +31,7 @@ class RowCrossing:
             parameter_value=point.parameter,
             period=point.orbit.period,
             tip_y_max=point.tip_y_max,
+            # By chance the error at the neighbours may be below the accuracy of the crossing.
             error=max(error, CURVE_SECANT_SETTINGS.accuracy * abs(point.parameter)),
             orbit=point.orbit,
         )
@@ -49,6 +50,7 @@ class RowCrossing:
             point.error,
             keeps_omega,
         )
+        # One array holds all six, so counts and the flag become floats too.
         return {"crossing": array([float(number) for number in numbers])} | orbit_arrays(point.orbit)
 
     @classmethod
@@ -84,5 +86,6 @@ def crossings_from_arrays(arrays: Mapping[str, Array]) -> tuple[RowCrossing, ...
     for full_name, values in arrays.items():
         number, separator, name = full_name.partition(":")
         if separator:
+            # The names of the half curve itself have no number, and share the mapping with the crossings.
             parts.setdefault(int(number), {})[name] = values
     return tuple(RowCrossing.from_arrays(parts[number]) for number in sorted(parts))

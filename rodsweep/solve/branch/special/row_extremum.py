@@ -48,6 +48,7 @@ def with_row_extrema(problem: "SpecialCurveProblem", points: Sequence[SolvedPoin
     result: list[SolvedPoint] = []
     extremum_error = 0.0
     for i, point in enumerate(points):
+        # The stored error belongs to the branch parameter, which is another one with exchanged roles.
         has_plane_error = not roles.are_exchanged_at(point)
         error = point.error if has_plane_error else _error_along_row(problem, sloped_points, i)
         result.append(replace(roles.in_plane(point), error=error, row_extremum_error=extremum_error))
@@ -60,6 +61,7 @@ def with_row_extrema(problem: "SpecialCurveProblem", points: Sequence[SolvedPoin
             try:
                 result.append(_located_extremum(problem, sloped_points[i], sloped_points[i + 1]))
             except FAILURES:
+                # An extremum that exists but is not located leaves the range of rows with a branch unknown.
                 extremum_error = nan
     return result
 
@@ -70,8 +72,10 @@ def _error_along_row(
     """Absolute error of the parameter along a row at point i, at which only the error of the row parameter is
     known."""
     sloped_point = sloped_points[i]
-    line_axis, row_axis = problem.line_axis, problem.row_axis
+    line_axis = problem.line_axis
+    row_axis = problem.row_axis
     error = sloped_point.point.error / abs(row_axis.parameter_per_coordinate(sloped_point.point.parameter))
+    # Near the extremum the slope alone would give an infinite error, so the curvature limits it.
     curvature = max(
         abs(_slope_change(sloped_point, sloped_points[j])) for j in (i - 1, i + 1) if j in sloped_points
     )
@@ -100,12 +104,15 @@ def _located_extremum(
     point = problem.zero_between(first.point, second.point, slope, slopes, tolerance)
     family = problem.family(point)
     finer_mesh = family.finer_mesh_than(point)
+    # The row on the finer mesh is compared at the same place along the row, where it is stationary.
     fine = family.corrected_point(
         finer_mesh.interpolated_orbit(point.orbit), point.row_coordinate, ALONG_BRANCH
     )
     slope_error = CURVE_SECANT_SETTINGS.error_factor * abs(slope(fine) - slope(point)) + tolerance
     line_axis = roles.line_axis
+    # An extremum is displaced by the error of the slope over its rate of change.
     distance = slope_error / abs(_slope_change(first, second))
+    # With exchanged roles `parameter` is the row parameter.
     difference = CURVE_SECANT_SETTINGS.error_factor * abs(fine.parameter - point.parameter)
     return replace(
         roles.in_plane(point),

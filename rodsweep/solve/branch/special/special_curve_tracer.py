@@ -62,6 +62,7 @@ class SpecialCurveTracer:
         for curves, search in self._searches(results):
             needed_items += search.missing_items
             possible_items += curves.possible_items(search)
+        # Possible items keep ranks busy that would wait; they are never worth a stage of their own.
         return [self.first_item + item for item in needed_items + possible_items] if needed_items else []
 
     def crossings(self, results: Mapping[int, HalfCurveArrays]) -> list[RowCrossing]:
@@ -78,6 +79,7 @@ class SpecialCurveTracer:
         """A special point of each curve that leaves the range of the parameter along the rows; valid if
         `items_to_solve(results)` is empty."""
         return [
+            # Any point of the curve would do; the smallest index makes the choice the same in each run.
             self.special_points[min(traced.distances)]
             for _, search in self._searches(results)
             for traced in search.curves
@@ -98,6 +100,7 @@ class SpecialCurveTracer:
         self, results: Mapping[int, HalfCurveArrays]
     ) -> "Iterator[tuple[_CurvesOfKind, CurveTracing[_TracedCurve]]]":
         """Yields (curves with `results`, state of the search for these curves) for each kind of points."""
+        # Numbers run through all stages, but the seeds of this stage are counted from 0.
         own_results = {number - self.first_item: result for number, result in results.items()}
         for kind in FOLLOWED_KINDS:
             curves = _CurvesOfKind(kind, self.line_axis, self.row_axis, self.special_points, own_results)
@@ -167,6 +170,7 @@ class _CurvesOfKind:
         """Numbers of the half curves missing for the curve through special point `seed`; [] if complete."""
         forward_item = 2 * seed
         backward_item = 2 * seed + 1
+        # Both halves are asked for at once, because the second is needed unless the first closes.
         if forward_item not in self.results:
             return [item for item in (forward_item, backward_item) if item not in self.results]
         half = TracedHalfCurve.from_arrays(self.results[forward_item]).half
@@ -178,6 +182,7 @@ class _CurvesOfKind:
         """Numbers of half curves that may be needed later: from special points on no curve yet, on the rows
         where the half curves needed now start."""
         rows = {self.special_points[item // 2].row_value for item in search.missing_items}
+        # On these rows the cycles are solved again for the needed half curves anyway.
         candidates = sorted(
             (i for i in search.untried_seeds if self.special_points[i].row_value in rows), key=self._sort_key
         )
@@ -192,6 +197,7 @@ class _CurvesOfKind:
         backward = (
             TracedHalfCurve(None) if is_closed else TracedHalfCurve.from_arrays(self.results[2 * seed + 1])
         )
+        # Half a curve would look like a curve that ends on a row.
         if backward.half is None and not is_closed:
             return None
         curve = SpecialPointCurve.joined(self.kind, forward.half, backward.half)
@@ -222,6 +228,7 @@ class _CurvesOfKind:
 
     def _lies_on_extrapolation(self, curve: SpecialPointCurve, special_point: RowSpecialPoint) -> bool:
         """Whether the special point `special_point` lies on the extrapolation of a curve to a Hopf point."""
+        # Larger cycles lie on the part of the curve that was solved.
         if special_point.tip_y_max >= END_SETTINGS.min_amplitude:
             return False
         for end, last_point in zip(curve.hopf_ends, (curve.points[0], curve.points[-1]), strict=True):

@@ -150,6 +150,7 @@ class TracedHalfCurve:
         nearby special point; and the arrays of `numbered_arrays` for the crossings."""
         points = [] if self.half is None else [_point_numbers(point) for point in self.half.points]
         return {
+            # A half without points still has columns, so that all results can be read alike.
             "points": np.array(points, dtype=float).reshape(-1, len(CurvePoint.__slots__)),
             "end": np.array([0.0 if self.half is None else float(self.half.end)]),
             "distances": np.array(list(self.distances.items()), dtype=float).reshape(-1, 2),
@@ -183,10 +184,13 @@ class SpecialPointCurve:
     def joined(cls, kind: SpecialKind, forward: HalfCurve, backward: HalfCurve | None) -> "SpecialPointCurve":
         """The curve joined from the halves `forward` and `backward`, which start at the same point; backward:
         None for a closed curve."""
+        # A closed curve has one half only, and its second end has the same reason.
         first_half = backward or HalfCurve(forward.points[:1], forward.end)
+        # The first point belongs to both halves, so the slice leaves it out of one.
         points = (*first_half.points[:0:-1], *forward.points)
         hopf_ends = [
             extrapolated_hopf_end(side) if end is CurveEndReason.hopf else None
+            # Extrapolation takes its last points, so the first end needs the curve in reverse.
             for end, side in ((first_half.end, points[::-1]), (forward.end, points))
         ]
         return cls(kind, points, (first_half.end, forward.end), (hopf_ends[0], hopf_ends[1]))
@@ -219,6 +223,7 @@ def with_bautin_ends(
 def lagrange_weights(abscissas: Array, abscissa: float) -> Array:
     """Lagrange weights, (n,), n > 1: the weighted sum of n values at the abscissas `abscissas`, (n,), is the
     value of their interpolating polynomial at the abscissa `abscissa`."""
+    # Relative to the last abscissa, whose weight follows as all weights sum to 1.
     differences = abscissas[:-1] - abscissas[-1]
     weights = polynomial_weights(differences, np.zeros(len(differences)), abscissa - abscissas[-1])
     return np.append(weights, 1 - weights.sum())
@@ -230,12 +235,14 @@ def extrapolated_hopf_end(points: Sequence[CurvePoint]) -> HopfEnd | None:
     last_points = points[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
     if len(last_points) < CURVE_IDENTITY_SETTINGS.max_interpolated_points:
         return None
+    # Parameters and period are even in the amplitude, so polynomials in its square converge.
     squared_amplitudes = np.array([point.tip_y_max**2 for point in last_points])
     quantities = np.array([[point.parameter_value, point.row_value, point.period] for point in last_points])
     # The error estimate is the difference between the polynomials with and without the first point.
     values, values_of_lower_order = (
         np.dot(lagrange_weights(squared_amplitudes[i:], 0.0), quantities[i:]) for i in (0, 1)
     )
+    # Both polynomials share the errors of the points, which their difference would not show.
     difference = abs(values[0] - values_of_lower_order[0]) + max(point.error for point in last_points)
     error = CURVE_IDENTITY_SETTINGS.extrapolation_factor * difference
     return HopfEnd(float(values[0]), float(values[1]), float(error), float(values[2]))

@@ -170,6 +170,7 @@ def _are_near(
 ) -> bool:
     """Whether kind, parameter and period of two special points agree. error: sum of the absolute errors of
     the two parameters."""
+    # The largest y differs between mirror images, so it is not compared.
     excess_distance = abs(first.parameter_value - second.parameter_value) - error
     return (
         first.kind == second.kind

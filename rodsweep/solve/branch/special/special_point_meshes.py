@@ -24,6 +24,8 @@ def first_mesh(calibration: BranchCalibration, accuracy: float) -> OrbitMesh:
     if stage_count == mesh.stage_count:
         return mesh
     coarser_mesh = calibration.cheapest_mesh_for_parameter(
+        # The calibration knows only the stages of the branch; on k times the stages the same mesh has the
+        # error to the power k.
         target_accuracy ** (mesh.stage_count / stage_count)
     )
     return replace(
@@ -36,6 +38,7 @@ def next_mesh(mesh: OrbitMesh, error_ratio: float) -> OrbitMesh:
     refinement."""
     # The error is assumed proportional to intervals^-p, p: `time_order_per_stage` times the number of stages.
     growth = error_ratio ** (1 / (SPECIAL_POINT_SETTINGS.time_order_per_stage * mesh.stage_count))
+    # Without growth the two meshes would share their error, and their difference would not show it.
     growth = min(
         max(growth, SPECIAL_POINT_SETTINGS.min_interval_ratio), SPECIAL_POINT_SETTINGS.max_interval_ratio
     )

@@ -76,6 +76,7 @@ def first_asymmetric_cycle(
     matrix = BorderedMatrix(full_orbit, scale, workspace)
     # At the symmetry breaking the linearised equations at a fixed parameter have an asymmetric solution.
     null_vector = matrix.approximate_null_vector()
+    # With this norm a multiple of the vector is the relative distance that the settings give.
     null_vector = null_vector / relative_change(full_orbit, null_vector[:-1])
     first_distance = ASYMMETRIC_START_SETTINGS.first_cycle_distances[0]
     # The two signs give mirror images. The cycle with the larger y is followed, so that the result does not
@@ -88,6 +89,7 @@ def first_asymmetric_cycle(
         try:
             allowed_distance = cycles.distance_before_fold(distance)
             if allowed_distance < distance:
+                # On a coarse mesh the fold beside the symmetry breaking may not exist.
                 finer_accuracy = min(accuracy, ASYMMETRIC_START_SETTINGS.max_accuracy_beside_fold)
                 cycles = replace(cycles, accuracy=finer_accuracy)
             return cycles.first_cycle(allowed_distance), cycles.accuracy
@@ -99,10 +101,12 @@ def first_asymmetric_cycle(
 def _require_asymmetry(orbit: Orbit, predicted: Orbit) -> None:
     """Raises Unsolvable if the asymmetry of an orbit is far from the asymmetry of its prediction."""
     expected_asymmetry = asymmetry(predicted)
+    # Asymmetries are compared node by node, so both must have one mesh in space.
     orbit_on_mesh = orbit.on_mesh(predicted.form.mesh, orbit.interval_count, orbit.stage_count)
     ratio = float(asymmetry(orbit_on_mesh) @ expected_asymmetry) / float(
         expected_asymmetry @ expected_asymmetry
     )
+    # A ratio near 0 is the symmetric cycle itself, which solves the same equations.
     min_ratio, max_ratio = BRANCH_END_SETTINGS.allowed_asymmetry_ratios
     if not min_ratio < ratio < max_ratio:
         raise Unsolvable("Newton's method converged to a cycle whose asymmetry is not the predicted one")
@@ -133,8 +137,10 @@ class _AsymmetricCycles:
         # The parameter is p0 + A t^2 + B t^4 with t = 1 at `distance`; its derivatives give A and B.
         parameter_rate = self._parameter_rate(distance)
         half_distance_rate = self._parameter_rate(distance / 2)
+        # From p' = 2 A t + 4 B t^3 at t = 1 and t = 1/2; only the ratio A/B matters, not the scale.
         A = (8 * half_distance_rate - parameter_rate) / 6
         B = (parameter_rate - 2 * A) / 4
+        # The parameter still moves as it started, so no fold lies between.
         if A * parameter_rate >= 0:
             return distance
         return distance * ASYMMETRIC_START_SETTINGS.asymmetry_to_fold_ratio * sqrt(-A / (2 * B))
@@ -166,6 +172,7 @@ class _AsymmetricCycles:
         scale = self.matrix.scale
         arc_from_start = abs(self._deflection_change(distance)) / scale.deflection_unit
         cycle = first_measured_cycle(first, scale, self._border(distance), arc_from_start, self.accuracy)
+        # Again, because the correction on the final mesh may still fall onto the symmetric cycle.
         _require_asymmetry(cycle.orbit, start)
         return cycle
 

@@ -36,12 +36,14 @@ def first_cycle(hopf: HopfBranchStart, accuracy: float, workspace: NewtonWorkspa
     amplitude = first.cycle.measures.tip_y_max
     # The parameter moves against the normal form: the branch has a fold before this cycle.
     while (
+        # With direction 0, where the sign of Re c is unknown, no fold can be inferred.
         first.parameter_rate * hopf.direction < 0
         and amplitude > BRANCH_START_SETTINGS.min_amplitude_before_fold
     ):
         amplitude /= 2
         try:
             first = _cycle_near_hopf_point(hopf, amplitude, accuracy, workspace)
+        # The cycle beyond the fold is still a cycle of this branch.
         except Unsolvable:
             break
     return first
@@ -99,6 +101,7 @@ def _cycle_of_amplitude(
     condition = BorderCondition.at_arc_length(scale, border, start)
     rough_orbit = condition.solve_cycle(start, REFINEMENT_SETTINGS.nearby_orbit_tolerance, workspace)
     near_orbit = rough_orbit.orbit
+    # The phase condition puts the largest y of the tip at t = 0.
     tip_y = float(near_orbit.form.tip_coordinates(near_orbit.start_state)[1])
     # A different cycle with the same deflection would have an amplitude far from the normal form's.
     least_ratio, largest_ratio = BRANCH_START_SETTINGS.allowed_amplitude_ratios

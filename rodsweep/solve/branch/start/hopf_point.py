@@ -86,6 +86,7 @@ class HopfBranchStart:
         """Sign of the change of the parameter coordinate along the branch at the Hopf point; 0 if the error
         of Re c exceeds |Re c|."""
         c = self.coefficients.landau
+        # Negated, so that a nan coefficient gives no direction.
         if not abs(c.real) > self.coefficients.landau_error * abs(c):
             return 0
         return int(np.sign(-c.real / self.growth_slope.real))
@@ -103,6 +104,7 @@ class HopfBranchStart:
         `coordinate` on the side of the Hopf point where the cycles exist; amplitude 0 on the other side."""
         c = self.coefficients.landau
         change = coordinate - self.parameter_coordinate
+        # A negative square means that no cycle exists on this side.
         squared = max(-self.growth_slope.real * change / c.real, 0.0)
         frequency = self.crossing.frequency + self.growth_slope.imag * change + c.imag * squared
         return 2 * np.pi / frequency, squared**0.5
@@ -116,6 +118,7 @@ def hopf_branch_start(
     the branch. min_coordinate_unit: smallest unit of the parameter's coordinate in arc lengths."""
     w = complex(0.0, crossing.frequency)
     rod = path.rod_at(path.coordinate(crossing.value))
+    # Started at the located frequency, so the same eigenvalue is found again, now with its slope.
     _, slope, _ = path_problem(path).eigenvalue(w, path.coordinate(crossing.value))
     normal = normal_form_by_mesh_rule(rod, w, normal_form_accuracy(rod))
     return HopfBranchStart(
@@ -125,6 +128,7 @@ def hopf_branch_start(
         parameter_coordinate=path.coordinate(crossing.value),
         growth_slope=complex(slope),
         normal_form=normal,
+        # Two meshes give these coefficients with their errors; one mesh suffices for the start of the branch.
         coefficients=hopf_coefficients(rod, crossing, HOPF_START_SETTINGS.normal_form_accuracy),
         keeps_omega=keeps_omega,
         min_coordinate_unit=min_coordinate_unit,
@@ -135,6 +139,7 @@ def accuracy_near_hopf_points(hopfs: Sequence[HopfBranchStart], accuracy: float)
     """Relative accuracy of the cycles of a rod with the given Hopf points: the requested `accuracy`, or a
     smaller number if a Hopf point is close to a generalised Hopf point."""
     max_coefficient = max((abs(hopf.amplitude_coefficient) for hopf in hopfs), default=0.0)
+    # Negated, so that a nan coefficient does not set the accuracy.
     if not max_coefficient > BRANCH_START_SETTINGS.max_amplitude_coefficient:
         return accuracy
     ratio = (BRANCH_START_SETTINGS.max_amplitude_coefficient / max_coefficient) ** 2

@@ -152,6 +152,7 @@ class CriticalModesOfPath:
             )
         slopes = spectrum.eigenvalues.copy()
         for i, w in enumerate(spectrum.eigenvalues.tolist()):
+            # The lower member of a pair follows the upper one in the list.
             slopes[i] = self.problem.eigenvalue(w, p)[1] if w.imag >= 0 else slopes[i - 1].conjugate()
         return CriticalModes(p, spectrum.eigenvalues, slopes, spectrum.unstable_count)
 

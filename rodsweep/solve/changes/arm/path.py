@@ -85,6 +85,7 @@ class ArmPath(PathProblem):
         possible and if no stored family suffices."""
         W = ARM_PATH_SETTINGS.w_bound_ratio * largest_modulus
         if any(
+            # A family serves eigenvalues up to half of its W, so that Newton's iterates stay within W.
             stored.p_low <= low and high <= stored.p_high and largest_modulus * 2 <= stored.largest_w
             for stored in self._families
         ):
@@ -127,11 +128,11 @@ class ArmPath(PathProblem):
         key = p, request
         if key not in self._spectra:
             spectrum = self.followed_spectrum(p, request.modes)
-            solved = self._spectra[key] = (
-                spectrum if spectrum is not None else self._solved_spectrum(p, request)
-            )
-            if solved.certified:
-                self._unstable_counts[p] = solved.unstable_count
+            if spectrum is None:
+                spectrum = self._solved_spectrum(p, request)
+            self._spectra[key] = spectrum
+            if spectrum.certified:
+                self._unstable_counts[p] = spectrum.unstable_count
         return self._spectra[key]
 
     def _solved_spectrum(self, p: float, request: SpectrumRequest) -> Spectrum:

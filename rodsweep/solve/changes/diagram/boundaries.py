@@ -159,6 +159,10 @@ def _point_at_second_coordinate(boundary: StabilityBoundary, a: Array, b: Array,
         point = boundary.point_near(guess, (b - a) / np.linalg.norm(b - a))
         if point is None:
             return None
-        a, b = (point.v, b) if (point.v[1] - y) * (b[1] - y) <= 0 else (a, point.v)
+        # The new point replaces the end on its own side of y, as in the rule of false position.
+        if (point.v[1] - y) * (b[1] - y) <= 0:
+            a = point.v
+        else:
+            b = point.v
         fraction = (y - a[1]) / (b[1] - a[1]) if a[1] != b[1] else 0.0
     return None

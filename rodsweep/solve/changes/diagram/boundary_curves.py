@@ -88,6 +88,7 @@ def trace_boundary(
             BOUNDARY_STEP_CONTROL,
             lambda _: report(),
         )
+        # The first point is common to both directions.
         solutions = [*backward.solutions[:0:-1], *solutions]
     points = np.array([point.v for point in solutions])
     # The chord of coincident points, as on an edge, has no direction.
@@ -107,8 +108,10 @@ def _curve_with_folds(
     boundary = problem.boundary
     folds = []
     if len(points) > 1:
+        # The last point gets the direction of the last chord.
         chords = np.diff(points, axis=0, append=points[-1:] + (points[-1:] - points[-2:-1]))
         tangents = np.array([boundary.tangent(v) for v in points])
+        # Tangents have no sign of their own; along the chords, a change of sign of a component is a fold.
         tangents *= np.where((tangents * chords).sum(axis=1) < 0, -1.0, 1.0)[:, None]
         curve_points = list(map(BoundaryPoint, points, tangents))
         for axis in (0, 1):
@@ -136,8 +139,9 @@ def _fold_between(
     size = float(np.linalg.norm(chord))
 
     def component(length: float) -> float:
-        solutions[length] = solution = problem.boundary_point_near(a.v + length / size * chord, chord / size)
-        return float(BoundaryPoint.oriented(solution, chord).tangent[axis])
+        # Kept, so that the solution at the zero need not be computed again.
+        solutions[length] = problem.boundary_point_near(a.v + length / size * chord, chord / size)
+        return float(BoundaryPoint.oriented(solutions[length], chord).tangent[axis])
 
     end_components = float(a.tangent[axis]), float(b.tangent[axis])
     try:

@@ -121,6 +121,7 @@ class BoundaryCurveProblem:
         a crushed rod. Raises Unsolvable if the point is not found or lies beyond a second edge."""
         if margin == CRUSHED_MARGIN:
             return None
+        # The margins are x, 1 - x, y and 1 - y: the quotient is the axis, the remainder the edge.
         axis, limit = divmod(margin, 2)
         inner = previous[-1].v
         fraction = (limit - inner[axis]) / (outer.v[axis] - inner[axis])

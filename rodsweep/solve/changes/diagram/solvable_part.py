@@ -39,6 +39,7 @@ def thresholds_of_solvable_part(
     later_starts: list[float] = []
     if name == "F":
         later_starts = [*inner_values[inner_values < 0].tolist(), *([0.0] if start < 0 < stop else [])]
+    # If even the latest start fails, no part of the row can be searched.
     last_search = _search(rod, name, (later_starts[-1], stop), certify) if later_starts else first_search
     if last_search.result is None:
         raise Unsolvable(last_search.failure)

@@ -93,6 +93,7 @@ class Calibration:
     def scaled_on_branch(self, orbit: Orbit) -> "Calibration":
         """This calibration with the errors scaled to a later orbit of a branch. The size of this orbit is
         ignored: a branch is followed by arc length, and errors do not grow as orbits shrink."""
+        # The size of the earlier orbit replaces that of the later one, so that only the tails count.
         present_tails = tails_and_size(orbit) * np.array([1.0, 1.0, 0.0]) + self.tails_and_size * (
             0.0,
             0.0,

@@ -47,6 +47,7 @@ def cheapest_mesh(calibration: Calibration, accuracy: float) -> OrbitMesh:
     period_error, y_error = errors[:2] / CALIBRATION_SETTINGS.planned_error_ratio
     extrema_error = errors[2] / CALIBRATION_SETTINGS.planned_extrema_error_ratio
     is_accurate = largest_weighted_error(period_error, y_error, extrema_error) <= accuracy
+    # For each order the smallest number of intervals that suffices, which argmax finds as the first True.
     meshes = [
         replace(
             calibrated, order=int(orders[i]), interval_count=int(interval_counts[np.argmax(is_accurate[i])])

@@ -139,6 +139,7 @@ class CoarserMeshes:
         error_ratio: errors of the coarse mesh divided by the errors of the finer mesh, for all errors or
         (4,).
         """
+        # The difference of the cycles is the coarse error minus the fine one: ratio - 1 times the fine error.
         errors: Array = path_differences(self._coarse_cycle.motion, finer_cycle.motion) / (error_ratio - 1)
         doubly_accurate = [PERIOD_INDEX, Y_INDEX]
         errors[doubly_accurate] = np.maximum(errors[doubly_accurate], self._min_error)

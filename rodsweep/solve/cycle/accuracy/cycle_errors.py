@@ -85,9 +85,11 @@ def errors_with_safety_factors(space_errors: Array, time_errors: Array, accuracy
     error of the multiplier. Safety factors and lower limits are applied. accuracy: requested relative
     accuracy, for a lower limit."""
     scaled_errors = CALIBRATION_SETTINGS.safety_factor * (space_errors + time_errors)
+    # Single quantities may agree on two meshes by chance; the whole path cannot.
     path_error = space_errors[PATH_INDEX] + time_errors[PATH_INDEX]
     time_path_error = CALIBRATION_SETTINGS.time_path_error_factor * time_errors[PATH_INDEX]
     larger_errors = [np.maximum(part[PERIOD_INDEX], part[Y_INDEX]) for part in (space_errors, time_errors)]
+    # Period and largest y come from the same orbit, so neither is much more accurate than the other.
     min_errors = CALIBRATION_SETTINGS.min_ratio_to_larger_error * (larger_errors[0] + larger_errors[1])
     min_period_error = (
         CALIBRATION_SETTINGS.min_period_error_ratio * space_errors[PATH_INDEX] + time_path_error

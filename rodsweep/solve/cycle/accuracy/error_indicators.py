@@ -38,10 +38,12 @@ def error_indicators(solved: ConvergedOrbit, motion: CycleMotion) -> Array:
     """
     orbit = solved.orbit
     means = orbit.means
+    # Over a period a cycle gains no energy, so the imbalance is the error of the collocation.
     lost_energy = abs(means.injection_mean - means.dissipation_mean) * orbit.solved_duration
     # The squared energy norm is twice the elastic energy.
     twice_energy = float((orbit.form.energy_norm(orbit.equidistant_states) ** 2).mean())
     relative_loss = lost_energy / twice_energy
+    # A slowly attracting cycle is displaced farther by the same loss.
     amplitude_error = relative_loss / _decay_in_one_part(solved.matrix.multipliers_over_solved_part)
     last_harmonics = float(np.linalg.norm(motion.last_tip_coefficients[-LAST_HARMONIC_COUNT:]))
     indicators = np.array([relative_loss, amplitude_error, last_harmonics / abs(motion.extrema["tip_y_max"])])
@@ -74,6 +76,7 @@ def error_growth_factors(earlier_tails: Array, later_tails: Array) -> Array:
     """
     # Errors are of second order in the tails.
     growth = np.maximum(squared_tail_growth(earlier_tails, later_tails), 1.0)
+    # The error in space is relative to the size of the orbit; where the orbit shrinks, it grows.
     growth[0] *= max((earlier_tails[2] / later_tails[2]) ** 2, 1.0)
     return growth
 

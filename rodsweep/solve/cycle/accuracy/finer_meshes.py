@@ -71,6 +71,7 @@ def measured_calibration(
     cycle = ComparedCycle(solved)
     meshes, removed_fraction = finer_meshes(mesh)
     tolerance = FINER_MESH_SETTINGS.newton_tolerance_ratio * accuracy
+    # A generator, because the matrices share one workspace: each cycle is compared before the next is solved.
     finer_orbits = (
         newton(target.interpolated_orbit(solved.orbit), tolerance, solved.workspace) for target in meshes
     )

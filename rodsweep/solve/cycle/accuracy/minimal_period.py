@@ -81,4 +81,5 @@ def restricted_to_minimal_period(orbit: Orbit) -> Orbit:
     times = node_times(orbit.interval_count, orbit.stage_count)
     # A symmetric orbit bends in odd harmonics only, so its divisor is odd and the shorter orbit is symmetric.
     values = np.append(orbit.states_at(times / divisor), orbit.period / divisor)
+    # The grading was fitted to several minimal periods, so the shorter orbit starts with a uniform one.
     return replace(orbit, values=values, grading=UNIFORM_TIME)

@@ -173,12 +173,15 @@ class AmplitudeEquation:
         sizes = np.linalg.norm(states, axis=1)
         linear = self.linear_growth_rate * np.diff(times)
         growth = np.diff(np.log(sizes)) + self.growth_excess * np.diff(times)
+        # The product of both ends is |z|^2 in the middle of the return, to second order.
         squares = sizes[:-1] * sizes[1:]
+        # Divided by |z|^2, the amplitude equation is a straight line in |z|^2.
         slope, offset = np.polyfit(squares, (growth - linear) / squares, 1)
         roots = np.roots([slope, offset, linear[-1]])
         limits = [
             float(root.real)
             for root in roots
+            # The growth must decrease with the amplitude at the root, or the cycle there is unstable.
             if root.imag == 0 and root.real > 0 and offset + 2 * slope * root.real < 0
         ]
         factors = [float(np.sqrt(limit) / sizes[-1]) for limit in limits]

@@ -66,6 +66,7 @@ def motion_mesh(rod: Rod, accuracy: float) -> Mesh:
     if not rod.is_uniform_and_linear:
         modal_mesh = arm_mesh(rod, MOTION_MESH_SETTINGS.expected_modes, accuracy)
         mesh = arm_elements(rod, wave_number, accuracy)
+        # The bends of a large motion may be sharper than those of its modes.
         finest_mesh = max(modal_mesh, mesh, key=lambda each: each.node_count)
         return mesh_with_edges(finest_mesh.edges, finest_mesh.order)
     max_wave_number = max(
@@ -89,6 +90,7 @@ def motion_meshes(rod: Rod, is_stored: bool) -> Iterator[Mesh]:
     for _ in range(MOTION_MESH_SETTINGS.max_refinements):
         order = ceil(MOTION_MESH_SETTINGS.order_refinement_factor * mesh.order)
         edges = mesh.edges
+        # The order of an element is limited; half the order on halved elements has as many unknowns.
         if order > RESOLUTION_SETTINGS.max_order:
             edges = halve_elements(edges)
             order = ceil(order / 2)
@@ -129,6 +131,7 @@ def integrable_rod(rod: Rod, distance: float = 1.0) -> Rod:
     if material.profile is not None:
         profile = material.profile
         for name, value in least.items():
+            # A row may be far below the base, and one point without drag makes the whole system stiff.
             profile = profile.with_factors_above(name, value / drags[name], rod.taper)
         material = replace(material, profile=profile)
     stiffnesses = {"k1": min(rod.k1, max_stiffness), "k2": min(rod.k2, max_stiffness)}

@@ -46,6 +46,7 @@ def orbit_from_motion(
     """
     from scipy.interpolate import CubicSpline  # slow import: 0.1 s, for few runs
 
+    # The integrator's own steps do not fall on the nodes of the collocation.
     spline = CubicSpline(run.times, run.states)
     start_time = float(run.times[-1]) - period
     times = (
@@ -55,17 +56,20 @@ def orbit_from_motion(
         / NEWTON_FROM_MOTION_SETTINGS.peak_search_times
     )
     period_states = spline(times)
+    # The cycle's phase condition holds at the largest y, so the orbit starts near it.
     time_of_largest_y = float(times[int(np.argmax(system.tip_coordinates(period_states)[1]))])
     symmetry = (
         REFLECTION
         if relative_asymmetry(system, period_states) < NEWTON_FROM_MOTION_SETTINGS.max_asymmetry
         else NO_SYMMETRY
     )
+    # A cycle with several returns of the tip needs as many times more intervals.
     interval_count = NEWTON_FROM_MOTION_SETTINGS.intervals_per_return * return_count // symmetry.period_parts
     duration = period / symmetry.period_parts
     times_of_nodes = time_of_largest_y + duration * node_times(
         interval_count, NEWTON_FROM_MOTION_SETTINGS.stages
     )
+    # Times after the end of the run are moved back by one period.
     times_of_nodes = np.where(times_of_nodes > run.times[-1], times_of_nodes - period, times_of_nodes)
     states = collocation_states(system, form, spline(times_of_nodes))
     return Orbit.from_states(form, symmetry, period, states, NEWTON_FROM_MOTION_SETTINGS.stages)
@@ -75,6 +79,7 @@ def relative_asymmetry(system: ExplicitSystem, states: Array) -> float:
     """Norm of the difference between m3(t) and the reflection -m3(t + T/2), divided by the norm of m3; m3:
     bending moments, T: period. states: states at m equidistant times over a period, (m, n)."""
     moments = system.layout.stress_field(states, "m3")
+    # m3 changes its sign under the reflection.
     mirrored = -np.roll(moments, len(moments) // 2, axis=0)
     return float(np.linalg.norm(moments - mirrored) / np.linalg.norm(moments))
 
@@ -87,6 +92,7 @@ def collocation_states(system: ExplicitSystem, form: StressForm, z: Array) -> Ar
     G = np.empty((len(S), S.shape[-1]))
     if form.unknown_velocities:
         for k, state in enumerate(system.layout.state(S, S)):
+            # The collocation has velocities as unknowns where a drag is small; the integrator has none.
             velocity = np.empty(G.shape)
             write_balance(state, velocity, G, system.nodal_rod, system.mesh.matrices)
             velocities[:, k] = velocity

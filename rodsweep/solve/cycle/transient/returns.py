@@ -97,6 +97,7 @@ def run_failure(system: ExplicitSystem, run: Trajectory, return_count: int) -> R
 
 def _loses_convexity(system: ExplicitSystem, states: Array) -> bool:
     """Whether the strain energy of a cross-section is not convex in one of the `states`, (k, unknowns)."""
+    # The last states come first, because convexity is lost at the end of a run.
     return any(np.isfinite(state).all() and not system.has_convex_energy(state) for state in states[::-1])
 
 
@@ -109,6 +110,7 @@ def section_crossings(system: ExplicitSystem, run: Trajectory) -> tuple[Array, A
     angle = run.states @ angle_row
     times: list[float] = []
     states: list[Array] = []
+    # Half-open, so that an angle of exactly 0 at a time step counts once.
     for k in np.nonzero((angle[:-1] < 0) & (angle[1:] >= 0))[0]:
         h = run.times[k + 1] - run.times[k]
         end_states = run.states[k : k + 2]

@@ -76,6 +76,7 @@ class TransientSchemes(NamedTuple):
 def schemes_for_growth(growth: float, is_stored: bool) -> TransientSchemes:
     """Time schemes of a motion. growth: linear growth per period of the leading mode. is_stored: whether the
     path of the motion is stored."""
+    # An error of the scheme could change the sign of a slow growth, and with it the outcome.
     if abs(growth) < TIME_SCHEME_SETTINGS.max_growth_for_accurate_scheme or is_stored:
         accurate_scheme = TIME_SCHEME_SETTINGS.accurate_scheme
         return TransientSchemes(
@@ -84,6 +85,7 @@ def schemes_for_growth(growth: float, is_stored: bool) -> TransientSchemes:
             TIME_SCHEME_SETTINGS.accurate_growth_error,
             TIME_SCHEME_SETTINGS.accurate_max_steps_per_return,
         )
+    # Only the first run starts small and grows; later runs start near the cycle.
     first = (
         TIME_SCHEME_SETTINGS.fast_growth_scheme
         if growth > AMPLITUDE_EQUATION_SETTINGS.max_slow_growth

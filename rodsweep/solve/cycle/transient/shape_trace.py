@@ -84,6 +84,7 @@ class ShapeTrace:
         from scipy.interpolate import CubicSpline  # slow import: 0.1 s, for few runs
 
         time_step = (
+            # The median is not affected by a few irregular returns.
             float(np.median(np.diff(return_times)))
             if len(return_times) >= SHAPE_TRACE_SETTINGS.min_returns
             else period
@@ -97,6 +98,7 @@ class ShapeTrace:
             is_in_run = run_indices == number
             if is_in_run.any():
                 states[is_in_run] = (
+                    # The first record is the start alone, through which there is no spline.
                     CubicSpline(times, steps)(shape_times[is_in_run]) if len(times) > 1 else steps[:1]
                 )
         shapes = (
@@ -104,4 +106,5 @@ class ShapeTrace:
         )
         is_complete = not self.is_full and len(shape_times) < SHAPE_TRACE_SETTINGS.max_stored_shapes
         moving_shapes = np.flatnonzero(np.abs(shapes[1, :, -1]) > SHAPE_TRACE_SETTINGS.max_rest_deflection)
+        # One shape at rest follows the last moving shape.
         return MotionShapes(time_step, shapes[:, : int(moving_shapes.max(initial=0)) + 2], is_complete)

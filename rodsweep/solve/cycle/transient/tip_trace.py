@@ -98,6 +98,7 @@ def interpolated_between_steps(steps: Array, values: Array, rates: Array, times:
     cubic: Array = (1 - to_end) * ends[0] + to_end * ends[1] + x * (1 - x) * ((1 - x) * ends[2] - x * ends[3])
     if len(steps) < 3:
         return cubic
+    # Neighbouring steps share their ends, so each second derivative is computed once.
     step_indices, inverse = np.unique(np.concatenate((left_steps, left_steps + 1)), return_inverse=True)
     second_derivatives = (
         _second_derivatives(steps, values, rates, step_indices)[:, inverse] * np.tile(h, 2) ** 2
@@ -124,6 +125,7 @@ def _second_derivatives(steps: Array, values: Array, rates: Array, step_indices:
     """
     neighbours = np.clip(step_indices, 1, len(steps) - 2)[:, None] + np.array([-1, 0, 1])
     x = steps[neighbours] - steps[step_indices][:, None]
+    # Scaled to at most 1, so that the powers up to the fifth are comparable.
     scale = np.abs(x).max(axis=1)
     x = (x / scale[:, None])[..., None]
     exponents = np.arange(6)

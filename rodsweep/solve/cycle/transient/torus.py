@@ -123,6 +123,7 @@ def _unstable_cycles(transient: TransientIntegration) -> Iterator[RefinedCycle]:
 def unstable_pair_angle(cycle: RefinedCycle) -> float | None:
     """Argument, in (0, pi), of the complex pair of Floquet multipliers outside the unit circle; None unless
     this pair is the only instability of the cycle."""
+    # Multipliers on the circle within their error count as outside, or a second instability could be missed.
     outer_multipliers = cycle.multipliers[np.abs(cycle.multipliers) > 1 - cycle.largest_modulus_error]
     if (
         cycle.stable is not False
@@ -184,6 +185,7 @@ def fitted_angle(return_states: Array, angle: float) -> float:
         + 1,
     )
     best_angle = min(map(float, trial_angles), key=lambda at: residual(at, 1))
+    # Every further harmonic narrows the minimum, so the search continues around the last one.
     for harmonics in range(1, TORUS_TEST_SETTINGS.harmonics + 1):
         half_width = np.pi / (len(return_states) * harmonics)
         bounds = (best_angle - half_width, best_angle + half_width)

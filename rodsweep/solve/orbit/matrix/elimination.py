@@ -144,6 +144,7 @@ def _eliminate_first_two_stages(B: Array, right_matrices: Array, parts: Array, p
         for j in range(2, s):
             if i != j:
                 B[stage_block(i, j, s)] = 0.0
+    # A group of rows stays in the cache while all later stages use it.
     for first in range(0, n, INVERSION_SETTINGS.rows_in_cache):
         last = min(n, first + INVERSION_SETTINGS.rows_in_cache)
         for i in range(2, s):

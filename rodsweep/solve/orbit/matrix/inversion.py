@@ -46,6 +46,7 @@ def invert_matrix(A: Array, pivots: Any, rows: Array) -> None:
         _sweep_panel(A, first, last, pivots)
         for j in range(n):
             if j < first or j >= last:
+                # The panel's columns move to `rows`, so that the product below writes their update in place.
                 for i in range(last - first):
                     rows[j, i] = A[j, first + i]
                     A[j, first + i] = 0.0

@@ -54,6 +54,7 @@ def multipliers_over_period(solved_multipliers: Complex, orbit: Orbit) -> Comple
     """Floquet multipliers, (m,), by descending modulus. solved_multipliers: multipliers over the solved part,
     (m,)."""
     multipliers: Complex = solved_multipliers**orbit.symmetry.period_parts
+    # Stable, because conjugate multipliers have equal moduli.
     return multipliers[np.argsort(-np.abs(multipliers), kind="stable")]
 
 
@@ -105,6 +106,7 @@ def low_rank_factors(A: Array, negligible: float) -> tuple[Array, Array]:
     while rank < n:
         p = np.argmax(norms)
         size = norms[p]
+        # At least one vector, even of a matrix that is 0.
         if rank > 0 and size <= least:
             break
         q = Q[rank]

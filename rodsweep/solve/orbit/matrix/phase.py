@@ -56,6 +56,7 @@ def tip_angle(x: Array, compliance: Array, m: NodeMatrices) -> float:
     matrices of the mesh."""
     theta = 0.0
     nodes = len(m.weights) - 1
+    # The sum ends before the tip, where m3 is 0.
     for i in range(nodes):
         theta += m.weights[i] * compliance[BENDING_INDEX, i] * x[stress_index(BENDING_INDEX, i, nodes)]
     return theta

@@ -86,13 +86,16 @@ class ShootingIntervals:
         iteration gives a triangular matrix whose rows are ordered by their growth.
         """
         *earlier_maps, last_map = self.flow_maps
-        basis = triangle = np.eye(len(last_map))
+        basis = np.eye(len(last_map))
+        triangle = basis
         for _ in range(SHOOTING_INTERVAL_SETTINGS.sweep_count):
             # Directions that decay to nothing over a period are dropped, to save time.
             kept_columns = np.flatnonzero(
                 np.abs(np.diag(triangle)) > SHOOTING_INTERVAL_SETTINGS.negligible_multiplier
             )
-            start = basis = basis[:, : kept_columns[-1] + 1] if len(kept_columns) else basis
+            if len(kept_columns):
+                basis = basis[:, : kept_columns[-1] + 1]
+            start = basis
             triangle = np.eye(start.shape[1])
             for A in (*earlier_maps, orbit.symmetry.apply_inverse_to_flow(last_map, orbit.form.layout)):
                 basis, R = np.linalg.qr(A @ basis)
@@ -116,6 +119,7 @@ def shooting_intervals_of(factors: NewtonFactors, mass: Array) -> ShootingInterv
     if not np.linalg.norm(factors.propagator) > SHOOTING_INTERVAL_SETTINGS.max_growth:  # also true for nan
         return ShootingIntervals((0, len(blocks)), factors.propagator[None])
     firsts = [0]
+    # The eliminated map of an interval acts on M x_0, not on x_0.
     maps = [blocks[0, INTERVAL_MAP] * mass]
     for k in range(1, len(blocks)):
         next_map = blocks[k, INTERVAL_MAP] @ (mass[:, None] * maps[-1])

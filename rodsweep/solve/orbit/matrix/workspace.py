@@ -159,6 +159,7 @@ class NewtonWorkspace:
     def release(self) -> None:
         """Ends the last reservation and the limit of the work, and frees the buffer if it is larger than
         WORKSPACE_SETTINGS.max_kept_buffer_size."""
+        # A matrix that still holds the last reservation can no longer be used.
         self._reservation += 1
         self.limit_work(inf)
         if len(self._buffer) > WORKSPACE_SETTINGS.max_kept_buffer_size:
@@ -175,6 +176,7 @@ class FactorStorage:
         self.workspace = workspace
         self._shape = (interval_count, block_count(stage_count), unknown_count, unknown_count)
         self._size = factors_size(interval_count, stage_count, unknown_count)
+        # Work is counted first: a matrix beyond the limit must not end the last reservation.
         workspace.add_work(float(interval_count * stage_count**2) * float(unknown_count) ** 3)
         self._reservation = workspace.reserve(self._size)
         self.propagator = np.zeros((unknown_count, unknown_count))

@@ -104,6 +104,7 @@ def _refine_all_eigenvalues(
         k = order[rank]
         if guess[k].imag != 0 and conjugate_index[k] < 0:
             return False
+        # Eigenvalues in the lower half plane follow by conjugation.
         if guess[k].imag >= 0:
             first = correct_eigenvalue_of_arm(guess[k], level)
             w[k] = first.w
@@ -112,6 +113,7 @@ def _refine_all_eigenvalues(
             last, error[k] = _converged_step_and_error(first, curvature_estimate(w, k), rank <= modes, level)
             if not store_root(track, i, k, conjugate_index[k], last):
                 return False
+    # The refinement may have changed the order.
     sort_descending(w, order)
     return are_distinct_roots(w, error) and np.abs(w).max() <= level[0]
 

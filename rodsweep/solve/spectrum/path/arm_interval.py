@@ -75,6 +75,7 @@ def follow_interval(
     if len(p) < ARM_FOLLOWING_SETTINGS.min_points:
         return None
     for added_modes in ARM_FOLLOWING_SETTINGS.further_mode_counts:
+        # What the last interval needed, this one will need too, so fewer modes are not tried.
         if previous is not None and added_modes < previous.further_mode_count:
             continue
         if best is not None and not (
@@ -113,6 +114,7 @@ def _proves_middle(
     among the points without a proof."""
     unproved = np.flatnonzero(interval.proved_counts < request.modes)
     p = float(interval.p[unproved[len(unproved) // 2]])
+    # One point is solved to see whether more modes help, before all points are followed with more.
     roots = _leading_roots(path, p, request, added_mode_count)
     if roots is None or len(roots.w) < request.modes:
         return False
@@ -150,6 +152,7 @@ def _follow_with_further_modes(
             family_data = (previous.family, previous.hulls)
             n = inside_count
         else:
+            # The last interval shows how far one family reaches.
             n = min(n, max(settings.max_point_count_ratio * len(previous.p), settings.min_points))
     while first_w is not None and family_data is None and n >= settings.min_points:
         family_data = family_and_hulls(path, p[:n], first_w, request.modes)
@@ -164,7 +167,8 @@ def _follow_with_further_modes(
     if reached == 0:
         return None
     arm_count = previous.arm_count if previous is not None and family is previous.family else n
-    reached_track, counts = slice_track(track, 0, reached), proved_counts[:reached]
+    reached_track = slice_track(track, 0, reached)
+    counts = proved_counts[:reached]
     return ArmInterval(p[:reached], reached_track, counts, family, hulls, arm_count, added_mode_count)
 
 
@@ -184,6 +188,7 @@ def family_and_hulls(
         hulls = hulls_along(path, low, high, ARM_FOLLOWING_SETTINGS.hulls_per_interval)
         W = ARM_FOLLOWING_SETTINGS.w_bound_ratio * float(np.abs(first_eigenvalues).max())
         line = min(ARM_FOLLOWING_SETTINGS.w_bound_ratio * float(first_eigenvalues[mode_count - 1].real), 0.0)
+        # The propagators of a family must reach as far as the proof for its worst arm.
         largest_hull = max(zip(hulls.a.tolist(), hulls.c.tolist(), strict=True))
         proof_w = [
             points[-1]

@@ -29,6 +29,7 @@ class ArmCountCarrier:
         self.modes = mode_count
         self.w, self.error = leading_eigenvalues(interval.track, interval.track.w.shape[1])
         last = self.w[:, mode_count - 1]
+        # Left of the axis, so that the count also tells the number of unstable modes.
         self.lines = np.minimum(last.real, 0.0) - NO_CROSSING_SETTINGS.line_distance_ratio * np.abs(last)
 
     def carry_counts(self) -> None:
@@ -46,6 +47,7 @@ class ArmCountCarrier:
                     first += skipped_count
                     skipped_count *= 2
                     continue
+                # A second count at the far end is needed, since the carrying rests on sampled arms.
                 if self._confirmed_line(points[-1], lines[-1]) is not None:
                     self._store_proved_modes(points, lines)
                 first = points[-1] + 1
@@ -62,9 +64,12 @@ class ArmCountCarrier:
         stride = last_index - index
         while last_index - index >= min_stride:
             next_index = min(index + stride, last_index)
+            # A rest too short for a stride of its own is added to this one.
             if last_index - next_index < min_stride:
                 next_index = last_index
+            # One fixed line for the stride, left of the requested modes at all of its points.
             line = float(self.lines[index : next_index + 1].min())
+            # A count right of one line says nothing about a line farther left.
             if confirmed_line is None or confirmed_line > line:
                 confirmed_line = self._confirmed_line(index, line)
                 if confirmed_line is None:

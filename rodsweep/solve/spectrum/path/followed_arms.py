@@ -132,9 +132,12 @@ class FollowedArms:
         proved. The track is None if following fails."""
         i = int(np.argmin(np.abs(interval.p - p)))
         start = float(interval.p[i])
+        # The proof at the point itself is there already.
         if p == start and mode_count <= self.request.modes:
             return slice_track(interval.track, i, i + 1), int(interval.proved_counts[i])
+        # One step mostly suffices; shorter steps follow where eigenvalues meet in between.
         for steps in ARM_FOLLOWING_SETTINGS.steps_from_nearest:
+            # At the point itself the eigenvalues are refined once more, with a proof for more modes.
             grid = np.array([start]) if p == start else start + (p - start) * np.arange(steps + 1) / steps
             track = start_track(interval.track.w[i], len(grid))
             proved_counts = np.zeros(len(grid), np.int64)

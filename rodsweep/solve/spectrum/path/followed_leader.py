@@ -90,6 +90,7 @@ def _follow_leader_of_arm(rod: Rod, guesses: Complex, accuracy: float) -> Leadin
     if ((w.imag != 0) != (guesses.imag != 0)).any():
         # Of a pair that has become two real eigenvalues, Newton's method finds only one.
         return None
+    # Another followed eigenvalue may have taken the lead on the way from the neighbour.
     order = np.argsort(-w.real, kind="stable")
     w = w[order]
     error = error[order]
@@ -134,6 +135,7 @@ def _matches_neighbour(w: complex, error: float, neighbour_w: complex, accuracy:
 def _lines_for_count(w: complex) -> Iterator[float]:
     """Real parts of two lines to the left of a leading eigenvalue w, for the count; the cheaper first."""
     return (
+        # Another eigenvalue may lie right of the far line; the near line then excludes it.
         w.real - distance * abs(w)
         for distance in (
             CANDIDATE_SETTINGS.leader_line_distance_ratio,

@@ -181,6 +181,7 @@ def _refine_all_eigenvalues(
     for k in range(m):
         if guess[k].imag != 0 and conjugate[k] < 0:
             return False
+        # Eigenvalues in the lower half plane follow by conjugation.
         if guess[k].imag >= 0:
             first[k] = correct_eigenvalue(guess[k], rod, direction)
             w[k] = first[k].w
@@ -195,6 +196,7 @@ def _refine_all_eigenvalues(
             )
             if not store_root(track, i, k, conjugate[k], last):
                 return False
+    # The further steps may have changed the order.
     sort_descending(w, order)
     return are_distinct_roots(w, error)
 

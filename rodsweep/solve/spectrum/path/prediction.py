@@ -79,6 +79,7 @@ def find_conjugates(w: Complex, conjugate: NDArray) -> None:
         conjugate[k] = -1
         if w[k].imag != 0:
             for j in range(len(w)):
+                # The comparison is exact, because one of two conjugates is always made from the other.
                 if w[j] == w[k].conjugate():
                     conjugate[k] = j
 

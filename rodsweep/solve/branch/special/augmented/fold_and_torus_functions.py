@@ -103,20 +103,24 @@ class TorusFunction:
             raise Unsolvable("the multipliers that cross the unit circle have become real")
         self.multiplier = pair
         p = matrix.orbit.orbit_equations
+        # At the multiplier itself the matrix would be singular, so inverse iteration needs a small shift.
         self.shifted_propagator = (
             matrix.propagator - (1 + AUGMENTED_SETTINGS.inverse_iteration_shift) * pair * p.symmetry
         )
+        # Almost any start has a part along the eigenvector, and only this part grows.
         start = np.ones(len(p.mass), dtype=complex)
         for _ in range(AUGMENTED_SETTINGS.inverse_iterations):
             start = np.linalg.solve(self.shifted_propagator, p.symmetry @ start)
             start /= np.linalg.norm(start)
         self.border = start.conj()
+        # The eigenvector at t = 0 is continued to all stages, where the residual is evaluated.
         K, s, n = matrix.orbit.stage_states.shape
         self.null_vectors = matrix.orbit_increments_at_fixed_parameter(
             _real_and_imaginary(start), np.zeros((K, s, 2, n))
         )
         n = len(start)
         self.bordered_propagator = np.zeros((n + 1, n + 1), dtype=complex)
+        # The border makes the matrix regular although its block is singular at the multiplier.
         self.bordered_propagator[:n, :n] = matrix.propagator - pair * p.symmetry
         self.bordered_propagator[:n, n] = -p.symmetry @ start
         self.bordered_propagator[n, :n] = self.border
@@ -140,6 +144,7 @@ class TorusFunction:
         right_side = np.append(
             self.multiplier * (orbit.orbit_equations.symmetry @ start), 1 - self.border @ start
         )
+        # The defect is taken at the cycle itself; only the correction uses the factors of the nearby cycle.
         right_side[:-1] -= end + ends[0] + 1j * ends[1]
         change = np.linalg.solve(self.bordered_propagator, right_side)
         self.multiplier += complex(change[-1])
@@ -163,6 +168,7 @@ def correct_until_converged(function: FoldFunction | TorusFunction, orbit: Orbit
             and change <= AUGMENTED_SETTINGS.rounding_correction
         ):
             return
+        # The iteration converges linearly, so a change that grows will not decrease later.
         if change > previous_change:
             break
         # The first value belongs to the cycle of the matrix; by chance it may be as close as the second.

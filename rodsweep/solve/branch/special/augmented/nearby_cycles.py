@@ -80,6 +80,7 @@ class NearbyCycleSolver:
             distance = self.matrix_distance
             previous_value = self.test_function.value(orbit)
             self.test_function.correct_vectors(orbit)
+            # Cycle and test function are corrected in turn: at a wrong cycle the exact function has no use.
             value = self.test_function.value(orbit)
             # The change of the test function, divided by `slope`, is a distance across the curve.
             change_after_step = max(change, abs(value - previous_value) / slope)
@@ -89,17 +90,21 @@ class NearbyCycleSolver:
                 if previous_change
                 else min(1.0, self.contraction_rate * distance)
             )
+            # Divided by a small deflection, the test function changes for reasons other than the matrix.
             if previous_change and not self._family.has_small_cycles:
                 contraction = AUGMENTED_SETTINGS.contraction_safety_factor * correction_ratio / distance
                 self.contraction_rate = max(AUGMENTED_SETTINGS.min_contraction_rate, contraction)
+            # The product predicts the next change, that is the error left after this correction.
             if change_after_step * min(correction_ratio, 1.0) <= max(
                 tolerance, AUGMENTED_SETTINGS.tolerance_to_distance_ratio * abs(value) / slope
             ):
                 return orbit, value
             if previous_change and correction_ratio > AUGMENTED_SETTINGS.max_correction_ratio:
+                # Corrections that stall at this size are rounding, which a new matrix would not reduce.
                 if change_after_step <= AUGMENTED_SETTINGS.rounding_correction:
                     return orbit, value
                 self._assemble_matrix(orbit)
+                # With a new matrix no ratio to the last change is known.
                 change_after_step = 0.0
             previous_change = change_after_step
         raise Unsolvable(
@@ -111,6 +116,7 @@ class NearbyCycleSolver:
         orbit); raises Unsolvable."""
         step = self.matrix.correction(orbit, self.border, condition.residual(orbit))
         change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate_unit)
+        # Negated, so that a change of nan is refused too.
         if not change <= ORBIT_NEWTON_SETTINGS.max_relative_step:
             raise Unsolvable("Newton's method for the cycle finds no cycle of the branch near its start")
         self.matrix_distance += change
