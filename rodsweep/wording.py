@@ -1,4 +1,4 @@
-"""Counts, plurals and durations in words, for the command line and `show`."""
+"""Counts, plurals, durations and rounded numbers in words, for the command line and `show`."""
 
 from collections.abc import Sequence
 
@@ -47,3 +47,8 @@ def enumeration(parts: Sequence[str], conjunction: str = "and") -> str:
 def duration(seconds: float) -> str:
     """A duration with three digits: in milliseconds below one second, else in seconds."""
     return f"{1e3 * seconds:.3g} ms" if seconds < SHORTEST_IN_SECONDS else f"{seconds:.3g} s"
+
+
+def two_digits(value: float) -> str:
+    """`value` as text with two significant digits; with an exponent only from a million and below 1e-4."""
+    return f"{float(f'{value:.2g}'):g}"

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from ..model.arm.arm import SlenderArm
 from ..model.arm.neglected import SELF_BUCKLING_WEIGHT, Effect, Validity
 from ..model.material.laws import LINEAR
+from ..wording import two_digits
 
 if TYPE_CHECKING:
     from .assessment import Assessment  # for annotations only: the module imports solvers
@@ -81,19 +82,22 @@ def compression_check(assessment: "Assessment", at_flutter: Effect) -> Check:
         return _rubber_compression_check(assessment)
     texts = []
     effects = [at_flutter, *assessment.compression_under_load]
-    if assessment.compression_under_load:
-        verb = "shortens" if assessment.arm.F >= 0 else "lengthens"
-        texts.append(f"the load {verb} the arm by {_percent_text(assessment.compression_under_load[0])}")
+    is_pulled = False
+    for effect in assessment.compression_under_load:
+        is_pulled = assessment.arm.F < 0 and not effect.value <= at_flutter.value
+        signed = -effect.value if assessment.arm.F < 0 else effect.value
+        texts.append(_strain_text("the load", "the arm", float(signed)))
     if not isnan(at_flutter.value):
-        beginning = "the flutter load shortens"
-        texts.append(f"{beginning} {'it' if texts else 'the arm'} by {_percent_text(at_flutter)}")
+        texts.append(_strain_text("the flutter load", "it" if texts else "the arm", float(at_flutter.value)))
     # A nan counts as `applies`, so an arm that does not flutter is judged by its load alone.
     validity = max(map(_validity_of_effect, effects))
     strain = max(float(effect.value) for effect in effects if not isnan(effect.value)) if texts else 0.0
+    noun, change = ("extension", "softer") if is_pulled else ("compression", "stiffer")
+    stiffening = abs(rubber_stiffening(-strain if is_pulled else strain))
     remark = (
         "a linear law of the material is accurate",
-        f"rubber is some {_one_digit_text(100 * rubber_stiffening(strain))} % stiffer at this compression",
-        "real materials are no longer linear at this compression",
+        f"rubber is some {_one_digit_text(100 * stiffening)} % {change} at this {noun}",
+        f"real materials are no longer linear at this {noun}",
     )[validity]
     shortening = " and ".join(texts) or NO_COMPRESSION_CHECKED
     place_clause = " at the weakest section" if assessment.arm.shape.varies else ""
@@ -109,16 +113,22 @@ def _rubber_compression_check(assessment: "Assessment") -> Check:
     texts = []
     flutter = assessment.force_at_flutter
     if arm.load is not None:
-        texts.append(f"the load shortens the arm by {100 * _weakest_section_shortening(arm, arm.F):.2g} %")
+        texts.append(_strain_text("the load", "the arm", _weakest_section_shortening(arm, arm.F)))
     if flutter is not None:
-        beginning = "the flutter load shortens it" if texts else "the flutter load shortens the arm"
-        texts.append(f"{beginning} by {100 * _weakest_section_shortening(arm, flutter):.2g} %")
+        flutter_compression = _weakest_section_shortening(arm, flutter)
+        texts.append(_strain_text("the flutter load", "it" if texts else "the arm", flutter_compression))
     shortening = " and ".join(texts) or NO_COMPRESSION_CHECKED
     place_clause = " at the weakest section" if arm.shape.varies else ""
     return Check(
         Validity.applies,
         f"Compression: {shortening}{place_clause}; the law of rubber includes large compression.",
     )
+
+
+def _strain_text(load_name: str, arm_name: str, strain: float) -> str:
+    """Clause on the compressive strain of an arm under a load; a negative strain lengthens the arm."""
+    verb = "shortens" if strain >= 0 else "lengthens"
+    return f"{load_name} {verb} {arm_name} by {two_digits(100 * abs(strain))} %"
 
 
 def _weakest_section_shortening(arm: SlenderArm, F: float) -> float:
@@ -153,9 +163,10 @@ def inertia_checks(arm_inertia: Effect, fluid_inertia: Effect) -> list[Check]:
         f"they lower the threshold of flutter by some {_one_digit_text(percent)} %",
         f"the model neglects both and applies only up to {arm_inertia.limit:g}",
     )[validity]
+    arm_text, fluid_text = (two_digits(float(effect.value)) for effect in (arm_inertia, fluid_inertia))
     sentence = (
-        f"Inertia: at flutter mass times rate over drag is {float(arm_inertia.value):.2g} for the arm and "
-        f"{float(fluid_inertia.value):.2g} for the fluid beside it; {remark}."
+        f"Inertia: at flutter mass times rate over drag is {arm_text} for the arm and {fluid_text} for the "
+        f"fluid beside it; {remark}."
     )
     return [Check(validity, sentence, can_change_verdict=True)]
 
@@ -171,7 +182,7 @@ def reynolds_checks(reynolds_number: Effect) -> list[Check]:
         "at large amplitude the drag is somewhat larger than in the model",
         "at large amplitude the drag is larger than in the model, and the motion slower",
     )[validity]
-    value = f"{float(reynolds_number.value):.2g}"
+    value = two_digits(float(reynolds_number.value))
     return [Check(validity, f"Reynolds number: {value} if the tip moves by half the length; {remark}.")]
 
 
@@ -185,7 +196,9 @@ def tube_wall_check(effect: Effect) -> Check:
     """Check of a tube's wall. effect: relative loss of bending stiffness by flattening of the section, if the
     tip moves by L/2."""
     loss = float(effect.value)
-    result = f"takes some {100 * loss:.2g} % of its bending stiffness" if loss < 1 else "folds the tube"
+    result = (
+        f"takes some {two_digits(100 * loss)} % of its bending stiffness" if loss < 1 else "folds the tube"
+    )
     validity = _validity_of_effect(effect)
     remark = (
         "negligible",
@@ -205,7 +218,7 @@ def weight_check(effect: Effect | None, arm: SlenderArm) -> Check:
     validity = _validity_of_effect(effect)
     sag = SAG_AT_SELF_BUCKLING * ratio
     sag_clause = (
-        f"a horizontal arm sags by {sag:.2g} of its length"
+        f"a horizontal arm sags by {two_digits(sag)} of its length"
         if sag < MAX_STATED_SAG
         else "a horizontal arm hangs down"
     )
@@ -214,7 +227,7 @@ def weight_check(effect: Effect | None, arm: SlenderArm) -> Check:
         "weight bends the arm a little, which the model neglects",
         "weight bends the arm, which the model neglects",
     )[validity]
-    ratio_clause = f"weight less buoyancy is {ratio:.2g} of the weight that buckles an upright arm"
+    ratio_clause = f"weight less buoyancy is {two_digits(ratio)} of the weight that buckles an upright arm"
     clause_of_uniform_arm = (
         "" if arm.shape.varies else f"; {sag_clause}"
     )  # the formula of the sag is valid for uniform arms
@@ -238,7 +251,3 @@ def _validity_of_effect(effect: Effect) -> Validity:
 
 def _doubtful_if(condition: bool) -> Validity:
     return Validity.doubtful if condition else Validity.applies
-
-
-def _percent_text(effect: Effect) -> str:
-    return f"{100 * float(effect.value):.2g} %"

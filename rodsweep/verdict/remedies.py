@@ -6,6 +6,7 @@ from ..model.arm.arm import SlenderArm
 from ..model.arm.neglected import Effect, Validity
 from ..model.arm.quantities import UNITS
 from ..model.units import unit_of, value_in_unit
+from ..wording import two_digits
 from .assessment import Assessment, rounded_down, rounded_up, thickness_factor, viscosity_factor
 from .load import LoadFormatter
 
@@ -22,7 +23,8 @@ def not_applicable_sentences(arm: SlenderArm, assessment: Assessment) -> list[st
     is_valid = assessment.validity_at_flutter != Validity.does_not_apply
     # At flutter itself the model applies then, so the sentence must say that the load is the reason.
     load_clause = f" at {LoadFormatter(arm).typed_text}" if is_valid else ""
-    excess = f"{first.name} is {excess_text(first)} what the model allows"
+    is_pulled = any(first is effect for effect in assessment.compression_under_load) and arm.F < 0
+    excess = f"{'extension' if is_pulled else first.name} is {excess_text(first)} what the model allows"
     sentences = [f"The model does not apply{load_clause}: {excess}; {remedy}."]
     for effect in reversed(others):
         name = effect.name.capitalize()
@@ -41,7 +43,7 @@ def effect_kind(effect: Effect) -> str:
 def excess_text(effect: Effect) -> str:
     """Ratio of an effect to its limit: "2.5 times", with two digits, or four below MAX_FOUR_DIGIT_RATIO."""
     ratio = float(effect.value_over_limit)
-    return f"{float(f'{ratio:.2g}'):g} times" if ratio >= MAX_FOUR_DIGIT_RATIO else f"{ratio:.4g} times"
+    return f"{two_digits(ratio)} times" if ratio >= MAX_FOUR_DIGIT_RATIO else f"{ratio:.4g} times"
 
 
 def _remedy(effect: Effect, arm: SlenderArm, assessment: Assessment) -> str:

@@ -127,6 +127,30 @@ def test_a_load_that_crushes_the_material_is_beyond_the_model_while_flutter_is_n
     assert arm_report(SlenderArm(**THICK, pressure="9.99 kPa")).validity == Validity.doubtful
 
 
+@pytest.mark.parametrize(
+    ("law", "pressure", "compression"),
+    [
+        ("linear", "-5 kPa", "lengthens the arm by 5 %; rubber is some 9 % softer at this extension"),
+        ("linear", "-100 kPa", "lengthens the arm by 100 %; real materials are no longer linear at this ext"),
+        ("linear", "5 kPa", "shortens the arm by 5 %; rubber is some 10 % stiffer at this compression"),
+        ("neo_hookean", "-5 kPa", "lengthens the arm by 5.3 %; the law of rubber includes large compression"),
+    ],
+)
+def test_a_pull_lengthens_the_arm(law, pressure, compression):
+    """Neo-Hookean: p/E = (h - 1/h^2)/3 with p = -5 kPa, E = 100 kPa at h = 1.0527; tangent (1 + 2/h^3)/3."""
+    report = arm_report(SlenderArm(**THICK, pressure=pressure, law=law))
+    checks = (*report.warnings, *report.checks)
+    sentence = next(check.sentence for check in checks if check.sentence.startswith("Compression"))
+    start, end = compression.split("; ")
+    assert f"the load {start} and the flutter load shortens it by " in sentence
+    assert f"; {end}" in sentence
+    if pressure == "-100 kPa":
+        assert report.verdict[0] == (
+            "The model does not apply at -100 kPa: extension is 10 times what the model allows; the model "
+            "needs a pull of at most 10 kPa."
+        )
+
+
 def test_weight_beyond_its_limit_says_which_density_would_do():
     report = arm_report(SlenderArm(**THICK, density_difference="-200 kg/m^3"))
     (excess, most) = numbers_in(report.verdict[0])[:2]

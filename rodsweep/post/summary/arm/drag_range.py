@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ....results.file.view import ResultView
+from ....wording import two_digits
 from .arm import given_columns
 
 
@@ -20,7 +21,7 @@ def drag_lines(view: ResultView, numbers: Mapping[str, np.ndarray]) -> list[str]
     for name, values in numbers.items():
         ratio = _largest_spread(values, arms)
         if np.isfinite(ratio):
-            factor_text = f"{100 * (ratio - 1):.2g} %" if ratio < 2 else f"a factor of {ratio:.3g}"
+            factor_text = f"{two_digits(100 * (ratio - 1))} %" if ratio < 2 else f"a factor of {ratio:.3g}"
             variations.append(f"{name} by {'up to ' * has_several_arms}{factor_text}")
     if not variations:
         return []

@@ -8,7 +8,7 @@ from ....model.arm.neglected import DOUBTFUL_RATIO, Validity
 from ....results.file.view import ResultView
 from ....results.layouts.si_variables import NEGLECTED_EFFECTS, VALIDITY_NOT_KNOWN, VALIDITY_VARIABLES
 from ....results.layouts.thresholds import HOPF_CROSSING_CODES
-from ....wording import count_of_total, counted
+from ....wording import count_of_total, counted, two_digits
 
 OTHER_PLANE = (
     "the motion is in the plane of the height; where the height exceeds the width, the arm flutters first in "
@@ -64,7 +64,7 @@ def validity_sentence(validity: Mapping[str, np.ndarray], condition: str = "", n
     verdict_text = "does not apply" if worst_validity == Validity.does_not_apply else "is doubtful"
     index = int(np.flatnonzero(is_affected)[np.argmax(excesses[is_affected])])
     name = NEGLECTED_EFFECTS[int(effects[index])].replace("_", " ")
-    size_text = f"{'up to ' * int(is_affected.sum() > 1)}{excesses[index]:.2g}"
+    size_text = f"{'up to ' * int(is_affected.sum() > 1)}{two_digits(excesses[index])}"
     limit_text = f", more than {DOUBTFUL_RATIO:g}" if worst_validity == Validity.doubtful else ""
     return (
         f"the model {verdict_text}{place_text}{condition}: {name} is {size_text} times its "
