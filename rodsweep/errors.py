@@ -36,6 +36,10 @@ class UserError(Exception):
     collective = False
     exit_status = BUG_STATUS
 
+    def __str__(self) -> str:
+        """The message on one line: control characters, as in the name of a file, are escaped."""
+        return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in super().__str__())
+
     def marked_collective(self) -> Self:
         """Marks this error as collective, which means that every MPI rank raises a copy, and returns it."""
         self.collective = True
@@ -71,4 +75,5 @@ def import_failure_error(modules: str, reason: object, extra: str = "solvers") -
         remedy = (
             f"`make install` in a clone installs all; or take the packages of Debian or conda, or {wheel}"
         )
-    return EnvironmentIncomplete(f"{modules} cannot be imported ({reason}); {remedy}")
+    reason_text = " ".join(str(reason).split())
+    return EnvironmentIncomplete(f"{modules} cannot be imported ({reason_text}); {remedy}")

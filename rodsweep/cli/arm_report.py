@@ -34,7 +34,7 @@ def print_arm_report(typed_values: dict[str, str | None], poisson: float, segmen
 QUANTITY_NAMES = "|".join((*UNITS, "segments"))
 """Regular expression of all names of quantities."""
 QUANTITY_IN_SENTENCE = re.compile(
-    rf"^({QUANTITY_NAMES})|(?:(?<= and )|(?<=, with ))({QUANTITY_NAMES})(?= = | are )"
+    rf"^({QUANTITY_NAMES})|(?:(?<= and )|(?<=, with )|(?<= is not below ))({QUANTITY_NAMES})(?= = | are )"
 )
 """Regular expression of a quantity's name at the beginning of a sentence or before " = " and " are "."""
 

@@ -12,7 +12,12 @@ from ..model.arm.quantities import UNITS
 from ..model.parameters import PARAMETERS
 from .arm_options import NUMBER, arm_options, parameter_options
 from .file_names import FILE_TYPE, OUTPUT, link_target, with_suffix_replaced
-from .portrait_rod import QUANTITIES_WITHOUT_OPTION, rod_of_options, solve_with_progress
+from .portrait_rod import (
+    QUANTITIES_WITHOUT_OPTION,
+    naming_portrait_options,
+    rod_of_options,
+    solve_with_progress,
+)
 
 PORT_TYPE = click.IntRange(0, 65535)
 """Type of an option that names a TCP port."""
@@ -156,8 +161,11 @@ def portrait(F_max: float, accuracy: float | None, output: Path, **options: Any)
     material = {name: options[name] for name in ("law", "section", "profile")}
     quantities = {name: value for name, value in options.items() if name in (*UNITS, "poisson")}
     quantities["segments"] = options["segment"] or None
-    rod = rod_of_options(parameters, quantities, material)
-    with solve_with_progress(ProgressReporter(None, "portrait", "solved"), solved_view) as solve:
+    with (
+        naming_portrait_options(),
+        solve_with_progress(ProgressReporter(None, "portrait", "solved"), solved_view) as solve,
+    ):
+        rod = rod_of_options(parameters, quantities, material)
         results = rod_results(PortraitRequest(rod=rod, F_max=F_max, accuracy=accuracy), solve)
     click.echo(paragraph(results))
     click.echo(write_portrait(results, output))

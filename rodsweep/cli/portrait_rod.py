@@ -1,5 +1,6 @@
 """The rod described by the options of the command `portrait`, and the progress display of its solves."""
 
+import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from itertools import count
@@ -23,6 +24,13 @@ QUANTITIES_WITHOUT_OPTION = (*LOADS, "fluid_density", "density_difference")
 """Quantities of an arm without an option: the portrait varies the load, and the model does not depend on
 densities."""
 
+OPTIONS_OF_KEYS = {
+    "thresholds.F_max": "--F-max",
+    "accuracy": "--accuracy",
+    **{f"material.{name}": f"--{name}" for name in ("law", "section", "profile")},
+}
+"""Options of `rodsweep portrait` by the keys of configs that they set."""
+
 
 def rod_of_options(
     parameters: Mapping[str, float | None], quantities: Mapping[str, Any], material: Mapping[str, str | None]
@@ -41,7 +49,9 @@ def rod_of_options(
     for name, value in parameter_values.items():
         allowed = PARAMETERS[name].allowed
         if not allowed.contains(value):
-            raise InputError(f"--{name} = {value:g} is not {allowed.description_for(value)}")
+            raise InputError(
+                f"--{name} = {value:g} is not allowed; it must be {allowed.description_for(value)}"
+            )
     material_values = _options_that_are_set(material)
     of_arm = _options_that_are_set(quantities)
     if of_arm:
@@ -60,6 +70,18 @@ def rod_of_options(
             raise InputError(f"--{name} is missing; give {options_text}, {arm_text}")
     values = {name: parameter_values.get(name, DEFAULT_VALUES_OF_PARAMETERS.get(name)) for name in PARAMETERS}
     return DescribedRod(parameters=_options_that_are_set(values), material=_read_material(material_values))
+
+
+@contextmanager
+def naming_portrait_options() -> Iterator[None]:
+    """Within this context, an InputError names the options of `rodsweep portrait` instead of keys of a
+    config."""
+    try:
+        yield
+    except InputError as error:
+        sentence = str(error)
+        key = next((key for key in OPTIONS_OF_KEYS if re.match(rf"{re.escape(key)}\b", sentence)), "")
+        raise InputError(OPTIONS_OF_KEYS.get(key, "") + sentence.removeprefix(key)) from None
 
 
 def _read_material(material: Mapping[str, Any]) -> Any:

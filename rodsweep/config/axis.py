@@ -127,7 +127,7 @@ def _axis_from_range(value: dict) -> Axis:
         if key not in allowed:
             raise ValueError(f"unknown key {short_repr(key)} in a range; its keys are {', '.join(allowed)}")
     for key in allowed[:3]:
-        if key not in value:
+        if value.get(key) is None:
             raise ValueError(f"a range needs start, stop and num, and {key} is missing")
     start = as_float(value["start"])
     stop = as_float(value["stop"])
@@ -136,7 +136,9 @@ def _axis_from_range(value: dict) -> Axis:
         num = int(num)
     spacing = value.get("spacing", "linear")
     if spacing not in ("linear", "log"):
-        raise ValueError(f"spacing = {short_repr(spacing)} is neither linear nor log")
+        given_text = "has no value; it is" if spacing is None else f"= {short_repr(spacing)} is neither"
+        conjunction = "or" if spacing is None else "nor"
+        raise ValueError(f"spacing {given_text} linear {conjunction} log")
     if isinstance(num, bool) or not isinstance(num, int) or not 1 <= num <= MAX_AXIS_VALUES:
         raise ValueError(f"num = {short_repr(num)} is not a whole number from 1 to {MAX_AXIS_VALUES}")
     if abs(start) == inf or abs(stop) == inf:

@@ -20,6 +20,8 @@ def as_float(value: Any) -> float:
     values."""
     if isinstance(value, str) and value.strip().lower() in ("inf", "+inf", "-inf"):
         return float(value)
+    if value is None:
+        raise ValueError("a value is missing; give a number")
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise ValueError(f"{short_repr(value)} is not a number")
     try:

@@ -196,3 +196,30 @@ def test_values_of_any_type_are_refused_with_the_name_of_the_argument(line, name
 def test_a_text_that_is_no_name_of_a_file_is_refused(line, call, name):
     with pytest.raises(rs.InputError, match="is not the name of a file"):
         call(name, line)
+
+
+@pytest.mark.parametrize("points", [HUGE, [HUGE], 0, True, [1.0], "1"], ids=list("abcdef"))
+def test_points_of_a_figure_are_whole_numbers_from_1(line, points):
+    with pytest.raises(rs.InputError, match="^points = .* is not allowed; give whole numbers, from 1$"):
+        rs.plot(line, points=points)
+
+
+def test_points_of_a_figure_may_be_an_array(line):
+    with pytest.raises(rs.InputError, match="points is for results of limit_cycle"):
+        rs.plot(line, points=PAIR)
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda line: rs.open("a\n\x1b[31mb.h5"),
+        lambda line: rs.plot("a\n\x1b[31mb.h5"),
+        lambda line: rs.plot(line).save("a\n\x1b[31mb/x.png"),
+        lambda line: rs.sweep("spectrum", points="a\n\x1b[31mb.csv"),
+    ],
+    ids=["open", "plot", "save", "points"],
+)
+def test_names_of_files_are_shown_on_one_line_without_control_characters(line, call):
+    with pytest.raises((rs.InputError, rs.EnvironmentIncomplete), match=r"a\\n\\x1b\[31mb") as refused:
+        call(line)
+    assert str(refused.value).isprintable()

@@ -70,13 +70,19 @@ def test_a_portrait_is_drawn_and_said(command):
         ),
         (
             (*ROD, "--F-max", "-1"),
-            "thresholds.F_max = -1.0 is not allowed; it should be a finite number above 0",
+            "--F-max = -1.0 is not allowed; it should be a finite number above 0",
         ),
         (
             ("--k1", "-3", "--k2", "1", "--gamma3", "1"),
-            "--k1 = -3 is not a number above 0, or inf for an inextensible rod",
+            "--k1 = -3 is not allowed; it must be a number above 0, or inf for an inextensible rod",
         ),
-        ((*ROD, "--gamma1", "-1"), "--gamma1 = -1 is not a finite number above 0"),
+        ((*ROD, "--gamma1", "-1"), "--gamma1 = -1 is not allowed; it must be a finite number above 0"),
+        (
+            (*ROD, "--accuracy", "2"),
+            "--accuracy = 2.0 is not allowed; it should be a number from 1e-13 to 0.01",
+        ),
+        ((*ROD, "--profile", "no.csv"), "--profile: no.csv does not exist"),
+        ((*ROD, "--law", "x"), "--law = 'x' is not allowed; it should be linear or neo_hookean"),
         ((*ROD, "--poisson", "0.3"), "--viscosity is missing; an arm needs the viscosity of its fluid"),
         (("--k1", "x", "--k2", "1", "--gamma3", "1"), "Invalid value for '--k1': 'x' is not a valid float."),
     ],

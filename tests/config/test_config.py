@@ -196,7 +196,7 @@ REFUSED_BY_TASK = [
         thresholds() + "thresholds: 3",
         "thresholds = 3 is not allowed; it should be a mapping of keys to values",
     ),
-    (thresholds() + "thresholds:", "thresholds = None is not allowed; it should be a mapping"),
+    (thresholds() + "thresholds:", "thresholds has no value; it should be a mapping"),
     (thresholds(options="Fmax: 3"), "unknown key thresholds.Fmax; did you mean F_max?"),
     (
         config("branch", "F: 9, k2: 9, gamma3: 0", "along: k1, start: 1.0e-320, stop: 9"),
@@ -455,3 +455,36 @@ def test_columns_are_those_of_the_header(tmp_path):
         job(tmp_path, "task: spectrum\nparameters: {points: p.csv, columns: [taper]}")
     with pytest.raises(InputError, match=r"parameters.columns is given but parameters.points is not"):
         job(tmp_path, "task: spectrum\nparameters: {F: 1, k1: 9, k2: 9, gamma3: 1, columns: [taper]}")
+
+
+@pytest.mark.parametrize(
+    ("override", "sentence"),
+    [
+        ("accuracy=", "accuracy: a value is missing; give a number"),
+        ("accuracy=null", "accuracy: a value is missing; give a number"),
+        ("task=", "task has no value; it should be spectrum, "),
+        ("parameters=", "parameters has no value; it should be a mapping of keys to values"),
+        ("spectrum.modes=~", "spectrum.modes has no value; it should be a whole number from 1 to 100"),
+        ("spectrum.certify=", "spectrum.certify has no value; it should be true or false"),
+        ("parameters.F=[1, null]", "parameters.F: a value is missing; give a number"),
+        (
+            "parameters.F={start: 1, stop: null, num: 3}",
+            "parameters.F: a range needs start, stop and num, and stop",
+        ),
+        (
+            "parameters.F={start: 1, stop: 2, num: 3, spacing: null}",
+            "parameters.F: spacing has no value; it is linear",
+        ),
+        (
+            "parameters.arm={segments: [null]}",
+            "parameters.arm.segments, number 1 has no value; write a segment as",
+        ),
+    ],
+)
+def test_a_key_without_value_is_refused_without_the_word_of_a_language(tmp_path, override, sentence):
+    path = tmp_path / "c.yaml"
+    path.write_text("task: spectrum\nparameters: {F: 1, k1: 200, k2: 1.0e4, gamma3: 1.0e-4}\n")
+    with pytest.raises(InputError) as refused:
+        job_of_file(path, (override,))
+    assert sentence in str(refused.value)
+    assert "None" not in str(refused.value)

@@ -1,6 +1,7 @@
 """`rs.plot`: the figures of `rodsweep plot`, shown in a notebook or written into a file."""
 
 import re
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import wraps
@@ -9,6 +10,7 @@ from tempfile import TemporaryDirectory
 from types import MappingProxyType
 from typing import Any, Literal, ParamSpec, TypedDict, TypeVar, Unpack
 
+import numpy as np
 import xarray as xr
 
 from ...config.document.call_arguments import refusing_wrong_arguments, unknown_argument_error
@@ -155,6 +157,11 @@ class Picture:
         return {f"image/{kind}": self.image, "text/plain": self.shown}
 
 
+def _is_point_number(value: object) -> bool:
+    """Whether a value can be the number of a point, an integer from 1 to the largest integer of an array."""
+    return isinstance(value, int | np.integer) and value is not True and bool(1 <= value <= sys.maxsize)
+
+
 @one_at_a_time
 @refusing_wrong_arguments(PLOT_EXAMPLE)
 @naming_python_arguments
@@ -176,8 +183,8 @@ def plot(
     for name, choice, allowed in (("roots", roots, ROOT_CHOICES), ("what", what, FIGURE_KINDS)):
         if choice is not None and not (isinstance(choice, str) and choice in allowed):
             raise InputError(f"{name} = {short_repr(choice)} is not allowed; choose {', '.join(allowed)}")
-    points = [points] if isinstance(points, int) else points
-    if not isinstance(points, Sequence) or not all(isinstance(point, int) for point in points):
+    point_list = [points] if isinstance(points, int | np.integer) else points
+    if not isinstance(point_list, Sequence | np.ndarray) or not all(map(_is_point_number, point_list)):
         raise InputError(f"points = {short_repr(points)} is not allowed; give whole numbers, from 1")
     views_or_answers = [data] if isinstance(data, Drawable) else data
     if not isinstance(views_or_answers, Sequence) or not views_or_answers:
@@ -186,7 +193,7 @@ def plot(
         )
     values = checked_slice_values(at)
     views = [slice_at_values(view_of_result(item, PLOT_EXAMPLE), values) for item in views_or_answers]
-    choices: dict[str, Any] = {"roots": roots, "what": what, "points": tuple(points)}
+    choices: dict[str, Any] = {"roots": roots, "what": what, "points": tuple(map(int, point_list))}
     choices |= {"look": FigureLook(**look), "shapes": CachedShapeSolver()}
     file = None if output is None else named_file_path(output, PLOT_EXAMPLE)
     suffix = ".gif" if what == "animation" else ".png"

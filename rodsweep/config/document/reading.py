@@ -190,7 +190,8 @@ def _task_name(tree: dict) -> str:
         raise InputError(f"task is missing; it should be {tasks_text}")
     task = tree["task"]
     if not isinstance(task, str) or task not in CONFIGS:
-        raise InputError(f"task = {short_repr(task)} is not allowed; it should be {tasks_text}")
+        given_text = "has no value" if task is None else f"= {short_repr(task)} is not allowed"
+        raise InputError(f"task {given_text}; it should be {tasks_text}")
     for name in CONFIGS:
         if name in tree and name != task:
             section: Any = CONFIGS[task].model_fields[task].annotation

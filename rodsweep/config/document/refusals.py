@@ -54,7 +54,8 @@ def message_of_problem(config: type[Config], problem: Any) -> str:
     key_alone = location[-1] if location else ""
     field = None if number_texts else _section_class(config, location[:-1]).model_fields.get(key_alone)
     allowed = allowed_values_text(field) if field else problem["msg"].removeprefix("Input should be ")
-    return f"{key} = {short_repr(value)} is not allowed; it should be {allowed}"
+    given_text = "has no value" if value is None else f"= {short_repr(value)} is not allowed"
+    return f"{key} {given_text}; it should be {allowed}"
 
 
 def unknown_key_hint(key: str, allowed: Sequence[str], start_kind: str = "known keys are") -> str:

@@ -205,10 +205,12 @@ class PhaseDiagramConfig(LinearConfig):
         given_axis = self.parameters.axes.get(name)
         given_values = np.array([PARAMETERS[name].default]) if given_axis is None else given_axis.array()
         if name in self.plane_parameters or not first_value <= given_values[0] <= last_value:
+            given_text = (
+                f"has {len(given_values)} values" if len(given_values) > 1 else f"is {given_values[0]:g}"
+            )
             raise ValueError(
-                f"phase_diagram.bautin_along.{name} is from {first_value:g} to {last_value:g}; "
-                f"parameters.{name} must have a single value in this range, but the number of values is "
-                f"{len(given_values)}, and the first value is {given_values[0]:g}"
+                f"parameters.{name} {given_text}; it must have a single value in the range of "
+                f"phase_diagram.bautin_along.{name}, from {first_value:g} to {last_value:g}"
             )
         return self
 

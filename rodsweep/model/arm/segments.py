@@ -81,9 +81,8 @@ def _quantities_by_name(start: str, segment: Any) -> Mapping[str, GivenQuantity]
         return {str(name): value for name, value in segment.items()}
     length, colon, parts = segment.partition(":") if isinstance(segment, str) else ("", "", "")
     if not colon:
-        raise InputError(
-            f"{start}: {short_repr(segment)} is not a segment; write a segment as in '{EXAMPLE_SEGMENT}'"
-        )
+        given_text = " has no value" if segment is None else f": {short_repr(segment)} is not a segment"
+        raise InputError(f"{start}{given_text}; write a segment as in '{EXAMPLE_SEGMENT}'")
     quantities: dict[str, GivenQuantity] = {"length": length.strip()}
     for part in parts.split(","):
         match = SEGMENT_QUANTITY_PATTERN.fullmatch(part)

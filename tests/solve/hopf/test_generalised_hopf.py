@@ -363,8 +363,14 @@ def test_a_closed_curve_over_three_parameters_is_followed_once(monkeypatch):
     ("options", "sentence"),
     [
         ("bautin_along: {k2: [1, 20]}", "bautin_along is given but criticality is false"),
-        ("criticality: true, bautin_along: {k2: [10, 20]}", "bautin_along.k2 is from 10 to 20"),
-        ("criticality: true, bautin_along: {k1: [8, 20]}", "bautin_along.k1 is from 8 to 20"),
+        (
+            "criticality: true, bautin_along: {k2: [10, 20]}",
+            "parameters.k2 is 9; it must have a single value in the range of ",
+        ),
+        (
+            "criticality: true, bautin_along: {k1: [8, 20]}",
+            "parameters.k1 has 2 values; it must have a single value",
+        ),
         ("criticality: true, bautin_along: {k2: 9}", "bautin_along.k2 has a single value; give at least two"),
         (
             "criticality: true, bautin_along: {k2: [1, inf]}",
@@ -378,7 +384,7 @@ def test_a_closed_curve_over_three_parameters_is_followed_once(monkeypatch):
         ("criticality: true, bautin_along: {gamma1: [1, 2]}", "bautin_along.gamma1"),
         ("criticality: true, bautin_along: {k2: [8, 20], taper: [0.5, 1]}", "has 2 parameters; give one"),
         ("criticality: true, bautin_along: {taper: [0, 1]}", "bautin_along.taper"),
-        ("criticality: true, bautin_along: {taper: [0.5, 0.9]}", "bautin_along.taper is from 0.5 to 0.9"),
+        ("criticality: true, bautin_along: {taper: [0.5, 0.9]}", "bautin_along.taper, from 0.5 to 0.9"),
     ],
 )
 def test_a_third_parameter_that_cannot_be_is_refused(tmp_path, options, sentence):
