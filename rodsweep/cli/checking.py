@@ -21,7 +21,7 @@ from ..tasks.arm.point_solver import OutsideModelStatus, rod_numbers
 from ..tasks.arm.validity import ArmValidity
 from ..tasks.running.job import Job
 from ..verdict.checks import tube_wall_check
-from ..wording import counted
+from ..wording import count_of_total, counted
 
 
 def print_job_check(job: Job) -> None:
@@ -121,9 +121,11 @@ def _lines_on_points_without_rod(points: Points) -> list[str]:
     if rods is not None:
         modelled_rods = rods if points.arm_statuses is None else rods[points.arm_statuses == SLENDER]
         rods_text = counted(len(np.unique(modelled_rods)), "different rod")
-        lines.append(f"{rods_text} at {len(modelled_rods)} points; equal rods are solved once")
+        lines.append(f"{rods_text} at {counted(len(modelled_rods), 'point')}; equal rods are solved once")
     for status in OutsideModelStatus:
         point_count = 0 if points.arm_statuses is None else int((points.arm_statuses == status).sum())
         if point_count:
-            lines.append(f"{status.name} at {point_count} of {points.count} points: {status.sentence}")
+            lines.append(
+                f"{status.name} at {count_of_total(point_count, points.count, 'point')}: {status.sentence}"
+            )
     return lines

@@ -7,7 +7,7 @@ import click
 
 from .. import __version__
 from ..errors import InputError
-from ..wording import counted
+from ..wording import counted, is_or_are
 from .arm_options import NUMBER, arm_options
 from .file_names import FILE_TYPE, OUTPUT, link_target, result_file_path, with_suffix_replaced
 from .launchers import launcher_rank_values
@@ -98,7 +98,7 @@ def snapshot(file: Path, output: Path | None) -> None:
 
     output = result_file_path(output or with_suffix_replaced(file, f"-snapshot{file.suffix}"))
     stored_count, points = write_snapshot(link_target(file), output)
-    click.echo(f"wrote {output}: {stored_count} of {points} points are done")
+    click.echo(f"wrote {output}: {stored_count} of {counted(points, 'point')} {is_or_are(points)} done")
 
 
 @commands.command()

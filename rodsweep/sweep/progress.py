@@ -118,7 +118,8 @@ class ProgressReporter:
             self.bar.refresh()
             return
         self.next_display = now + LINE_SECONDS
-        summary = ", ".join(filter(None, (f"{count} {self.noun}" if count else "", rate, time_left)))
+        noun = "point" if self.total == 1 and self.noun == "points" else self.noun
+        summary = ", ".join(filter(None, (f"{count} {noun}" if count else "", rate, time_left)))
         print("; ".join(filter(None, (summary, self.position_text))), file=sys.stderr, flush=True)
 
     def close(self) -> None:

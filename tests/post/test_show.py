@@ -20,6 +20,7 @@ from rodsweep.post.summary.stability import stability_lines
 from rodsweep.results.file.view import read_view
 from rodsweep.solve.changes.status import ThresholdStatus
 from rodsweep.sweep.points.points import lines_along
+from rodsweep.sweep.progress import ProgressReporter
 from rodsweep.tasks.running.job import job_of_file
 
 ROD = "k1: 200, k2: 1.0e4, gamma3: 1.0e-4"
@@ -347,3 +348,18 @@ def test_show_and_figures_name_law_profile_and_segments(arm, material, lines, wo
     assert list(summary_of(view).material) == lines
     title = rs.plot(data).figure().get_suptitle().splitlines()[0]
     assert words in title if words else title.startswith("length")
+
+
+def test_parameters_are_shown_to_the_digit_in_which_they_differ():
+    """F = 199.9999999 was shown as 200, the value of k1, at which the rod would be crushed."""
+    data = rs.sweep("spectrum", F=199.9999999, k1=200, k2=1e4, gamma3=1e-4)
+    rows = {row[0]: row[1] for row in summary_of(view_of_dataset(data, Path("data"))).axes.rows}
+    assert rows == {"F": "199.9999999", "k1": "200", "k2": "10000", "gamma3": "0.0001"}
+
+
+@pytest.mark.parametrize(("total", "line"), [(1, "0 of 1 point\n"), (2, "0 of 2 points\n"), (None, "\n")])
+def test_progress_counts_one_point_as_one(monkeypatch, capsys, total, line):
+    monkeypatch.setattr("rodsweep.sweep.progress.QUIET_SECONDS", 0.0)
+    reporter = ProgressReporter(total, "title", "points" if total else "solved", is_bar=False)
+    reporter(0)
+    assert capsys.readouterr().err == line

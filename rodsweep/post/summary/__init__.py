@@ -46,6 +46,11 @@ SUMMARIES: dict[str, Callable[[ResultView, np.ndarray], SummaryLines]] = {
 computed points."""
 MAX_TABLE_WIDTH = 1000
 """Largest width, in characters, of a table of numbers that is printed into a pipe or a file."""
+ARM_DIGITS = 6
+"""Significant digits of the quantities of an arm, and of the parameters computed from them."""
+DISTINCT_DIGITS = 12
+"""Parameters that agree to this number of significant digits are equal: values computed from an arm differ by
+rounding."""
 POINT_NOUNS = {"thresholds": "rod", "criticality": "rod", "branch": "rod", "phase_diagram": "row"}
 """Noun for a point of a task's result, for tasks whose noun is not "point"."""
 
@@ -202,20 +207,22 @@ def _axes_table(view: ResultView) -> TextTable:
         si = ALL_QUANTITIES[name].unit
         unit = view.typed_units.get(name, si)
         rows.append((name, *_count_and_range(np.vectorize(value_in_unit)(values, unit, si)), unit))
+    # The parameters of an arm are computed; those of a rod are typed, and may differ in a late digit.
+    digits = ARM_DIGITS if view.quantities else DISTINCT_DIGITS
     for name, values in view.parameter_values.items():
-        rows.append((name, *_count_and_range(values), DIMENSIONS[name][0]))
+        rows.append((name, *_count_and_range(values, digits), DIMENSIONS[name][0]))
     if all(row[1] == "1" for row in rows):
         return TextTable(("parameter", "value", "unit"), tuple((row[0], row[2], row[4]) for row in rows))
     return TextTable(("parameter", "values", "from", "to", "unit"), tuple(rows))
 
 
-def _count_and_range(values: np.ndarray) -> tuple[str, str, str]:
+def _count_and_range(values: np.ndarray, digits: int = ARM_DIGITS) -> tuple[str, str, str]:
     """Returns (count, smallest, largest) of `values`, of any shape, as text. count: number of distinct
-    values. NaN is ignored. `largest` is empty if all values are equal."""
-    # Twelve digits, because values computed from an arm may differ by rounding.
-    distinct = {f"{value:.12g}" for value in values[~np.isnan(values)]}
+    values. NaN is ignored. `largest` is empty if all values are equal. digits: significant digits of the
+    texts."""
+    distinct = {f"{value:.{DISTINCT_DIGITS}g}" for value in values[~np.isnan(values)]}
     range_ends = sorted(map(float, distinct))
-    texts = [f"{end:.6g}" for end in range_ends]
+    texts = [f"{end:.{digits}g}" for end in range_ends]
     return str(len(range_ends)), texts[0] if texts else "", texts[-1] if len(texts) > 1 else ""
 
 
