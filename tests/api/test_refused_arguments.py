@@ -223,3 +223,107 @@ def test_names_of_files_are_shown_on_one_line_without_control_characters(line, c
     with pytest.raises((rs.InputError, rs.EnvironmentIncomplete), match=r"a\\n\\x1b\[31mb") as refused:
         call(line)
     assert str(refused.value).isprintable()
+
+
+@pytest.fixture(scope="module")
+def cycles():
+    return rs.sweep("limit_cycle", F=[1, 2], **ROD, accuracy=1e-3)
+
+
+DIAGRAM = {"F": rs.linspace(1, 50, 5), "k1": [100, 200], "k2": 1e4, "gamma3": 1e-4}
+
+
+@pytest.mark.parametrize(
+    ("call", "sentence"),
+    [
+        (
+            lambda line, cycles: rs.table(line, "crossings"),
+            "spectrum has no table 'crossings'; there are points, ",
+        ),
+        (lambda line, cycles: rs.table(line, 5), "name = 5 is not the name of a table; write it as in "),
+        (
+            lambda line, cycles: rs.table(line, columns=5),
+            "columns = 5 is not a list of names, such as ['F', ",
+        ),
+        (lambda line, cycles: rs.table(line, columns=["k9"]), "spectrum: its tables have no column 'k9'; "),
+        (
+            lambda line, cycles: rs.table(cycles, columns=["harmonic_amplitude", "multiplier_real"]),
+            "harmonic_amplitude and multiplier_real are in two tables, harmonics and multipliers; ",
+        ),
+        (
+            lambda line, cycles: rs.plot(line, at={"F": 3}),
+            'at={"F": 3}: spectrum has no point there; it has F = ',
+        ),
+        (
+            lambda line, cycles: rs.plot(line, at={"k7": 3}),
+            'at={"k7": 3}: spectrum has no such axis; the points ',
+        ),
+        (
+            lambda line, cycles: rs.plot(line, at={"F": "x"}),
+            'at={"F": "x"} must be a parameter with a number, ',
+        ),
+        (
+            lambda line, cycles: rs.plot(line, width="1 mm"),
+            "width = '1 mm' is not allowed; choose single, double, ",
+        ),
+        (
+            lambda line, cycles: rs.plot(line, style="no"),
+            "no is neither a style of matplotlib nor a style file",
+        ),
+        (
+            lambda line, cycles: rs.plot(cycles, roots="all"),
+            "limit_cycle: roots is for results of spectrum, and ",
+        ),
+        (lambda line, cycles: rs.plot([line] * 30), "30 files are given, "),
+        (
+            lambda line, cycles: rs.plot([cycles, cycles], what="energy"),
+            'what="energy" draws a single file; only ',
+        ),
+        (
+            lambda line, cycles: rs.plot(cycles, what="animation", width="single"),
+            "width is for printed figures, ",
+        ),
+        (
+            lambda line, cycles: rs.sweep(
+                "phase_diagram", **DIAGRAM, criticality=True, bautin_along={"k2": [1, 2], "gamma3": [1, 2]}
+            ),
+            "phase_diagram: bautin_along has 2 parameters; give one, with at least two values",
+        ),
+        (
+            lambda line, cycles: rs.sweep("spectrum", arm=ARM | {"poisson": [0.3, 0.5], "pressure": 1}, k2=1),
+            "parameters.arm.poisson has several values but changes only k2, and parameters.k2 is given too; ",
+        ),
+        (
+            lambda line, cycles: rs.Arm(**ARM | {"length": "3 cm 4 mm"}),
+            "length = '3 cm 4 mm' has the unit 'cm 4 mm', which is not understood; ",
+        ),
+        (
+            lambda line, cycles: rs.Rod(k1=float("inf"), k2=1, gamma3=1, F=1).spectrum(longitudinal=True),
+            "spectrum.longitudinal: true needs finite parameters.k1, because a rod with k1 = inf cannot ",
+        ),
+    ],
+)
+def test_what_cannot_be_done_is_refused_in_one_sentence(line, cycles, call, sentence):
+    with pytest.raises(rs.InputError) as refused:
+        call(line, cycles)
+    assert str(refused.value).startswith(sentence)
+
+
+@pytest.mark.parametrize(
+    ("call", "sentence"),
+    [
+        (lambda answer: answer.nothing, "this answer has no 'nothing'; it has growth_rate, frequency, "),
+        (
+            lambda answer: rs.Rod(F=1, **ROD).F,
+            "a rod has no attribute 'F'; rod.parameters['F'] is its value, and ",
+        ),
+        (
+            lambda answer: rs.Rod(F=1, **ROD).nothing,
+            "a rod has no 'nothing'; its tasks are spectrum, thresholds, ",
+        ),
+    ],
+)
+def test_an_attribute_that_is_not_there_is_named_with_those_that_are(call, sentence):
+    with pytest.raises(AttributeError) as refused:
+        call(rs.Rod(F=1, **ROD).spectrum())
+    assert str(refused.value).startswith(sentence)

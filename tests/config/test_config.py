@@ -488,3 +488,35 @@ def test_a_key_without_value_is_refused_without_the_word_of_a_language(tmp_path,
         job_of_file(path, (override,))
     assert sentence in str(refused.value)
     assert "None" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "overrides", "sentence"),
+    [
+        ("task: spectrum\nparameters: {<<: {F: 1}}\n", (), "merge keys (<<) are not allowed in a config"),
+        (
+            "Task: spectrum\nparameters: {F: 1}\n",
+            (),
+            "unknown key Task; did you mean task? Its value should be ",
+        ),
+        ("task: spectrum\nmodes: 3\n", (), "unknown key modes; did you mean spectrum.modes?"),
+        (
+            "task: spectrum\n",
+            ("title=a\x07b",),
+            "'--set title=a\\x07b' has characters that cannot be printed",
+        ),
+        ("task: spectrum\n", (".".join(["a"] * 200) + "=1",), "keys are nested more than "),
+        (
+            'task: spectrum\nparameters: {F: 1, k1: 2, k2: 3, gamma3: 1}\ntitle: "a\\x07b"\n',
+            (),
+            "has characters that cannot be printed",
+        ),
+    ],
+)
+def test_odd_keys_and_texts_are_refused_with_what_to_write(tmp_path, text, overrides, sentence):
+    path = tmp_path / "c.yaml"
+    path.write_text(text)
+    with pytest.raises(InputError) as refused:
+        job_of_file(path, overrides)
+    assert sentence in str(refused.value)
+    assert str(refused.value).isprintable()
