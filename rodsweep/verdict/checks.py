@@ -23,7 +23,6 @@ MAX_STATED_SAG = 0.25
 """A check states the ratio of sag to length only below this: beyond, the linear formula is inaccurate."""
 USUAL_POISSON = (0.3, 0.5)
 """Range of Poisson's ratio of rubbers and gels; a check warns of a Poisson's ratio outside this range."""
-
 NO_COMPRESSION_CHECKED = "no load is given and no flutter was found, so compression is not checked"
 """Result of the check of compression for an arm without load and without flutter."""
 
@@ -89,7 +88,6 @@ def compression_check(assessment: "Assessment", at_flutter: Effect) -> Check:
         texts.append(_strain_text("the load", "the arm", float(signed)))
     if not isnan(at_flutter.value):
         texts.append(_strain_text("the flutter load", "it" if texts else "the arm", float(at_flutter.value)))
-    # A nan counts as `applies`, so an arm that does not flutter is judged by its load alone.
     validity = max(map(_validity_of_effect, effects))
     strain = max(float(effect.value) for effect in effects if not isnan(effect.value)) if texts else 0.0
     noun, change = ("extension", "softer") if is_pulled else ("compression", "stiffer")
@@ -133,7 +131,6 @@ def _strain_text(load_name: str, arm_name: str, strain: float) -> str:
 
 def _weakest_section_shortening(arm: SlenderArm, F: float) -> float:
     """Compressive strain of the arm's weakest section under the force F. F: in k3/L^2."""
-    # The force is the same in all sections, so the one of the smallest E A shortens most.
     smallest_stiffness = min(station.young * station.section.area for station in arm.shape.stations)
     base_stiffness = arm.shape.base.young * arm.cross_section.area
     return float(arm.material.constitutive_law.shortening(F / (arm.k1 * smallest_stiffness / base_stiffness)))
