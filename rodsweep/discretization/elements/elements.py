@@ -51,12 +51,12 @@ class Elements:
         """Number of elements."""
         return len(self.edges) - 1
 
-    @property
+    @cached_property
     def node_count(self) -> int:
         """Number of nodes, one end of the rod excluded. The equations determine which end is excluded."""
         return sum(self.orders)
 
-    @property
+    @cached_property
     def orders(self) -> tuple[int, ...]:
         """Order of each element."""
         return element_orders(self.element_count, self.order, self.order_ratios)

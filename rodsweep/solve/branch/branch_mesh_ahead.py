@@ -26,9 +26,8 @@ def expected_error_growth(measured: BranchCycle, points: Sequence[BranchCycle]) 
     length = end.arc_since_measured - known.arc_since_measured
     if not length > 0:
         return np.ones(2)
-    # Only the tails are compared, so the third entry, the size of the orbit, is set to 1.
-    shape = np.array([1.0, 1.0, 0.0])
-    tails = [tails_and_size(point.orbit) * shape + (0.0, 0.0, 1.0) for point in (known, end)]
+    # A branch is followed by arc length: the size of an orbit does not matter.
+    tails = [np.append(tails_and_size(point.orbit)[:-1], 1.0) for point in (known, end)]
     steps = BRANCH_MESH_SETTINGS.max_steps_between_measurements
     growth: Array = error_growth_factors(*tails) ** (steps * end.next_arc_length / length)
     return np.minimum(growth, BRANCH_MESH_SETTINGS.max_planned_growth)

@@ -131,9 +131,12 @@ def _next_mesh_and_calibration(
     is_accurate = (
         refined.errors.largest_weighted_error <= NEXT_MESH_SETTINGS.max_error_ratio_of_same_mesh * accuracy
     )
-    if calibration.parameter_change and not is_accurate:
+    if not calibration.is_measured_at_orbit and not is_accurate:
         # Errors scaled from an earlier cycle, if too large, are first measured on this mesh.
-        return current_mesh, calibration.with_outdated_errors
+        return (
+            current_mesh,
+            calibration if calibration.keeps_space_errors else calibration.with_outdated_errors,
+        )
     max_cost = inf if not is_accurate else _max_cost_ratio(refined, previous, name)
     target_mesh = regraded(cheapest_mesh(calibration, accuracy), refined.orbit) if max_cost else current_mesh
     if max_cost and target_mesh.cost <= max_cost * current_mesh.cost:
@@ -147,7 +150,7 @@ def _max_cost_ratio(refined: RefinedCycle, previous: "CycleStart | None", name: 
     if previous is None:
         # Coefficient tails, not measured errors, determined the first mesh of a chain.
         return NEXT_MESH_SETTINGS.max_new_mesh_cost_ratio
-    if not refined.calibration.parameter_change:
+    if refined.calibration.is_measured_at_orbit:
         return NEXT_MESH_SETTINGS.max_new_mesh_cost_ratio_if_measured
     parameter_change = relative_parameter_difference(previous.predictor.orbit.form, refined.orbit.form, name)
     # If the errors must be measured again anyway, another mesh needs no additional measurement.

@@ -131,17 +131,23 @@ def largest_coefficients(values: Array, analysis: Array) -> Array:
 
 
 def smooth_tails(orbit: Orbit) -> Array:
-    """Tails in space and in time, (2,), each divided by the largest value of the field. These tails change
-    smoothly along a branch, because the tail in space is the norm of
+    """Tails in space and in time, (2,), each divided by the largest value of the field: the largest of
+    `smooth_tails_of_elements`, and the tail in time."""
+    tails = smooth_tails_of_elements(orbit)
+    return np.array([tails[:-1].max(), tails[-1]])
+
+
+def smooth_tails_of_elements(orbit: Orbit) -> Array:
+    """Tail in space of each element, then the tail in time, (elements + 1,), each divided by the largest
+    value of the field. These tails change smoothly along a branch, because a tail in space is the norm of
     `COEFFICIENT_TAIL_SETTINGS.last_coefficients` coefficients: a single coefficient may vanish."""
     stresses = _stresses_of_elements(orbit, orbit.all_states)
     max_stress = np.max([np.abs(values).max(axis=(1, 2)) for values in stresses], axis=0)
-    end_norms = np.max(
-        [largest_norms(values, _last_columns_of_analysis_matrix(values.shape[2] - 1)) for values in stresses],
-        axis=0,
+    end_norms = np.array(
+        [largest_norms(values, _last_columns_of_analysis_matrix(values.shape[2] - 1)) for values in stresses]
     )
-    space_tails = end_norms / np.maximum(max_stress, EXPONENT_SETTINGS.min_divisor)
-    return np.array([float(space_tails.max()), float(tails_of_intervals(orbit).max())])
+    space_tails = (end_norms / np.maximum(max_stress, EXPONENT_SETTINGS.min_divisor)).max(axis=1)
+    return np.append(space_tails, tails_of_intervals(orbit).max())
 
 
 def _stresses_of_elements(orbit: Orbit, states: Array) -> list[Array]:

@@ -6,7 +6,11 @@ from rods import rod_of
 
 from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.stress.form import StressForm
-from rodsweep.solve.cycle.accuracy.error_indicators import AMPLITUDE_ERROR_INDEX, error_indicators
+from rodsweep.solve.cycle.accuracy.error_indicators import (
+    AMPLITUDE_ERROR_INDEX,
+    error_indicators,
+    squared_tail_growth,
+)
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
 from rodsweep.solve.orbit.compiled_measures import write_powers
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
@@ -48,3 +52,17 @@ def test_every_interval_loses_energy(orbit):
     gained = (power[0] - power[1]).reshape(found.interval_count, -1) @ found.collocation.weights * lengths
     stored = np.diff(found.form.elastic_energy(np.ascontiguousarray(found.all_states[:: found.stage_count])))
     assert (gained > stored).all()
+
+
+@pytest.mark.parametrize(
+    ("earlier", "later", "growth"),
+    [
+        ((2e-3, 3e-2, 1e-4, 1.0), (4e-3, 3e-2, 1e-4, 1.0), (4.0, 1.0)),
+        ((2e-3, 3e-2, 1e-4, 1.0), (1e-3, 3e-2, 3e-4, 0.5), (0.25, 2.25)),
+        ((1e-9, 3e-2, 1e-4, 1.0), (1e-6, 3e-2, 1e-4, 1.0), (1.0, 1.0)),
+        ((2e-3, 3e-2, 1e-4, 1.0), (6e-2, 1e-4, 1.0), (4.0, 1.0)),
+        ((3e-2, 1e-4, 1.0), (6e-2, 2e-4, 1.0), (4.0, 4.0)),
+    ],
+)
+def test_errors_in_space_grow_with_the_tail_of_the_element_that_grows_most(earlier, later, growth):
+    assert squared_tail_growth(np.array(earlier), np.array(later)) == pytest.approx(growth, rel=1e-12)

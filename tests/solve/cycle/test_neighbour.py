@@ -5,8 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rodsweep.bench.limit_cycle.swept_rods import TWO_SEGMENT_PROFILE
+from rodsweep.model.material.rod_material import DEFAULT_MATERIAL, RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.results.run.checkpoints import Checkpoints
+from rodsweep.solve.cycle.accuracy.finer_meshes import measured_calibration
 from rodsweep.solve.cycle.cycles_along_parameter import CYCLE_PREDICTION_SETTINGS, CyclePredictor
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.neighbour import CycleStart
@@ -15,6 +18,7 @@ from rodsweep.solve.orbit.newton import newton, relative_change
 
 ROD = Rod(F=34.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0)
 HOPF = 27.4271941267593
+TWO_SEGMENTS = RodMaterial(profile=TWO_SEGMENT_PROFILE)
 REQUEST = CycleRequest(1e-7, 0.1, 1, 0, 0, 0, 100)
 STEP = 0.99
 
@@ -81,3 +85,31 @@ def test_next_to_a_hopf_point_cycles_are_predicted_though_they_go_as_a_root(chai
         found = newton(predicted, 1e-10, NewtonWorkspace()).orbit
         assert found.max_energy_norm < last.orbit.max_energy_norm
         assert relative_change(predicted, found.values - predicted.values) < most
+
+
+@pytest.mark.parametrize(("material", "is_kept"), [(TWO_SEGMENTS, True), (DEFAULT_MATERIAL, False)])
+def test_errors_in_space_of_several_elements_are_kept_where_errors_in_time_are_measured_again(
+    material, is_kept
+):
+    rod, memory = (
+        Rod(F=18.0 if is_kept else 40.0, k1=1e4, k2=1e2, gamma3=1e-2, material=material),
+        NewtonWorkspace(),
+    )
+    handed = None
+    for _ in range(2):
+        handed = solve_cycle(rod, REQUEST, handed, "F", memory).neighbour
+        rod = replace(rod, F=STEP * rod.F)
+    calibration = handed.calibration
+    orbit = handed.predictor.orbit
+    grown = replace(
+        calibration.scaled_on_chain(orbit, 0.05, calibration.indicators),
+        parameter_change=0.05,
+        error_growth=np.array([1.1, 1.2]),
+    )
+    measured = measured_calibration(newton(orbit, 1e-11, memory), REQUEST.accuracy, grown)
+    assert not grown.is_measured_at_orbit
+    assert measured.is_measured_at_orbit
+    assert measured.parameter_change == (0.05 if is_kept else 0.0)
+    assert measured.time_errors == pytest.approx(calibration.time_errors, rel=0.3)
+    expected = calibration.space_errors * ([1.1, 1.1, 1.2, 1.2, 1.2] if is_kept else 1.0)
+    assert measured.space_errors == pytest.approx(expected, rel=1e-12 if is_kept else 0.3)

@@ -111,11 +111,10 @@ def test_eigenvalues_followed_along_a_chain_of_arms_lead(rod, end, followed):
 
 def test_a_chain_of_arms_follows_as_many_eigenvalues_as_a_proof_without_a_count_needs(monkeypatch):
     """Six eigenvalues prove nothing at the first force, where seven do. Between the forces 16.9 and 17.1 the
-    second pair becomes two real eigenvalues: the eigenvalues are then searched again."""
+    second pair becomes two real eigenvalues, which are followed without a search."""
     rod = Rod(F=18.3, k1=1e4, k2=1e2, gamma3=1e-2, material=RodMaterial(profile=TWO_SEGMENT_PROFILE))
     near = eigenvalues_to_follow(rod, straight_rod_stability(rod))
     assert len(near) == 5 and (near.imag > 0).sum() == 2
-    searched = []
     for F in (18.3 * 0.99 ** np.arange(1, 20)).tolist():
         here = rod.with_values(F=F)
         with monkeypatch.context() as patch:
@@ -123,10 +122,9 @@ def test_a_chain_of_arms_follows_as_many_eigenvalues_as_a_proof_without_a_count_
             found = straight_rod_stability(here, near)
         w = solve_spectrum(here, SpectrumRequest(1, 1e-9, True)).eigenvalues[0]
         assert found.w == pytest.approx(complex(w.real, abs(w.imag)), rel=1e-12)
-        if not len(found.followed_eigenvalues):
-            searched.append(F)
-        near = eigenvalues_to_follow(here, found)
-    assert len(searched) == 1 and 16.5 < searched[0] < 17.5 and (near.imag > 0).sum() == 1
+        near = found.followed_eigenvalues
+        assert len(near) == (5 if (near.imag > 0).sum() == 2 else 6)
+    assert (near.imag > 0).sum() == 1
 
 
 @pytest.mark.parametrize("taper", [0.5, 1.0])
@@ -136,6 +134,19 @@ def test_an_eigenvalue_that_does_not_lead_is_not_followed(taper):
     upper = w[w.imag >= 0]
     assert follow_leading_eigenvalue(rod, upper, 1e-9).w == pytest.approx(upper[0], rel=1e-12)
     assert follow_leading_eigenvalue(rod, upper[1:], 1e-9) is None
+
+
+@pytest.mark.parametrize(("start", "end", "pairs"), [(17.83, 17.48, 1), (17.48, 17.83, 2)])
+def test_a_pair_that_becomes_real_or_complex_is_followed_without_a_search(start, end, pairs):
+    material = RodMaterial(profile=TWO_SEGMENT_PROFILE)
+    rods = [Rod(F=F, k1=1e4, k2=1e2, gamma3=1e-2, material=material) for F in (start, end)]
+    guesses, expected = (
+        w[w.imag >= 0]
+        for w in (solve_spectrum(rod, SpectrumRequest(6, 1e-9, True)).eigenvalues for rod in rods)
+    )
+    followed = follow_leading_eigenvalue(rods[1], guesses, 1e-9)
+    assert followed.eigenvalues == pytest.approx(expected, rel=1e-9)
+    assert (expected.imag > 0).sum() == pairs != (guesses.imag > 0).sum()
 
 
 def test_an_unstable_rod_beside_its_hopf_point_ends_at_its_small_cycle():

@@ -124,6 +124,13 @@ def test_matrices_of_one_workspace_take_the_memory_of_the_largest():
     assert largest < most < 1.1 * largest
 
 
+def test_a_buffer_starts_at_a_cache_line():
+    workspace = NewtonWorkspace()
+    for size in (1, 100, 10**6):
+        buffer = workspace.buffer(workspace.reserve(size))
+        assert len(buffer) >= size and buffer.ctypes.data % 64 == 0
+
+
 def test_a_released_workspace_keeps_what_most_rods_need():
     workspace = NewtonWorkspace()
     for numbers, kept in (

@@ -50,7 +50,8 @@ class Calibration:
     time_order: Array
     """Order of convergence of the errors in time, (5,)."""
     tails_and_size: Array
-    """Coefficient tails in space and time (`smooth_tails`) and size of the measured orbit, (3,)."""
+    """Coefficient tails in space, of each element, and in time, and size of the measured orbit, (elements +
+    2,), from `error_indicators.tails_and_size`."""
     parameter_change: float
     """Sum of the relative changes of the parameter since the measurement; inf if the errors no longer
     apply."""
@@ -94,11 +95,8 @@ class Calibration:
         """This calibration with the errors scaled to a later orbit of a branch. The size of this orbit is
         ignored: a branch is followed by arc length, and errors do not grow as orbits shrink."""
         # The size of the earlier orbit replaces that of the later one, so that only the tails count.
-        present_tails = tails_and_size(orbit) * np.array([1.0, 1.0, 0.0]) + self.tails_and_size * (
-            0.0,
-            0.0,
-            1.0,
-        )
+        present_tails = tails_and_size(orbit)
+        present_tails[-1] = self.tails_and_size[-1]
         return replace(self, error_growth=error_growth_factors(self.tails_and_size, present_tails))
 
     @property
@@ -112,6 +110,29 @@ class Calibration:
         """Whether the scaled errors apply: `parameter_change` and `error_growth` are within their limits."""
         is_near = self.parameter_change <= CALIBRATION_SETTINGS.max_parameter_change
         return is_near and float(self.error_growth.max()) <= CALIBRATION_SETTINGS.max_error_growth
+
+    @property
+    def is_measured_at_orbit(self) -> bool:
+        """Whether the errors were measured at the orbit to which they are scaled, or the errors in time if
+        the errors in space were kept."""
+        return self.parameter_change == 0 or (
+            self.extrema_growth == 1 and bool((self.error_growth == 1).all())
+        )
+
+    @property
+    def keeps_space_errors(self) -> bool:
+        """Whether the scaled errors in space apply to a new measurement on the same mesh: a mesh of several
+        elements needs a higher order of every element to be finer in space, so that a comparison with such a
+        mesh costs more than a comparison with a mesh finer in time."""
+        return self.mesh.element_count > 1 and self.is_valid
+
+    @property
+    def scaled_space_errors(self) -> Array:
+        """Errors in space, (5,), scaled to the orbit as `errors` scales them."""
+        space_growth = float(self.error_growth[0])
+        growth = np.append(np.full(2, space_growth), np.full(ERROR_COUNT - 2, self.error_growth.max()))
+        scaled: Array = self.space_errors * growth
+        return scaled
 
     def is_valid_after(self, change: float) -> bool:
         """Whether the errors may still apply after a further relative change `change` of the parameter."""

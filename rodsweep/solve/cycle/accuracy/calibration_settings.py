@@ -68,6 +68,10 @@ class CalibrationSettings:
     """Lower limit of an error that is measured again on the same mesh, divided by the previous error scaled
     with the tails. Near a change of sign, an error is small at one cycle, and three cycles later as large as
     before."""
+    min_element_tail_ratio: float = 1e-3
+    """Lower limit of the tail of an element by which errors are scaled, divided by the largest tail of all
+    elements. Of two elements, the one with a tail of 0.07 times the largest determined the errors, which grew
+    four times as much as the square of the largest tail."""
     min_tail: float = 1e-15
     """Lower limit of the coefficient tails by which errors are scaled; smaller tails are rounding errors."""
 

@@ -14,7 +14,7 @@ from ....arrays import Array, Complex
 from ...orbit.measures import CycleMotion
 from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
-from ...orbit.tails import smooth_tails
+from ...orbit.tails import smooth_tails_of_elements
 from .calibration_settings import CALIBRATION_SETTINGS
 from .cycle_errors import CYCLE_ERROR_SETTINGS
 
@@ -60,15 +60,16 @@ def _decay_in_one_part(multipliers: Complex) -> float:
 
 
 def tails_and_size(orbit: Orbit) -> Array:
-    """Relative tails of an orbit in space and in time, not below a minimum, and size of the orbit, (3,)."""
-    return np.append(np.maximum(smooth_tails(orbit), CALIBRATION_SETTINGS.min_tail), orbit.max_energy_norm)
+    """Relative tails of an orbit in space, of each element, and in time, not below a minimum, and size of the
+    orbit, (elements + 2,)."""
+    tails = np.maximum(smooth_tails_of_elements(orbit), CALIBRATION_SETTINGS.min_tail)
+    return np.append(tails, orbit.max_energy_norm)
 
 
 def error_growth_factors(earlier_tails: Array, later_tails: Array) -> Array:
     """Estimated growth factors of the errors in space and in time between two orbits, (2,), at least 1.
 
-    earlier_tails, later_tails: tails in space and in time, and size, of the earlier and of the later orbit,
-    (3,) each.
+    earlier_tails, later_tails: `tails_and_size` of the earlier and of the later orbit, (elements + 2,) each.
 
     Absolute errors grow as the squares of the tails. Near the Hopf point where the cycles end, the error of
     the size also grows as the reciprocal of the squared size, because the mesh displaces the Hopf point.
@@ -77,15 +78,27 @@ def error_growth_factors(earlier_tails: Array, later_tails: Array) -> Array:
     # Errors are of second order in the tails.
     growth = np.maximum(squared_tail_growth(earlier_tails, later_tails), 1.0)
     # The error in space is relative to the size of the orbit; where the orbit shrinks, it grows.
-    growth[0] *= max((earlier_tails[2] / later_tails[2]) ** 2, 1.0)
+    growth[0] *= max((earlier_tails[-1] / later_tails[-1]) ** 2, 1.0)
     return growth
 
 
 def squared_tail_growth(earlier_tails: Array, later_tails: Array) -> Array:
-    """Growth factors of the squared absolute tails in space and in time between two orbits, (2,).
-    earlier_tails, later_tails: relative tails and size, (3,) each."""
-    growth: Array = ((later_tails * later_tails[2] / (earlier_tails * earlier_tails[2])) ** 2)[:2]
-    return growth
+    """Growth factors of the squared absolute tails in space and in time between two orbits, (2,). The growth
+    in space is the largest of all elements, because the cycle may hardly depend on the element with the
+    largest tail. earlier_tails, later_tails: `tails_and_size` of both orbits, (elements + 2,) each; of meshes
+    with different numbers of elements, the largest tails in space are compared."""
+    if len(earlier_tails) != len(later_tails):
+        earlier_tails, later_tails = (
+            np.append(tails[:-2].max(), tails[-2:]) for tails in (earlier_tails, later_tails)
+        )
+    earlier, later = (
+        np.append(
+            np.maximum(tails[:-2], CALIBRATION_SETTINGS.min_element_tail_ratio * tails[:-2].max()), tails[-2:]
+        )
+        for tails in (earlier_tails, later_tails)
+    )
+    growth: Array = ((later * later[-1] / (earlier * earlier[-1])) ** 2)[:-1]
+    return np.array([growth[:-1].max(), growth[-1]])
 
 
 def indicator_growth(earlier_indicators: Array, later_indicators: Array) -> tuple[float, float]:

@@ -65,27 +65,34 @@ def measured_calibration(
 
     accuracy: requested relative accuracy. previous: calibration at a nearby orbit, on any mesh, for the
     convergence rates (`calibration_of`) and lower limits of errors on the same mesh; None if the rates are
-    estimated from the coefficients of the orbit and the number of stages.
+    estimated from the coefficients of the orbit and the number of stages. If `previous` keeps its errors in
+    space, only the errors in time are measured again, unless their sum exceeds the accuracy.
     """
     mesh = mesh_of(solved.orbit)
     cycle = ComparedCycle(solved)
-    meshes, removed_fraction = finer_meshes(mesh)
+    (space_mesh, time_mesh), removed_fraction = finer_meshes(mesh)
     tolerance = FINER_MESH_SETTINGS.newton_tolerance_ratio * accuracy
-    # A generator, because the matrices share one workspace: each cycle is compared before the next is solved.
-    finer_orbits = (
-        newton(target.interpolated_orbit(solved.orbit), tolerance, solved.workspace) for target in meshes
-    )
-    space_errors, time_errors = (
-        cycle.differences_from(ComparedCycle(finer_orbit)) for finer_orbit in finer_orbits
-    )
-    time_errors = time_errors / removed_fraction
-    if previous is not None and previous.mesh == mesh:
-        # A second measurement on the same mesh may be small only because an error changes its sign nearby.
-        space_errors, time_errors = map(
-            np.maximum, (space_errors, time_errors), previous.min_remeasured_errors(solved.orbit)
-        )
-    calibration = calibration_of(mesh, space_errors, time_errors, solved.orbit, previous)
-    return with_indicators(calibration, error_indicators(solved, cycle.motion))
+
+    def errors_beside(finer_mesh: OrbitMesh) -> Array:
+        start = finer_mesh.interpolated_orbit(solved.orbit)
+        return cycle.differences_from(ComparedCycle(newton(start, tolerance, solved.workspace)))
+
+    def calibration_with(space_errors: Array, time_errors: Array) -> Calibration:
+        calibration = calibration_of(mesh, space_errors, time_errors, solved.orbit, previous)
+        return with_indicators(calibration, error_indicators(solved, cycle.motion))
+
+    time_errors = errors_beside(time_mesh) / removed_fraction
+    same_mesh = previous if previous is not None and previous.mesh == mesh else None
+    if same_mesh is None:
+        return calibration_with(errors_beside(space_mesh), time_errors)
+    # A second measurement on the same mesh may be small only because an error changes its sign nearby.
+    min_space_errors, min_time_errors = same_mesh.min_remeasured_errors(solved.orbit)
+    time_errors = np.maximum(time_errors, min_time_errors)
+    if same_mesh.keeps_space_errors:
+        calibration = calibration_with(same_mesh.scaled_space_errors, time_errors)
+        if calibration.errors(accuracy).largest_weighted_error <= accuracy:
+            return replace(calibration, parameter_change=same_mesh.parameter_change)
+    return calibration_with(np.maximum(errors_beside(space_mesh), min_space_errors), time_errors)
 
 
 def with_indicators(calibration: Calibration, indicators: Array) -> Calibration:

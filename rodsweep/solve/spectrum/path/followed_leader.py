@@ -14,9 +14,9 @@ from ....arrays import Array, Complex
 from ....determinant.arm.completeness import largest_w_of_proof, prove_complete
 from ....determinant.arm.count.count import count_right_of as count_of_arm
 from ....determinant.arm.count.count import largest_w_of_count
-from ....determinant.arm.determinant import arm_determinant
+from ....determinant.arm.determinant import ArmDeterminant, arm_determinant
 from ....determinant.arm.hull.hull import hull_of
-from ....determinant.arm.newton import refine_eigenvalues_and_errors
+from ....determinant.arm.newton import refine_eigenvalues_and_errors, taylor_parabola_roots
 from ....determinant.certificate.winding_number import count_right_of
 from ....determinant.roots.newton import refine_eigenvalue
 from ....determinant.roots.roots import root_error_and_scales
@@ -37,8 +37,7 @@ class LeadingEigenvalue(NamedTuple):
 
 def follow_leading_eigenvalue(rod: Rod, guesses: Complex, accuracy: float) -> LeadingEigenvalue | None:
     """The leading eigenvalue of `rod`, followed from a neighbouring rod; None unless the eigenvalue is
-    accurate and proved to lead, and unless all followed eigenvalues are real or complex as for the
-    neighbouring rod.
+    accurate, proved to lead, and real or complex as for the neighbouring rod.
 
     guesses: eigenvalues of the neighbouring rod with Im w >= 0, (n,), the leading eigenvalue first. For a
     uniform rod only the first eigenvalue is used; the proof for an arm that varies along its length needs
@@ -84,12 +83,7 @@ def _follow_leader_of_arm(rod: Rod, guesses: Complex, accuracy: float) -> Leadin
     if not isfinite(largest_w):
         largest_w = largest_w_of_count(next(_lines_for_count(guess)), determinant, hull)
     determinant.propagators_for(largest_w)  # the elements for the proof also serve the eigenvalues
-    roots = refine_eigenvalues_and_errors(guesses.tolist(), determinant, [inf] * len(guesses))
-    w = np.array([root for root, _ in roots])
-    error = np.array([error for _, error in roots])
-    if ((w.imag != 0) != (guesses.imag != 0)).any():
-        # Of a pair that has become two real eigenvalues, Newton's method finds only one.
-        return None
+    w, error = _refined_eigenvalues(guesses, determinant, accuracy)
     # Another followed eigenvalue may have taken the lead on the way from the neighbour.
     order = np.argsort(-w.real, kind="stable")
     w = w[order]
@@ -108,6 +102,34 @@ def _follow_leader_of_arm(rod: Rod, guesses: Complex, accuracy: float) -> Leadin
         for line in _lines_for_count(leading_w)
     )
     return LeadingEigenvalue(leading_w, float(error[0]), w) if is_leading else None
+
+
+def _refined_eigenvalues(
+    guesses: Complex, determinant: ArmDeterminant, accuracy: float
+) -> tuple[Complex, Array]:
+    """Returns (w, errors), (m,) each: the eigenvalues of an arm near `guesses`, (n,), and their absolute
+    errors. A complex guess near which no complex eigenvalue has the relative error `accuracy` gives two real
+    eigenvalues; two real guesses near which there are no such real eigenvalues give a complex one."""
+    w, error = _refined(guesses, determinant)
+    is_lost = (error > accuracy * np.abs(w)) | ((w.imag == 0) & (guesses.imag != 0))
+    if not is_lost.any():
+        return w, error
+    # Two eigenvalues close to a double root are those of a parabola about it.
+    middles = guesses[is_lost & (guesses.imag != 0)].real.tolist()
+    real_guesses = guesses[is_lost & (guesses.imag == 0)].real
+    if len(real_guesses):
+        middles.append(float(real_guesses.mean()))
+    pairs = [taylor_parabola_roots(complex(middle), determinant) for middle in middles]
+    added = np.array([root for pair in pairs for root in pair if root.imag >= 0])
+    new_w, new_error = _refined(added, determinant)
+    return np.append(w[~is_lost], new_w), np.append(error[~is_lost], new_error)
+
+
+def _refined(guesses: Complex, determinant: ArmDeterminant) -> tuple[Complex, Array]:
+    """Returns (w, errors): the roots of D found by Newton's method from each of `guesses`, and their absolute
+    errors; (n,) each."""
+    roots = refine_eigenvalues_and_errors(guesses.tolist(), determinant, [inf] * len(guesses))
+    return np.array([root for root, _ in roots]), np.array([error for _, error in roots])
 
 
 def proves_leader(rod: Rod, w: Complex, error: Array) -> bool:
