@@ -8,6 +8,8 @@ from reference import determinant as reference
 from rods import rod_of
 
 from rodsweep.determinant.parameter_path import determinant_along_path
+from rodsweep.determinant.roots.newton import refine_eigenvalue
+from rodsweep.determinant.rounding_at_root import rounding_error_at_root
 from rodsweep.determinant.value import DETERMINANT_SETTINGS, newton_correction_and_scales, scaled_determinant
 from rodsweep.model.rod import Rod
 
@@ -83,6 +85,25 @@ def test_the_noise_bounds_what_rounding_does_where_terms_cancel():
     errors = [rounding(w, rod) for w, rod in hard_cases()]
     assert len(errors) > 300
     assert max(errors) < 1
+
+
+def test_the_rounding_error_by_derivatives_bounds_what_rounding_does():
+    ratios = []
+    for w, rod in [*hard_cases(), *(case.values for case in cases())]:
+        _, _, scale, noise = scaled_determinant(w, rod.coefficients)
+        at_root = rounding_error_at_root(w, rod.coefficients, scale)
+        assert 0 < at_root < 3 * noise
+        ratios.append(rounding(w, rod) * noise / at_root)
+    assert max(ratios) < 1
+
+
+def test_the_rounding_error_by_derivatives_is_small_at_high_modes_of_a_pulled_rod():
+    """Where effects of one rounding cancel: the sum of moduli is ten times as large, or more."""
+    rod = Rod(F=-8.0, k1=1e4, k2=1e2, gamma3=1e-2)
+    for guess in (-14645.3, -44321.0685 + 65.8233j):
+        w = refine_eigenvalue(complex(guess), rod.coefficients)
+        _, _, scale, noise = scaled_determinant(w, rod.coefficients)
+        assert rounding(w, rod) * noise < rounding_error_at_root(w, rod.coefficients, scale) < noise / 8
 
 
 def test_the_typical_rounding_fraction_is_typical():

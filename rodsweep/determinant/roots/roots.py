@@ -18,8 +18,9 @@ from ...arrays import Array, Complex
 from ...model.compiled.compilation import compiled
 from ...model.rod import Coefficients
 from ..certificate.box import box_from_sqrt_bound
+from ..exponents import EXPONENT_SETTINGS
+from ..rounding_at_root import rounding_error_at_root
 from ..value import (
-    DETERMINANT_SETTINGS,
     distance_to_next_root,
     newton_correction_and_scales,
     scaled_determinant,
@@ -55,17 +56,22 @@ def root_error_and_scales(w: complex, coefficients: Coefficients) -> tuple[float
 
     With e = max(|D|, rounding error of D), the Newton correction e/|D'| is valid if |D'|^2 is large against
     e |D''|. Otherwise w lies at the distance |D'/D''| from the middle of two roots, and these lie within
-    sqrt(2 e/|D''|) of the middle.
+    sqrt(2 e/|D''|) of the middle. The rounding error of D is the typical one at a well-conditioned eigenvalue
+    and one that covers nearly all roundings at another.
     """
     error, length, wave = newton_correction_and_scales(w, coefficients)
-    if error > ROOT_SETTINGS.double_root_correction_ratio * abs(w):
-        D, D1, S, rounding_error = scaled_determinant(w, coefficients)
-        e = max(abs(D), DETERMINANT_SETTINGS.typical_rounding_fraction * rounding_error)
-        D_ww = abs(second_derivative(w, S, coefficients))
-        # Close to a double root Newton's correction is useless: the roots of the parabola bound the distance.
-        if abs(D1) ** 2 < ROOT_SETTINGS.min_squared_slope * e * D_ww:
-            root_distance = math.sqrt(2 * e / D_ww)
-            error = min(max(error, root_distance), abs(D1) / D_ww + root_distance)
+    if error > ROOT_SETTINGS.ill_conditioned_ratio * abs(w):
+        D, D1, S, _ = scaled_determinant(w, coefficients)
+        rounding_error = rounding_error_at_root(w, coefficients, S)
+        e = max(abs(D), ROOT_SETTINGS.rounding_fraction_at_root * rounding_error)
+        error = e / max(abs(D1), EXPONENT_SETTINGS.min_divisor)
+        if error > ROOT_SETTINGS.double_root_correction_ratio * abs(w):
+            D_ww = abs(second_derivative(w, S, coefficients))
+            # Close to a double root Newton's correction is useless: the roots of the parabola bound the
+            # distance.
+            if abs(D1) ** 2 < ROOT_SETTINGS.min_squared_slope * e * D_ww:
+                root_distance = math.sqrt(2 * e / D_ww)
+                error = min(max(error, root_distance), abs(D1) / D_ww + root_distance)
     return error, length, wave
 
 

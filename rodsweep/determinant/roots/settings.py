@@ -27,6 +27,13 @@ class RootSettings(KernelConstants):
     """An eigenvalue is also taken to be imaginary if |Re w| <= this number times the error of w."""
     double_root_correction_ratio: float = 1e-11
     """An eigenvalue w is checked for a double root if |D/D'| > this number times |w|."""
+    ill_conditioned_ratio: float = 1e-15
+    """An eigenvalue w is ill-conditioned if its error by the typical rounding error of D exceeds this number
+    times |w|. Below, `SpectrumErrorSettings.rounding_in_ulps` covers the largest rounding errors of D."""
+    rounding_fraction_at_root: float = 0.22
+    """The rounding error of D at an ill-conditioned eigenvalue is estimated by this fraction of its bound
+    `rounding_error_at_root`. The estimate must cover nearly all errors: of 46000 ill-conditioned eigenvalues
+    of random rods near double eigenvalues, 3 in 10000 have larger errors, by up to 1.13 times."""
     min_squared_slope: float = 16.0
     """The Newton correction e/|D'| is a valid error estimate if |D'|^2 >= this number times e |D''|, with the
     error e of D: the next root, at 2 |D'/D''|, is then at least 32 corrections away."""

@@ -16,6 +16,7 @@ from ....determinant.exponents import ROUND_OFF
 from ....determinant.parameter_path import PathDeterminantValue, determinant_along_path
 from ....determinant.roots.roots import sort_descending, taylor_parabola_roots
 from ....determinant.roots.settings import ROOT_NEWTON_SETTINGS, ROOT_SETTINGS
+from ....determinant.rounding_at_root import rounding_error_at_root
 from ....determinant.value import DETERMINANT_SETTINGS
 from ....model.compiled.compilation import compiled
 from ....model.compiled.kernel_constants import KernelConstants
@@ -134,13 +135,18 @@ def _iterate_to_convergence(
     `converged_error` is finite.
 
     first: result of the first step. crowding: upper estimate of |D''/(2 D')| at the eigenvalue. exact:
-    whether the remainder must be below the rounding error. rod: coefficients of the rod. direction: d(F, nu,
-    c2, gamma3)/dp. The error is inf without convergence.
+    whether the remainder must be below the rounding error, and the error must cover nearly all rounding
+    errors of D. rod: coefficients of the rod. direction: d(F, nu, c2, gamma3)/dp. The error is inf without
+    convergence.
     """
     step = first
     for _ in range(FOLLOWING_SETTINGS.max_newton_steps):
         error = converged_error(step, crowding, exact)
         if error < math.inf:
+            if exact and step.rounding_error > ROOT_SETTINGS.ill_conditioned_ratio * abs(step.w):
+                error = min(crowding * step.step_length * step.step_length, step.step_length)
+                error_of_D = rounding_error_at_root(step.w, rod, step.log_scale)
+                error = max(error, ROOT_SETTINGS.rounding_fraction_at_root * error_of_D / step.D_slope)
             return step, error
         step = correct_eigenvalue(step.w, rod, direction)
     return step, math.inf
