@@ -14,7 +14,7 @@ from .branch_end_reason import BranchEndReason
 from .branch_end_settings import BRANCH_END_SETTINGS
 from .branch_limits import BranchLimits
 from .branch_record import branch_end_point
-from .range_end_near_hopf import end_at_range_end_near_hopf, is_accurate_at_range_end
+from .range_end_near_hopf import end_at_range_end_near_hopf, is_best_at_range_end
 from .start.branch_start_settings import BRANCH_START_SETTINGS
 from .start.hopf_point import HopfBranchStart, hopf_as_special_point
 from .symmetry_breaking import reaches_symmetric_cycle, symmetry_breaking_between
@@ -88,7 +88,7 @@ def _known_hopf_end_or_shorter_step(
     for hopf in limits.hopfs_beyond:
         if _shrinks_to(start, hopf, limits.accuracy):
             end_before_hopf = end_at_range_end_near_hopf(start, hopf, limits)
-            is_final = _is_smallest(start) or is_accurate_at_range_end(end_before_hopf, limits.accuracy)
+            is_final = _is_smallest(start) or is_best_at_range_end(end_before_hopf, start, hopf, limits)
             if shorter is not None and (_has_fold_ahead(start, hopf) or not is_final):
                 return shorter
             if end_before_hopf is not None:

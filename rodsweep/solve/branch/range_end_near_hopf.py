@@ -32,12 +32,26 @@ def end_at_range_end_near_hopf(
     return BranchEnd(special, complete=True, range_passage=passage)
 
 
-def is_accurate_at_range_end(end: BranchEnd | None, accuracy: float) -> bool:
-    """Whether the branch has an end at the end of the range and the errors of its period and largest tip y
-    there meet the relative accuracy."""
-    if end is None:
+def is_best_at_range_end(
+    end: BranchEnd | None, start: BranchCycle, hopf: HopfBranchStart, limits: BranchLimits
+) -> bool:
+    """Whether the branch has the end `end` of `end_at_range_end_near_hopf`, and its errors of period and
+    largest tip y meet the accuracy or are at most the errors of a cycle that is solved at the end of the
+    range.
+
+    A mesh displaces the Hopf point, so the errors of its cycles grow with 1/distance from this point. The
+    errors of the normal form decrease with the distance, but not if `start` is closer.
+    """
+    if end is None or end.range_passage is None:
         return False
-    return max(end.special_point.period_error, end.special_point.tip_y_max_error) <= accuracy
+    end_distance = abs(limits.coordinate_range[end.range_passage.index] - hopf.parameter_coordinate)
+    start_distance = abs(start.parameter_coordinate - hopf.parameter_coordinate)
+    growth = start_distance / end_distance if end_distance else inf
+    errors = start.cycle.errors
+    max_period_error = max(limits.accuracy, growth * errors.period_error)
+    max_tip_y_error = max(limits.accuracy, growth * errors.amplitude_error)
+    special = end.special_point
+    return special.period_error <= max_period_error and special.tip_y_max_error <= max_tip_y_error
 
 
 def _point_at_range_end(

@@ -146,6 +146,28 @@ def test_a_range_may_begin_just_beyond_a_hopf_point(distance):
     assert kinds(same) == ["hopf", "end"]
 
 
+@pytest.mark.parametrize(
+    ("distance", "accuracy", "largest_error"),
+    [(1e-8, 1e-7, 3e-6), (1e-7, 1e-7, 3e-6), (3e-7, 1e-7, 3e-6), (1e-6, 1e-7, 3e-6), (1e-5, 1e-4, 2e-3)],
+)
+def test_the_amplitude_just_beyond_a_hopf_point_has_the_error_of_the_normal_form(
+    distance, accuracy, largest_error
+):
+    """Cycles that a mesh solves there have errors of the largest tip y of 1e-4 to 5e-3. The largest tip y is
+    sqrt(d) (A + B d) at the relative distance d from the Hopf point (`hard.test_beside_the_hopf_point`)."""
+    rod, hopf_point = Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2), 27.427194126759282
+    start = hopf_point * (1 + distance)
+    found = solve_branches(rod, BranchRequest("F", start, 28.0, accuracy, False, 500, 50))
+    assert (found.status, found.message) == (BranchStatus.ok, "")
+    (curve,) = found.curves
+    end = curve.special_points[0]
+    exact = start / hopf_point - 1
+    amplitude = exact**0.5 * (0.898059510153 + 0.162248 * exact)
+    assert (end.kind, end.parameter_value) == (SpecialKind.end, start)
+    assert abs(end.tip_y_max / amplitude - 1) <= end.tip_y_max_error <= largest_error
+    assert end.period_error < 1e-7
+
+
 @pytest.mark.long
 @pytest.mark.parametrize(("distance", "start"), [(-1e-6, "end"), (1e-6, "hopf")])
 def test_a_range_may_end_just_before_a_hopf_point_or_behind_it(distance, start):
