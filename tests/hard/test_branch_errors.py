@@ -102,7 +102,7 @@ def cycles_of(case: Case) -> Iterator[BranchCycle]:
         if outside or mesh_of(here.orbit).cost > LARGEST_MESH:
             return
         waiting.append(here)
-        if is_measurement_due(here):
+        if is_measurement_due(here, case.accuracy):
             yield from (points := with_errors_within_accuracy(last, waiting, case.accuracy, None))
             here = last = points[-1]
             waiting = []

@@ -1,9 +1,9 @@
 """Arc-length continuation of a branch of cycles: the step from one cycle to the next.
 
-The cubic through the last two cycles and the tangents at both cycles predicts the next cycle. Newton's method
-corrects the prediction at a prescribed arc length (`bordered`). The step length is chosen from the prediction
-error and from the angle between successive tangents. N is the number of orbit values; a tangent also has the
-parameter coordinate.
+The polynomial through the last three cycles and their tangents predicts the next cycle
+(`branch_prediction`). Newton's method corrects the prediction at a prescribed arc length (`bordered`). The
+step length is chosen from the prediction error and from the angle between successive tangents. N is the
+number of orbit values; a tangent also has the parameter coordinate.
 """
 
 from dataclasses import dataclass, replace
@@ -18,15 +18,15 @@ from ..cycle.accuracy.refinement import (
     allowed_matrix_distance,
     cycle_with_calibrated_errors,
 )
-from ..cycle.cycles_along_parameter import interpolated_change
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.newton import ConvergedOrbit, largest_multiplier_difference, relative_change
 from ..orbit.orbit import Orbit
-from ..orbit.orbit_mesh import OrbitMesh, mesh_of
+from ..orbit.orbit_mesh import OrbitMesh
 from .bordered.condition import BorderCondition, moved_orbit
 from .bordered.corrected_linearisation import linearisation_of
 from .bordered.scale import ArcLengthScale
 from .branch_errors import BranchCalibration, BranchDerivatives, branch_newton_tolerance
+from .branch_prediction import HermiteDatum, PreviousCycle, hermite_data, predicted_change
 from .branch_tangent import branch_derivatives, tangent_at
 
 ARC_STEP_CONTROL = StepControl(
@@ -43,14 +43,6 @@ ARC_STEP_CONTROL = StepControl(
 of 0.1 the deflection, the period and the parameter each change by at most about a tenth."""
 
 
-@dataclass(frozen=True, eq=False)
-class PreviousCycle:
-    """The previous orbit of a branch. tangent: tangent of the branch at `orbit`, of any length, (N + 1,)."""
-
-    orbit: Orbit
-    tangent: Array
-
-
 @dataclass(frozen=True, eq=False, kw_only=True)
 class BranchCycle:
     """A cycle of a branch, with the derivatives of the branch at this cycle, the error calibration, and the
@@ -64,15 +56,15 @@ class BranchCycle:
     """Errors of the mesh, measured or interpolated at this cycle, or measured at an earlier cycle; the errors
     of this cycle are estimated from these errors."""
     steps_since_measured: int = 0
-    """Number of steps since the last cycle with measured errors; 0 if the errors of this cycle are measured
-    or interpolated."""
+    """Number of steps since the last cycle with measured errors; 0 if the errors of this cycle are
+    measured."""
     arc_since_measured: float = 0.0
-    """Arc length of the branch since the last cycle with measured errors; 0 if `steps_since_measured` is
-    0."""
+    """Arc length of the branch since the last cycle with measured errors; 0 if the errors of this cycle are
+    measured or interpolated."""
     next_mesh: OrbitMesh | None = None
     """The mesh of the next cycle; None for the mesh of this cycle."""
     previous: PreviousCycle | None = None
-    """The previous cycle of the branch; None for the first cycle."""
+    """The previous cycle of the branch, with the cycle before; None for the first cycle."""
     prediction_error: float = 0.0
     """Relative distance of this cycle from its prediction by the previous cycle; 0 if the meshes differ, and
     with them the cycles."""
@@ -125,41 +117,21 @@ class BranchCycle:
         """The condition that the next cycle has the arc length `length` from this cycle."""
         return BorderCondition.at_arc_length(self.scale, self.unit_tangent, self.orbit, length)
 
-    def predicted_orbit(self, length: float) -> Orbit:
-        """Predicted orbit at the arc length `length` ahead, on the cubic through this cycle and the previous
-        cycle, or on the tangent if there is no previous cycle; raises Unsolvable."""
-        change = length * self.tangent
-        if self.previous is not None:
-            change = length ** np.arange(1, 4) @ self._cubic_coefficients(self.previous)
+    @cached_property
+    def earlier_cycles(self) -> list[HermiteDatum]:
+        """The last one or two cycles before this cycle, the nearest first, for predictions."""
+        return hermite_data(self.orbit, self.scale, self.unit_tangent, self.previous)
+
+    def predicted_orbit(self, length: float, max_earlier_cycles: int = 2) -> Orbit:
+        """Predicted orbit at the arc length `length` ahead, by the polynomial through this cycle and at most
+        `max_earlier_cycles` earlier cycles; raises Unsolvable."""
+        change = predicted_change(self.tangent, self.earlier_cycles[:max_earlier_cycles], length)
         return moved_orbit(self.orbit, self.scale.parameter_name, change)
 
-    def predicted_on_next_mesh(self, length: float) -> Orbit:
+    def predicted_on_next_mesh(self, length: float, max_earlier_cycles: int = 2) -> Orbit:
         """The orbit of `predicted_orbit` on the mesh of the next cycle; raises Unsolvable."""
-        predicted = self.predicted_orbit(length)
+        predicted = self.predicted_orbit(length, max_earlier_cycles)
         return self.next_mesh.interpolated_orbit(predicted) if self.next_mesh else predicted
-
-    def _cubic_coefficients(self, previous: PreviousCycle) -> Array:
-        """Coefficients, (3, N + 1), of the predicting cubic: factors of the arc length, of its square and of
-        its cube; the last two are 0 if `previous` is not behind this cycle. previous: the previous cycle of
-        the branch."""
-        name = self.scale.parameter_name
-        mesh = mesh_of(self.orbit)
-        orbit = mesh.interpolated_orbit(previous.orbit)
-        coordinate = orbit.form.rod.coordinate(name)
-        # Both tangents on one mesh: the cubic combines their values node by node.
-        slope = np.append(
-            interpolated_change(previous.orbit, previous.tangent[:-1], mesh), previous.tangent[-1]
-        )
-        step = float(self.unit_tangent @ (self.scale.components(self.orbit) - self.scale.components(orbit)))
-        rate = float(self.unit_tangent @ self.scale.directional_derivative(orbit, slope))
-        # Without progress along the tangent the two cycles do not define a cubic: the tangent alone predicts.
-        if not (step > 0 and rate > 0):
-            return np.array([self.tangent, 0 * slope, 0 * slope])
-        difference = np.append(orbit.values - self.orbit.values, coordinate - self.parameter_coordinate)
-        # Hermite interpolation at the lengths -step and 0, with `slope` rescaled to the same length unit.
-        A = (difference + step * self.tangent) * step**-2
-        B = (self.tangent - slope / rate) * (0.5 / step)
-        return np.array([self.tangent, 3 * A - 2 * B, (A - B) * (2 / step)])
 
 
 def next_cycle(start: BranchCycle, accuracy: float) -> BranchCycle:
@@ -186,9 +158,11 @@ def _step_of_length(start: BranchCycle, accuracy: float, length: float) -> StepR
     the first step on another mesh, an allowed prediction error is replaced by `target_error`."""
     condition = start.arc_length_condition(length)
     predicted = start.predicted_on_next_mesh(length)
+    # Steps are chosen by the error of the cubic, which is larger and varies less than that of the quintic.
+    cubic = start.predicted_on_next_mesh(length, max_earlier_cycles=1)
     tolerance = branch_newton_tolerance(accuracy)
     solved = condition.solve_cycle(predicted, tolerance, start.workspace, allowed_matrix_distance(accuracy))
-    prediction_error = relative_change(predicted, solved.orbit.values - predicted.values)
+    prediction_error = relative_change(cubic, solved.orbit.values - cubic.values)
     is_unknown = start.previous is None or start.next_mesh is not None
     control_error = prediction_error
     if is_unknown and prediction_error <= ARC_STEP_CONTROL.max_error:
@@ -238,5 +212,5 @@ def branch_cycle_with_calibrated_errors(
         calibration=start.calibration,
         steps_since_measured=start.steps_since_measured + 1,
         arc_since_measured=start.arc_since_measured + length,
-        previous=PreviousCycle(start.orbit, start.tangent),
+        previous=PreviousCycle(start.orbit, start.tangent, start.previous),
     )

@@ -175,7 +175,8 @@ def _append_next_cycle(
         if (last_cycle := _add_special_points(curve, start, end, limits)) is not None:
             return last_cycle
         record.append(end)
-        last = record.assign_errors(range_end) if range_end is not None or is_measurement_due(end) else end
+        is_measured = range_end is not None or is_measurement_due(end, limits.accuracy)
+        last = record.assign_errors(range_end) if is_measured else end
     except Unsolvable as reason:
         message = f"no further cycle of the branch is found: {reason}"
         return BranchEnd(branch_end_point(start, reason_of_failure(reason), message), complete=False)

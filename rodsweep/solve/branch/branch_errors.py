@@ -188,22 +188,39 @@ class BranchCalibration:
         errors of the second measured cycle. fraction: fraction of the arc length from the first measured
         cycle to the second at which the interpolated cycle lies. sensitivity: |(p/y) dy/dp| of the
         interpolated cycle."""
-        mean_errors = [
-            _log_interpolated_errors(own_errors, other_errors, fraction)
-            for own_errors, other_errors in (
-                (self.at_equal_parameter.space_errors, other.at_equal_parameter.space_errors),
-                (self.at_equal_parameter.time_errors, other.at_equal_parameter.time_errors),
-                (self.parameter_errors, other.parameter_errors),
-            )
-        ]
+        sensitivities = np.maximum([self.sensitivity, other.sensitivity, sensitivity], 1.0)
+        first, second = self.at_equal_parameter, other.at_equal_parameter
         calibration = replace(
-            self.at_equal_parameter,
-            space_errors=mean_errors[0],
-            time_errors=mean_errors[1],
+            first,
+            space_errors=_interpolated_at_equal_parameter(
+                first.space_errors, second.space_errors, fraction, sensitivities
+            ),
+            time_errors=_interpolated_at_equal_parameter(
+                first.time_errors, second.time_errors, fraction, sensitivities
+            ),
             # The interpolated errors contain their growth since the last measurement.
             error_growth=np.ones(2),
         )
-        return BranchCalibration(calibration, mean_errors[2], sensitivity)
+        parameter_errors = _log_interpolated_errors(self.parameter_errors, other.parameter_errors, fraction)
+        return BranchCalibration(calibration, parameter_errors, sensitivity)
+
+
+def _interpolated_at_equal_parameter(
+    first_errors: Array, second_errors: Array, fraction: float, sensitivities: Array
+) -> Array:
+    """Errors at equal parameter, (n,), interpolated between the errors of two measured cycles, (n,) each.
+    fraction: as in `BranchCalibration.interpolate`. sensitivities: |(p/y) dy/dp|, at least 1, of the first,
+    the second and the interpolated cycle, (3,).
+
+    Near a fold or a Hopf point these errors are the error of the parameter times the sensitivity, which
+    changes by factors between two cycles; their quotients are interpolated. Errors that do not depend on the
+    sensitivity are not below the smaller of the two measured errors.
+    """
+    quotients = _log_interpolated_errors(
+        first_errors / sensitivities[0], second_errors / sensitivities[1], fraction
+    )
+    errors: Array = np.maximum(sensitivities[2] * quotients, np.minimum(first_errors, second_errors))
+    return errors
 
 
 def _log_interpolated_errors(first_errors: Array, second_errors: Array, fraction: float) -> Array:

@@ -13,13 +13,17 @@ from ..cycle.accuracy.error_indicators import error_growth_factors, tails_and_si
 from ..orbit.mesh_choice import finer_mesh, regraded
 from ..orbit.orbit_mesh import OrbitMesh, mesh_of
 from .arc_length_step import BranchCycle
+from .branch_errors import BRANCH_ERROR_SETTINGS
 from .branch_mesh_settings import BRANCH_MESH_SETTINGS
 
 
-def expected_error_growth(measured: BranchCycle, points: Sequence[BranchCycle]) -> Array:
+def expected_error_growth(
+    measured: BranchCycle, points: Sequence[BranchCycle], measured_end: BranchCycle
+) -> Array:
     """Expected growth factors of the errors in space and in time, (2,), from the last cycle of `points` to
-    the next measured cycle, by the growth of the coefficient tails over the last steps. measured, points: as
-    in `with_errors_within_accuracy`."""
+    the next measured cycle, by the growth of the coefficient tails over the last steps, or of the measured
+    errors of the parameter if these have grown more. measured, points: as in `with_errors_within_accuracy`.
+    measured_end: the last cycle of `points` with measured errors."""
     end = points[-1]
     # Tails are compared on one mesh.
     known = next(point for point in (measured, *points) if mesh_of(point.orbit) == mesh_of(end.orbit))
@@ -29,7 +33,14 @@ def expected_error_growth(measured: BranchCycle, points: Sequence[BranchCycle]) 
     # A branch is followed by arc length: the size of an orbit does not matter.
     tails = [np.append(tails_and_size(point.orbit)[:-1], 1.0) for point in (known, end)]
     steps = BRANCH_MESH_SETTINGS.max_steps_between_measurements
-    growth: Array = error_growth_factors(*tails) ** (steps * end.next_arc_length / length)
+    growth: Array = error_growth_factors(*tails)
+    if known is measured:
+        errors = [
+            np.maximum(point.calibration.parameter_errors, BRANCH_ERROR_SETTINGS.min_error)
+            for point in (measured, measured_end)
+        ]
+        growth = np.maximum(growth, errors[1] / errors[0])
+    growth = growth ** (steps * end.next_arc_length / length)
     return np.minimum(growth, BRANCH_MESH_SETTINGS.max_planned_growth)
 
 
@@ -43,6 +54,7 @@ def mesh_ahead(end: BranchCycle, growth: Array, accuracy: float) -> OrbitMesh | 
     if expected.largest_weighted_error(accuracy) > accuracy:
         target = regraded(finer_mesh(mesh, cheapest), end.orbit)
         return target if target.is_allowed else None
-    # A sufficient mesh is replaced only by a much cheaper mesh.
-    target = regraded(cheapest, end.orbit)
+    # A sufficient mesh is replaced only by a much cheaper mesh, which is likely to suffice for many cycles.
+    cheaper = expected.cheapest_mesh(BRANCH_MESH_SETTINGS.cheaper_error_ratio * accuracy)
+    target = regraded(cheaper, end.orbit)
     return target if target.cost <= BRANCH_MESH_SETTINGS.max_cheaper_cost_ratio * mesh.cost else None

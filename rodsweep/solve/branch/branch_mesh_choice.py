@@ -1,10 +1,12 @@
 """Choice of the mesh for the cycles of a branch, from measured errors.
 
-Errors are measured at about every third cycle (`branch_errors`) and interpolated at the cycles between.
+Errors are measured at every third or fourth cycle (`branch_errors`) and interpolated at the cycles between.
 """
 
 from collections.abc import Sequence
 from dataclasses import replace
+
+import numpy as np
 
 from ...arrays import Array
 from ..cycle.accuracy.refinement import (
@@ -61,14 +63,19 @@ def first_measured_cycle(
     )
 
 
-def is_measurement_due(point: BranchCycle) -> bool:
-    """Whether the errors of a cycle must be measured: the last measured cycle is too many steps away, or the
-    errors have grown too much since that cycle."""
+def is_measurement_due(point: BranchCycle, accuracy: float) -> bool:
+    """Whether the errors of a cycle of the relative accuracy `accuracy` must be measured: the last measured
+    cycle is too many steps away, or the errors have grown too much since that cycle."""
+    settings = BRANCH_MESH_SETTINGS
     growth = float(point.calibration.at_equal_parameter.scaled_on_branch(point.orbit).error_growth.max())
-    return (
-        point.steps_since_measured >= BRANCH_MESH_SETTINGS.max_steps_between_measurements
-        or growth > BRANCH_MESH_SETTINGS.max_growth_since_measurement
+    # Small errors stay within the accuracy, even if they grow by the largest allowed factor.
+    has_small_errors = (
+        point.calibration.largest_weighted_error(accuracy) * settings.max_growth_since_measurement <= accuracy
     )
+    max_steps = (
+        settings.max_steps_with_small_errors if has_small_errors else settings.max_steps_between_measurements
+    )
+    return point.steps_since_measured >= max_steps or growth > settings.max_growth_since_measurement
 
 
 def with_measured_errors(point: BranchCycle, accuracy: float) -> BranchCycle:
@@ -163,7 +170,7 @@ def with_errors_within_accuracy(
         _with_interpolated_errors(measured, point, end, point.arc_since_measured / total_length, accuracy)
         for point in between
     ]
-    growth = expected_error_growth(measured, points)
+    growth = expected_error_growth(measured, points, end)
     # Solved again only after the interpolation, because the interpolated errors belong to the old mesh.
     end = solve_on_sufficient_mesh(end, accuracy, condition)
     end = replace(end, next_mesh=mesh_ahead(end, growth, accuracy))
@@ -181,7 +188,7 @@ def _cycle_on_mesh_of(end: BranchCycle, point: BranchCycle, accuracy: float) -> 
     cycle `end`, with the errors of `end`; on a mesh chosen by its own measured errors if `end` has the same
     mesh, or if the errors of `end` are too large; raises Unsolvable."""
     if mesh_of(end.orbit) == mesh_of(point.orbit):
-        return solve_on_sufficient_mesh(replace(point, steps_since_measured=1), accuracy)
+        return solve_on_sufficient_mesh(point, accuracy)
     solved = solved_on_mesh(point, mesh_of(end.orbit), point.arc_length_condition(0.0), accuracy)
     # With the fraction 1 the errors are the errors of `end`, because the cycle now has the mesh of `end`.
     estimated = _with_interpolated_errors(end, solved, end, 1.0, accuracy)
@@ -196,27 +203,32 @@ def _with_interpolated_errors(
     the same mesh; raises Unsolvable.
 
     fraction: fraction of the arc length from `start` to `end` at which `point` lies. accuracy: relative
-    accuracy of the cycles. If `start` has another mesh, the errors of `end` are used. The errors of `point`
-    are measured instead if its coefficient tails are much larger than at `start` and `end`, or if the
-    parameter changes more slowly than at `start` and `end`, as near a fold: the errors at `start` and `end`
-    are then no bound.
+    accuracy of the cycles. If `start` has another mesh, the errors of `end` are used. If the coefficient
+    tails of `point` are much larger than at `start` and `end`, or if the parameter changes more slowly than
+    at `start` and `end`, as near a fold, the errors at `start` and `end` are no bound: the interpolated
+    errors are multiplied by the growth, or measured if the growth is large or the parameter changes slowly.
     """
     # Errors are interpolated only between cycles on one mesh.
     if mesh_of(start.orbit) != mesh_of(point.orbit):
         start = end
         fraction = 1.0
-    ends = (start, end)
+    growth = np.min(
+        [
+            measured.calibration.at_equal_parameter.scaled_on_branch(point.orbit).error_growth
+            for measured in (start, end)
+        ],
+        axis=0,
+    )
     # Near a fold, errors at equal parameter grow with 1/rate; interpolation over a long step misses this.
     is_slow = abs(point.parameter_rate) < BRANCH_MESH_SETTINGS.min_parameter_rate_ratio * min(
-        abs(measured.parameter_rate) for measured in ends
+        abs(measured.parameter_rate) for measured in (start, end)
     )
-    error_growth = min(
-        measured.calibration.at_equal_parameter.scaled_on_branch(point.orbit).error_growth.max()
-        for measured in ends
-    )
-    if is_slow or float(error_growth) > BRANCH_MESH_SETTINGS.max_tail_growth:
+    if is_slow or growth.max() > BRANCH_MESH_SETTINGS.max_growth_since_measurement:
         return with_measured_errors(point, accuracy)
     calibration = start.calibration.interpolate(
         end.calibration, fraction, relative_tip_y_sensitivity(point.cycle.motion, point.derivatives)
     )
-    return with_calibration(point, calibration, accuracy)
+    if growth.max() > BRANCH_MESH_SETTINGS.max_tail_growth:
+        calibration = calibration.grown(growth)
+    interpolated = with_calibration(point, calibration, accuracy)
+    return replace(interpolated, steps_since_measured=point.steps_since_measured)

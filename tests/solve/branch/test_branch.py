@@ -368,8 +368,8 @@ def test_two_cycles_lie_behind_a_corner_before_the_end_of_the_range():
     sizes = [point.measures.tip_y_max for point in branch.points[-4:]]
     changes = np.diff(sizes)
     assert np.sign(changes).tolist() == [-1, 1, 1]
-    # The middle step contains the corner, where a fall and a rise may cancel.
-    assert np.abs(changes[[0, 2]]).min() > 5e-3
+    # The middle step contains the corner, where a fall and a rise may cancel; the others are no errors.
+    assert np.abs(changes[[0, 2]]).min() > 10 * request.accuracy * max(sizes)
 
 
 def test_a_branch_that_needs_too_fine_a_mesh_ends_with_the_limits_of_meshes(monkeypatch):

@@ -86,7 +86,7 @@ def branch_of_this(rod, kind, F):
             return special, solve_on_sufficient_mesh(
                 cycle_at_range_end(here, there, edge, ACCURACY), ACCURACY, edge
             )
-        here = solve_on_sufficient_mesh(there, ACCURACY) if is_measurement_due(there) else there
+        here = solve_on_sufficient_mesh(there, ACCURACY) if is_measurement_due(there, ACCURACY) else there
 
 
 @pytest.mark.long

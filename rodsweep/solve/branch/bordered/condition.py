@@ -44,30 +44,32 @@ class BorderCondition:
         return self.value - float(self.border @ self.scale.components(orbit))
 
     def solve_cycle(
-        self, orbit: Orbit, tolerance: float, workspace: NewtonWorkspace, max_matrix_distance: float = np.inf
+        self,
+        orbit: Orbit,
+        tolerance: float,
+        workspace: NewtonWorkspace,
+        max_matrix_distance: float = np.inf,
+        nearby: BorderedMatrix | None = None,
     ) -> ConvergedOrbit:
         """The cycle near `orbit` that fulfils the condition, by Newton's method; raises Unsolvable.
 
         tolerance: relative error of the cycle. workspace: memory of Newton's matrices. max_matrix_distance:
         largest relative error of multipliers and tangent, which is the distance between the cycle and the
-        orbit at which the last matrix was assembled, or the error that their correction leaves.
+        orbit at which the last matrix was assembled, or the error that their correction leaves. nearby: the
+        last matrix of the workspace, assembled near `orbit`, with which the iteration begins, or None.
         """
-        matrix = BorderedMatrix(orbit, self.scale, workspace)
-        matrix_distance = 0.0
+        matrix = nearby or BorderedMatrix(orbit, self.scale, workspace)
+        matrix_distance = matrix.distance_of(orbit) if nearby else 0.0
         previous_change = np.inf
-        step = matrix.step(self.border, self.residual(orbit))
+        step = self._step(matrix, orbit)
         for _ in range(ORBIT_NEWTON_SETTINGS.max_iterations):
             report()
-            change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate_unit)
-            # Negated, so that a step of nan ends the search too.
-            if not change <= ORBIT_NEWTON_SETTINGS.max_relative_step:
-                raise Unsolvable(
-                    "Newton's method for the cycle finds no cycle of the branch near the prediction"
-                )
+            change = self._allowed_change(orbit, step)
             orbit = moved_orbit(orbit, self.scale.parameter_name, step)
             matrix_distance = matrix_distance + change
             # There is no rate at the first step with a matrix.
-            contraction = change / previous_change if matrix_distance > change else np.inf
+            is_first_step = previous_change == np.inf
+            contraction = np.inf if is_first_step else change / previous_change
             # The next step would have the length change * rate; a negligible step is not made.
             is_contracting = contraction <= ORBIT_NEWTON_SETTINGS.new_matrix_ratio
             is_converged = change <= tolerance or (
@@ -78,17 +80,33 @@ class BorderCondition:
                 if solved is not None:
                     return solved
             # Tangent and multipliers need a near matrix, so one step more follows even after convergence.
-            if is_converged or (matrix_distance > change and not is_contracting):
+            if is_converged or not (is_first_step or is_contracting):
                 matrix = BorderedMatrix(orbit, self.scale, workspace)
                 matrix_distance = 0.0
-                step = matrix.step(self.border, self.residual(orbit))
                 previous_change = np.inf
             else:
-                step = matrix.correction(orbit, self.border, self.residual(orbit))
                 previous_change = change
+            step = self._step(matrix, orbit)
         raise Unsolvable(
             f"Newton's method for the cycle does not converge: its last relative step is {change:.0e}"
         )
+
+    def _step(self, matrix: BorderedMatrix, orbit: Orbit) -> Array:
+        """Newton's step at an orbit under this condition, (N + 1,), with `matrix`, assembled at this orbit or
+        at a nearby orbit."""
+        residual = self.residual(orbit)
+        if matrix.orbit is orbit:
+            return matrix.step(self.border, residual)
+        return matrix.correction(orbit, self.border, residual)
+
+    def _allowed_change(self, orbit: Orbit, step: Array) -> float:
+        """Relative change of orbit and parameter in Newton's `step`, (N + 1,); raises Unsolvable if this
+        change is too large."""
+        change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate_unit)
+        # Negated, so that a step of nan ends the search too.
+        if not change <= ORBIT_NEWTON_SETTINGS.max_relative_step:
+            raise Unsolvable("Newton's method for the cycle finds no cycle of the branch near the prediction")
+        return change
 
     def _with_matrix_error(
         self, orbit: Orbit, matrix: BorderedMatrix, distance: float, max_error: float

@@ -21,7 +21,9 @@ from ...orbit.matrix.right_sides import write_right_sides
 from ...orbit.matrix.shooting_intervals import shooting_intervals_of
 from ...orbit.matrix.substitution import substitute_stages
 from ...orbit.matrix.workspace import FactorStorage, NewtonWorkspace
+from ...orbit.newton import relative_change
 from ...orbit.orbit import Orbit
+from .closed_system import ClosedSystem
 from .scale import ArcLengthScale, deflection_functional
 
 
@@ -56,7 +58,6 @@ class BorderedMatrix:
             rows = slice(j * n, (j + 1) * n)
             self._matrix[rows, rows] = self._shooting_intervals.flow_maps[j]
             # The last shooting interval ends at the symmetric image of the first interval's start.
-
             if j < m - 1:
                 self._matrix[rows, (j + 1) * n : (j + 2) * n] = -np.eye(n)
             else:
@@ -74,7 +75,17 @@ class BorderedMatrix:
         self._matrix[-2, -1] = -phase_right_side(
             orbit.start_state, derivatives.change, p.rod, p.node_matrices
         )
+        self._system = ClosedSystem(self._matrix)
         self._right_sides = self._matching_and_phase_sides(orbit, self._stage_columns[:, :, 1:2], ends[1:2])
+
+    @property
+    def has_factors(self) -> bool:
+        """Whether no other matrix was assembled in the workspace, so that systems can be solved."""
+        return self._memory.is_valid
+
+    def distance_of(self, orbit: Orbit) -> float:
+        """Relative distance of an orbit on the same mesh from the orbit of this matrix."""
+        return relative_change(self.orbit, orbit.values - self.orbit.values)
 
     def step(self, border: Array, residual: float) -> Array:
         """Newton's step at the orbit, (N + 1,), which changes `border` . `scale.components` by `residual`,
@@ -213,13 +224,13 @@ class BorderedMatrix:
         right_side: right-hand sides of the matching conditions, of the phase condition and of the border, (m
         n + 2,). sides: right-hand sides of the stages, (K, s, n). fraction: factor on `sides`.
         """
-        n = len(self.orbit.start_state)
-        # The matrix is kept for other borders: only its last row differs from call to call.
-        matrix = self._matrix.copy()
-        matrix[-1, :n] = border[0] / self.scale.deflection_unit * deflection_functional(self.orbit)
+        row = np.zeros(len(self._matrix))
+        row[: len(self.orbit.start_state)] = (
+            border[0] / self.scale.deflection_unit * deflection_functional(self.orbit)
+        )
         # The border acts on log T, whose derivative is 1/T.
-        matrix[-1, -2:] = border[1] / self.orbit.period, border[2] / self.scale.coordinate_unit
-        return self._back_substitute(np.linalg.solve(matrix, right_side), sides, fraction)
+        row[-2:] = border[1] / self.orbit.period, border[2] / self.scale.coordinate_unit
+        return self._back_substitute(self._system.solve(row, right_side), sides, fraction)
 
     def _back_substitute(self, increments: Array, sides: Array, fraction: float) -> Array:
         """Increment of orbit values and parameter, (N + 1,). increments: increments of the states at the

@@ -4,9 +4,12 @@ from ....arrays import Array
 from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of
+from ...unsolvable import Unsolvable
 from ..arc_length_step import BranchCycle, arc_length_between
 from ..bordered.condition import moved_orbit
 from ..bordered.corrected_linearisation import bordered_matrix_of
+from ..bordered.matrix import BorderedMatrix
+from ..branch_prediction import parameter_polynomial
 from .augmented.fold_and_torus_functions import FoldFunction, correct_until_converged
 from .special_point import SPECIAL_POINT_SETTINGS
 
@@ -23,17 +26,32 @@ class BranchSegment:
             end.unit_tangent @ (end.scale.components(end.orbit) - end.scale.components(start.orbit))
         )
         self._last_solved: tuple[float, Orbit, Array] | None = None
+        self._matrix: BorderedMatrix | None = None
 
     def predicted_orbit(self, length: float) -> Orbit:
-        """Predicted orbit at the arc length `length` from `start`, on the mesh of `end`, by the cubic through
-        the cycles `start` and `end`."""
-        # The cubic of `end` passes through both cycles; its variable is the arc length along the tangent at
+        """Predicted orbit at the arc length `length` from `start`, on the mesh of `end`, by the
+        polynomial through the cycles up to `end`."""
+        # This polynomial passes through both cycles; its variable is the arc length along the tangent at
         # `end`.
         return self.end.predicted_orbit(-self._length_along_end_tangent * (1 - length / self.length))
 
+    def predicted_fold(self) -> tuple[float, float]:
+        """Returns (arc length, slope of `parameter_rate` there) of the fold of the polynomial through the
+        cycles up to `end`; raises Unsolvable if it has not exactly one fold between `start` and `end`."""
+        ends = (-self._length_along_end_tangent, 0.0)
+        rate = parameter_polynomial(self.end.tangent, self.end.earlier_cycles, ends).deriv()
+        roots = rate.roots()
+        folds = roots.real[(roots.imag == 0) & (roots.real > ends[0]) & (roots.real < 0)]
+        if len(folds) != 1:
+            raise Unsolvable("the prediction has no single fold between the two cycles")
+        # From the arc length along the tangent at `end` to the arc length along the tangent at `start`.
+        ratio = self._length_along_end_tangent / self.length
+        slope = float(rate.deriv()(folds[0])) * ratio**2 / self.start.scale.coordinate_unit
+        return self.length + float(folds[0]) / ratio, slope
+
     def set_mesh(self, mesh: OrbitMesh) -> None:
         """Sets the mesh on which `cycle_at` solves cycles. The first cycle on this mesh is predicted from the
-        last cycle on the mesh before; on the first mesh, by the cubic."""
+        last cycle on the mesh before; on the first mesh, by the polynomial."""
         self.mesh = mesh
 
     def cycle_at(self, length: float) -> ConvergedOrbit:
@@ -54,12 +72,27 @@ class BranchSegment:
             SPECIAL_POINT_SETTINGS.cycle_tolerance,
             workspace,
             SPECIAL_POINT_SETTINGS.max_matrix_distance,
+            self._nearby_matrix(start),
         )
+        self._matrix = bordered_matrix_of(solved)
         # The tangent is corrected with the factors of the nearby cycle, so no second matrix is factorised.
-        function = FoldFunction(bordered_matrix_of(solved), self.start.unit_tangent, False)
+        function = FoldFunction(self._matrix, self.start.unit_tangent, False)
         correct_until_converged(function, solved.orbit)
         self._last_solved = length, solved.orbit, function.null_vectors
         return solved
+
+    def matrix_at(self, orbit: Orbit) -> BorderedMatrix:
+        """Newton's matrix at `orbit`; the next cycle is solved with its factors if the cycle is near."""
+        self._matrix = BorderedMatrix(orbit, self.start.scale, self.start.workspace)
+        return self._matrix
+
+    def _nearby_matrix(self, orbit: Orbit) -> BorderedMatrix | None:
+        """The last matrix of this segment if its factors serve for cycles near `orbit`; otherwise None."""
+        matrix = self._matrix
+        if matrix is None or not matrix.has_factors or mesh_of(matrix.orbit) != mesh_of(orbit):
+            return None
+        is_near = matrix.distance_of(orbit) <= SPECIAL_POINT_SETTINGS.max_matrix_distance
+        return matrix if is_near else None
 
     @property
     def last_solved_cycle(self) -> tuple[float, Orbit, Array]:

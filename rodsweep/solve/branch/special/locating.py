@@ -1,12 +1,10 @@
 """Location of special points on a branch: zeros of test functions of arc length.
 
-Each value of a test function requires a cycle. The zero is bracketed on the mesh of the branch, then found by
-the secant method on finer meshes. The difference between the zeros on the last two meshes gives the error. A
-cycle needs one matrix only: the factors of the last matrix correct its test function (`augmented`).
+Each value of a test function requires a cycle. The zero is bracketed on the mesh of the branch, or predicted
+at a fold, then found by the secant method on finer meshes. The difference between the zeros on the last two
+meshes gives the error. A cycle needs one matrix only: the factors of the last matrix correct its test
+function (`augmented`), and serve for the next cycle if it is near.
 """
-
-from dataclasses import replace
-from math import nan
 
 import numpy as np
 
@@ -21,11 +19,11 @@ from ...unsolvable import Unsolvable, WorkLimitReached
 from ..arc_length_step import BranchCycle
 from ..bordered.condition import moved_orbit
 from ..bordered.corrected_linearisation import bordered_matrix_of
-from ..bordered.matrix import BorderedMatrix
 from ..bordered.scale import ArcLengthScale
 from .augmented.fold_and_torus_functions import TorusFunction, correct_until_converged
 from .branch_segment import BranchSegment
 from .special_point import SPECIAL_POINT_SETTINGS, SpecialKind, SpecialPoint
+from .special_point_errors import special_point_at, unlocated_point, with_mesh_errors
 from .special_point_meshes import first_mesh, next_mesh
 
 
@@ -46,7 +44,7 @@ def test_function_value(kind: SpecialKind, segment: BranchSegment, solved: Conve
         function = TorusFunction(bordered_matrix_of(solved))
         correct_until_converged(function, solved.orbit)
         return function.value(solved.orbit)
-    matrix = BorderedMatrix(solved.orbit, segment.start.scale, solved.workspace)
+    matrix = segment.matrix_at(solved.orbit)
     return multiplier_test_function(kind, matrix.multipliers_over_solved_part)
 
 
@@ -87,103 +85,55 @@ def special_point_between(
     cycles as error."""
     required_accuracy = min(accuracy, SPECIAL_POINT_SETTINGS.accuracy)
     try:
+        if kind == SpecialKind.fold:
+            try:
+                segment = BranchSegment(start, end)
+                return _point_near(kind, segment, segment.predicted_fold(), required_accuracy)
+            except WorkLimitReached:
+                raise
+            except Unsolvable:
+                pass  # the fold is bracketed instead
         segment = BranchSegment(start, end)
         segment.set_mesh(mesh_of(end.orbit))
-        length, slope = _bracketed_zero(kind, segment)
-        mesh = first_mesh(end.calibration, required_accuracy)
-        point: SpecialPoint | None = None
-        for comparison_index in range(SPECIAL_POINT_SETTINGS.max_mesh_comparisons + 1):
-            segment.set_mesh(mesh)
-            try:
-                length, orbit, slope = _zero_by_secants(kind, segment, length, slope)
-            except WorkLimitReached:
-                if point is None or np.isnan(point.error):
-                    raise
-                break  # the point on coarser meshes, with its measured error
-            coarser_point = point
-            point = _special_point_at(kind, orbit, start.scale.parameter_name)
-            if coarser_point is not None:
-                point = _with_mesh_errors(point, coarser_point, start, end)
-                if point.error <= required_accuracy * abs(point.parameter_value):
-                    break
-            # Every second mesh is chosen from the measured error; the mesh after it is only slightly finer.
-            required_error = required_accuracy * abs(point.parameter_value)
-            mesh = next_mesh(mesh, point.error / required_error if comparison_index % 2 else 1.0)
-            if not mesh.is_allowed:
-                break
-        if point is None or np.isnan(point.error):
-            raise mesh_limit_error()
+        return _point_near(kind, segment, _bracketed_zero(kind, segment), required_accuracy)
     except Unsolvable as reason:
-        return _unlocated_point(kind, start, end, f"the special point ({kind.name}) is not located: {reason}")
-    return point
+        return unlocated_point(kind, start, end, f"the special point ({kind.name}) is not located: {reason}")
 
 
-def _with_mesh_errors(
-    point: SpecialPoint, coarser_point: SpecialPoint, start: BranchCycle, end: BranchCycle
+def _point_near(
+    kind: SpecialKind, segment: BranchSegment, guess: tuple[float, float], required_accuracy: float
 ) -> SpecialPoint:
-    """The special point with errors: its differences from `coarser_point`, the same point on a coarser mesh,
-    times a safety factor. The errors of period and largest tip y include a fraction of their difference
-    between `start` and `end`, the cycles before and after the point: for the error of the last secant step,
-    and, except at a fold, for the error of the parameter."""
-    error = SPECIAL_POINT_SETTINGS.error_factor * abs(
-        point.parameter_value - coarser_point.parameter_value
-    ) + SPECIAL_POINT_SETTINGS.rounding_error * abs(point.parameter_value)
-    secant_error = SPECIAL_POINT_SETTINGS.secant_error_ratio_at_fold
-    if point.kind is not SpecialKind.fold:
-        # Period and tip y of two meshes may agree by coincidence, although the parameter does not.
-        name = start.scale.parameter_name
-        difference = abs(getattr(start.orbit.form.rod, name) - getattr(end.orbit.form.rod, name))
-        slope_error = SPECIAL_POINT_SETTINGS.max_slope_ratio * error / difference if difference else 1.0
-        secant_error = SPECIAL_POINT_SETTINGS.secant_error_ratio + min(slope_error, 1.0)
-    start_measures = start.cycle.measures
-    end_measures = end.cycle.measures
-    factor = SPECIAL_POINT_SETTINGS.error_factor
-    period_error = factor * abs(point.period - coarser_point.period) + secant_error * abs(
-        start_measures.period - end_measures.period
-    )
-    tip_y_error = factor * abs(point.tip_y_max - coarser_point.tip_y_max) + secant_error * abs(
-        start_measures.tip_y_max - end_measures.tip_y_max
-    )
-    return replace(
-        point,
-        error=error,
-        period_error=period_error / point.period + SPECIAL_POINT_SETTINGS.rounding_error,
-        tip_y_max_error=tip_y_error / point.tip_y_max + SPECIAL_POINT_SETTINGS.rounding_error,
-    )
-
-
-def _special_point_at(kind: SpecialKind, orbit: Orbit, name: str) -> SpecialPoint:
-    """The special point of a kind at the solved cycle `orbit`, without errors. name: continuation
-    parameter."""
-    motion = CycleMotion(orbit)
-    return SpecialPoint(
-        kind=kind,
-        parameter_value=getattr(orbit.form.rod, name),
-        period=orbit.period,
-        tip_y_max=motion.extrema["tip_y_max"],
-        error=nan,
-        orbit=orbit,
-    )
-
-
-def _unlocated_point(kind: SpecialKind, start: BranchCycle, end: BranchCycle, message: str) -> SpecialPoint:
-    """A special point that is not located: values at the cycle `end`, with the differences between `start`
-    and `end` as errors. message: cause."""
-    name = start.scale.parameter_name
-    measures = end.cycle.measures
-    start_measures = start.cycle.measures
-    end_value, start_value = (getattr(point.orbit.form.rod, name) for point in (end, start))
-    return SpecialPoint(
-        kind=kind,
-        parameter_value=end_value,
-        period=measures.period,
-        tip_y_max=measures.tip_y_max,
-        # The two cycles may have the same parameter value, as on the two sides of a fold.
-        error=max(abs(end_value - start_value), SPECIAL_POINT_SETTINGS.accuracy * abs(end_value)),
-        period_error=abs(start_measures.period / measures.period - 1),
-        tip_y_max_error=abs(start_measures.tip_y_max / measures.tip_y_max - 1),
-        message=message,
-    )
+    """The special point of a kind on `segment`, to a relative accuracy, or with a larger error if no allowed
+    mesh suffices or the limit of the work is reached; raises Unsolvable. guess: (arc length near the point,
+    slope of the test function there)."""
+    length, slope = guess
+    start, end = segment.start, segment.end
+    mesh = first_mesh(end.calibration, required_accuracy)
+    point: SpecialPoint | None = None
+    for comparison_index in range(SPECIAL_POINT_SETTINGS.max_mesh_comparisons + 1):
+        segment.set_mesh(mesh)
+        try:
+            length, orbit, slope = _zero_by_secants(kind, segment, length, slope)
+        except WorkLimitReached:
+            if point is None or np.isnan(point.error):
+                raise
+            break  # the point on coarser meshes, with its measured error
+        coarser_point = point
+        point = special_point_at(kind, orbit, start.scale.parameter_name)
+        required_error = required_accuracy * abs(point.parameter_value)
+        if coarser_point is not None:
+            point = with_mesh_errors(point, coarser_point, start, end)
+            if point.error <= required_error:
+                break
+        # Every second mesh is chosen from the measured error; the mesh after it is only slightly finer.
+        mesh = next_mesh(mesh, point.error / required_error if comparison_index % 2 else 1.0)
+        if not mesh.is_allowed:
+            break
+    if point is None or np.isnan(point.error):
+        raise mesh_limit_error()
+    if not 0 <= length <= segment.length:
+        raise Unsolvable("the point found does not lie between the two cycles")
+    return point
 
 
 def _bracketed_zero(kind: SpecialKind, segment: BranchSegment) -> tuple[float, float]:

@@ -160,10 +160,14 @@ class NewtonWorkspace:
         self._reservation += 1
         return self._reservation
 
+    def has_reservation(self, reservation: int) -> bool:
+        """Whether the reservation with the number `reservation` has not ended."""
+        return reservation == self._reservation
+
     def buffer(self, reservation: int) -> Array:
         """The buffer, (size,) or longer, for the reservation with the number `reservation`; raises
         RuntimeError if this reservation has ended."""
-        if reservation != self._reservation:
+        if not self.has_reservation(reservation):
             raise RuntimeError("the factors of this matrix are overwritten: its workspace was used again")
         return self._buffer
 
@@ -193,6 +197,11 @@ class FactorStorage:
         self.propagator = np.zeros((unknown_count, unknown_count))
         """P, (n, n), which stays valid when the workspace is used again."""
         self._inverse = np.zeros((unknown_count + 1, unknown_count + 1))
+
+    @property
+    def is_valid(self) -> bool:
+        """Whether the factors are not overwritten by those of another matrix."""
+        return self.workspace.has_reservation(self._reservation)
 
     @property
     def factors(self) -> NewtonFactors:

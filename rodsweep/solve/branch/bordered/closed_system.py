@@ -1,0 +1,28 @@
+"""Linear systems with one matrix but for its last row, the border."""
+
+import numpy as np
+from scipy.linalg.lapack import dgetrf, dgetrs
+
+from ....arrays import Array
+
+
+class ClosedSystem:
+    """Linear system of M equations, the last of which changes. matrix: (M, M), whose last row is not used.
+    Successive systems mostly have equal borders, so that the factors of the last one are kept."""
+
+    def __init__(self, matrix: Array) -> None:
+        self._matrix = matrix
+        self._border = np.empty(0)
+
+    def solve(self, border: Array, right_side: Array) -> Array:
+        """Solution, (M,), with the last row `border`, (M,), and the right-hand side `right_side`, (M,);
+        raises LinAlgError if the matrix is singular."""
+        if not np.array_equal(border, self._border):
+            matrix = self._matrix.copy()
+            matrix[-1] = border
+            self._factors, self._pivots, info = dgetrf(matrix)
+            if info > 0:
+                raise np.linalg.LinAlgError("the matrix is singular")
+            self._border = border
+        solution: Array = dgetrs(self._factors, self._pivots, right_side)[0]
+        return solution

@@ -1,0 +1,115 @@
+"""Prediction of cycles of a branch by Hermite polynomials through earlier cycles.
+
+The polynomial through n cycles and their tangents has the degree 2 n - 1. Its variable is the arc length
+along the tangent at the last cycle. N is the number of orbit values; a change also has the parameter
+coordinate.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial import Polynomial
+
+from ...arrays import Array
+from ..cycle.cycles_along_parameter import interpolated_change
+from ..orbit.normalised_orbit import polynomial_weights
+from ..orbit.orbit import Orbit
+from ..orbit.orbit_mesh import mesh_of
+from .bordered.scale import ArcLengthScale
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BranchPredictionSettings:
+    """Settings for the prediction of cycles of a branch."""
+
+    min_cosine: float = 0.2
+    """An earlier cycle is used only if the cosine of the angle between its tangent and the tangent at the
+    last cycle is at least this number: beyond, the arc length along the last tangent is no variable."""
+
+
+BRANCH_PREDICTION_SETTINGS = BranchPredictionSettings()
+
+
+@dataclass(frozen=True, eq=False)
+class PreviousCycle:
+    """The previous cycle of a branch. tangent: tangent of the branch at `orbit`, of any length, (N + 1,).
+    previous: the cycle before; its own field `previous` is not used."""
+
+    orbit: Orbit
+    tangent: Array
+    previous: "PreviousCycle | None" = None
+
+
+class HermiteDatum(NamedTuple):
+    """An earlier cycle on the mesh of the last cycle. position: arc length along the tangent at the last
+    cycle, negative behind it. difference: orbit values and parameter coordinate minus those of the last
+    cycle, (N + 1,). slope: their derivative with respect to the position, (N + 1,)."""
+
+    position: float
+    difference: Array
+    slope: Array
+
+
+def hermite_data(
+    orbit: Orbit, scale: ArcLengthScale, unit_tangent: Array, previous: PreviousCycle | None
+) -> list[HermiteDatum]:
+    """The last one or two cycles before the cycle `orbit`, the nearest first; empty if there is none behind
+    this cycle. scale, unit_tangent: scale and tangent at `orbit`, the latter in components (deflection, log
+    period, parameter), (3,)."""
+    data: list[HermiteDatum] = []
+    for cycle in (previous, previous and previous.previous):
+        if cycle is None:
+            break
+        datum = _hermite_datum(orbit, scale, unit_tangent, cycle)
+        # The cycles must lie in order along the tangent; the nearest needs progress only.
+        last_position = data[-1].position if data else 0.0
+        if datum is None or not datum.position < last_position:
+            break
+        data.append(datum)
+    return data
+
+
+def _hermite_datum(
+    orbit: Orbit, scale: ArcLengthScale, unit_tangent: Array, cycle: PreviousCycle
+) -> HermiteDatum | None:
+    """The earlier cycle `cycle` as a datum for predictions from `orbit`; None if the branch has turned too
+    far between the two. scale, unit_tangent: as in `hermite_data`, the latter (3,)."""
+    mesh = mesh_of(orbit)
+    name = scale.parameter_name
+    earlier = mesh.interpolated_orbit(cycle.orbit)
+    # Values and tangents on one mesh: the polynomial combines them node by node.
+    slope = np.append(interpolated_change(cycle.orbit, cycle.tangent[:-1], mesh), cycle.tangent[-1])
+    derivative = scale.directional_derivative(earlier, slope)
+    rate = float(unit_tangent @ derivative)
+    if not rate > BRANCH_PREDICTION_SETTINGS.min_cosine * np.linalg.norm(derivative):
+        return None
+    position = float(unit_tangent @ (scale.components(earlier) - scale.components(orbit)))
+    coordinate_change = earlier.form.rod.coordinate(name) - orbit.form.rod.coordinate(name)
+    return HermiteDatum(position, np.append(earlier.values - orbit.values, coordinate_change), slope / rate)
+
+
+def predicted_change(tangent: Array, data: Sequence[HermiteDatum], length: float) -> Array:
+    """Predicted change, (N + 1,), of orbit values and parameter coordinate over the arc length `length`.
+    tangent: tangent with unit arc length at the last cycle, (N + 1,). data: earlier cycles."""
+    positions = [0.0, *(datum.position for datum in data for _ in range(2))]
+    is_slope = [1.0, *(order for _ in data for order in (0.0, 1.0))]
+    weights = polynomial_weights(np.array(positions), np.array(is_slope), length)
+    changes = [tangent, *(change for datum in data for change in (datum.difference, datum.slope))]
+    result: Array = weights @ np.array(changes)
+    return result
+
+
+def parameter_polynomial(
+    tangent: Array, data: Sequence[HermiteDatum], ends: tuple[float, float]
+) -> Polynomial:
+    """The predicted change of the parameter coordinate as a polynomial of the arc length between `ends`.
+    tangent: as in `predicted_change`, (N + 1,)."""
+    degree = 1 + 2 * len(data)
+    lengths = np.linspace(*ends, degree + 1)
+    last_components = [
+        HermiteDatum(datum.position, datum.difference[-1:], datum.slope[-1:]) for datum in data
+    ]
+    changes = [predicted_change(tangent[-1:], last_components, length)[0] for length in lengths]
+    return Polynomial.fit(lengths, changes, degree)

@@ -1,0 +1,77 @@
+"""Special points with their errors, from solutions on two meshes, and special points that are not located."""
+
+from dataclasses import replace
+from math import nan
+
+from ...orbit.measures import CycleMotion
+from ...orbit.orbit import Orbit
+from ..arc_length_step import BranchCycle
+from .special_point import SPECIAL_POINT_SETTINGS, SpecialKind, SpecialPoint
+
+
+def with_mesh_errors(
+    point: SpecialPoint, coarser_point: SpecialPoint, start: BranchCycle, end: BranchCycle
+) -> SpecialPoint:
+    """The special point with errors: its differences from `coarser_point`, the same point on a coarser mesh,
+    times a safety factor. The errors of period and largest tip y include a fraction of their difference
+    between `start` and `end`, the cycles before and after the point: for the error of the last secant step,
+    and, except at a fold, for the error of the parameter."""
+    error = SPECIAL_POINT_SETTINGS.error_factor * abs(
+        point.parameter_value - coarser_point.parameter_value
+    ) + SPECIAL_POINT_SETTINGS.rounding_error * abs(point.parameter_value)
+    secant_error = SPECIAL_POINT_SETTINGS.secant_error_ratio_at_fold
+    if point.kind is not SpecialKind.fold:
+        # Period and tip y of two meshes may agree by coincidence, although the parameter does not.
+        name = start.scale.parameter_name
+        difference = abs(getattr(start.orbit.form.rod, name) - getattr(end.orbit.form.rod, name))
+        slope_error = SPECIAL_POINT_SETTINGS.max_slope_ratio * error / difference if difference else 1.0
+        secant_error = SPECIAL_POINT_SETTINGS.secant_error_ratio + min(slope_error, 1.0)
+    start_measures = start.cycle.measures
+    end_measures = end.cycle.measures
+    factor = SPECIAL_POINT_SETTINGS.error_factor
+    period_error = factor * abs(point.period - coarser_point.period) + secant_error * abs(
+        start_measures.period - end_measures.period
+    )
+    tip_y_error = factor * abs(point.tip_y_max - coarser_point.tip_y_max) + secant_error * abs(
+        start_measures.tip_y_max - end_measures.tip_y_max
+    )
+    return replace(
+        point,
+        error=error,
+        period_error=period_error / point.period + SPECIAL_POINT_SETTINGS.rounding_error,
+        tip_y_max_error=tip_y_error / point.tip_y_max + SPECIAL_POINT_SETTINGS.rounding_error,
+    )
+
+
+def special_point_at(kind: SpecialKind, orbit: Orbit, name: str) -> SpecialPoint:
+    """The special point of a kind at the solved cycle `orbit`, without errors. name: continuation
+    parameter."""
+    motion = CycleMotion(orbit)
+    return SpecialPoint(
+        kind=kind,
+        parameter_value=getattr(orbit.form.rod, name),
+        period=orbit.period,
+        tip_y_max=motion.extrema["tip_y_max"],
+        error=nan,
+        orbit=orbit,
+    )
+
+
+def unlocated_point(kind: SpecialKind, start: BranchCycle, end: BranchCycle, message: str) -> SpecialPoint:
+    """A special point that is not located: values at the cycle `end`, with the differences between `start`
+    and `end` as errors. message: cause."""
+    name = start.scale.parameter_name
+    measures = end.cycle.measures
+    start_measures = start.cycle.measures
+    end_value, start_value = (getattr(point.orbit.form.rod, name) for point in (end, start))
+    return SpecialPoint(
+        kind=kind,
+        parameter_value=end_value,
+        period=measures.period,
+        tip_y_max=measures.tip_y_max,
+        # The two cycles may have the same parameter value, as on the two sides of a fold.
+        error=max(abs(end_value - start_value), SPECIAL_POINT_SETTINGS.accuracy * abs(end_value)),
+        period_error=abs(start_measures.period / measures.period - 1),
+        tip_y_max_error=abs(start_measures.tip_y_max / measures.tip_y_max - 1),
+        message=message,
+    )
