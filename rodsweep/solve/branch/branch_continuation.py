@@ -34,7 +34,9 @@ def follow_branch(hopf_index: int, limits: BranchLimits) -> BranchCurve:
     curve = BranchCurve(start_hopf=hopf_index)
     curve.add_special_point(hopf_as_special_point(hopf))
     return _follow_to_end(
-        curve, lambda: (first_cycle(hopf, limits.accuracy, limits.workspace), limits), limits
+        curve,
+        lambda: (first_cycle(hopf, limits.accuracy, limits.workspace, limits.all_hopfs), limits),
+        limits,
     )
 
 

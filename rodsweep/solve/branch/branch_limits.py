@@ -35,3 +35,8 @@ class BranchLimits:
     locates_special_points: bool = True
     """Whether all special points between the ends of a branch are located; on parts beyond the range only
     folds and symmetry breakings are."""
+
+    @property
+    def all_hopfs(self) -> list[HopfBranchStart]:
+        """Hopf points within the range and beyond."""
+        return [*self.hopfs, *self.hopfs_beyond]

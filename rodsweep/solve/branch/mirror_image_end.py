@@ -15,8 +15,8 @@ from .branch_end_settings import BRANCH_END_SETTINGS
 from .branch_limits import BranchLimits
 from .branch_record import branch_end_point
 from .range_end_near_hopf import end_at_range_end_near_hopf, is_best_at_range_end
-from .start.branch_start_settings import BRANCH_START_SETTINGS
 from .start.hopf_point import HopfBranchStart, hopf_as_special_point
+from .start.near_hopf_points import min_last_amplitude
 from .symmetry_breaking import reaches_symmetric_cycle, symmetry_breaking_between
 
 
@@ -66,7 +66,7 @@ def _end_at_hopf_or_shorter_step(
         return shorter
     if (known_end := _known_hopf_end_or_shorter_step(start, shorter, limits)) is not None:
         return known_end
-    if shorter is not None and not _is_smallest(start):
+    if shorter is not None and not _is_smallest(start, limits):
         return shorter  # the parabola through a smaller cycle is closer to the Hopf point
     reason = "the cycles shrink to zero amplitude, but no Hopf point is known there"
     return BranchEnd(branch_end_point(start, BranchEndReason.no_cycle_found, reason), complete=False)
@@ -81,15 +81,17 @@ def _known_hopf_end_or_shorter_step(
     for number, hopf in enumerate(limits.hopfs):
         if _shrinks_to(start, hopf, limits.accuracy):
             # The parameter must still turn before the Hopf point, which a smaller cycle shows.
-            if _has_fold_ahead(start, hopf) and shorter is not None:
+            if _has_fold_ahead(start, hopf, limits) and shorter is not None:
                 return shorter
             return BranchEnd(hopf_as_special_point(hopf), complete=True, end_hopf=number)
     # The branch ends at the end of the range then, which it passes before the Hopf point.
     for hopf in limits.hopfs_beyond:
         if _shrinks_to(start, hopf, limits.accuracy):
             end_before_hopf = end_at_range_end_near_hopf(start, hopf, limits)
-            is_final = _is_smallest(start) or is_best_at_range_end(end_before_hopf, start, hopf, limits)
-            if shorter is not None and (_has_fold_ahead(start, hopf) or not is_final):
+            is_final = _is_smallest(start, limits) or is_best_at_range_end(
+                end_before_hopf, start, hopf, limits
+            )
+            if shorter is not None and (_has_fold_ahead(start, hopf, limits) or not is_final):
                 return shorter
             if end_before_hopf is not None:
                 return end_before_hopf
@@ -115,16 +117,16 @@ def _shrinks_to(start: BranchCycle, hopf: HopfBranchStart, accuracy: float) -> b
     )
 
 
-def _has_fold_ahead(start: BranchCycle, hopf: HopfBranchStart) -> bool:
+def _has_fold_ahead(start: BranchCycle, hopf: HopfBranchStart, limits: BranchLimits) -> bool:
     """Whether a branch has a fold between the cycle `start` and the Hopf point `hopf` where it ends: the
     parameter at `start` moves in the direction in which, by the normal form, it leaves the Hopf point. False
     for a cycle of the smallest amplitude, before which no fold is sought."""
-    return not _is_smallest(start) and start.parameter_rate * hopf.direction > 0
+    return not _is_smallest(start, limits) and start.parameter_rate * hopf.direction > 0
 
 
-def _is_smallest(cycle: BranchCycle) -> bool:
+def _is_smallest(cycle: BranchCycle, limits: BranchLimits) -> bool:
     """Whether a cycle is so small that no smaller cycle is solved before a Hopf point."""
-    return cycle.cycle.measures.tip_y_max <= BRANCH_START_SETTINGS.min_amplitude_before_fold
+    return cycle.cycle.measures.tip_y_max <= min_last_amplitude(limits.all_hopfs)
 
 
 def _end_at_breaking_or_shorter_step(

@@ -149,7 +149,7 @@ class RegionBeyond:
         if moves_away and hopf.coefficients.landau.real < 0:
             return None
         try:
-            first = first_cycle(hopf, accuracy, self.limits.workspace)
+            first = first_cycle(hopf, accuracy, self.limits.workspace, self.limits.all_hopfs)
         except FAILURES:
             self.stop_at(hopf.parameter_coordinate)
             return None

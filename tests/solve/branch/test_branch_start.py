@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from rodsweep.determinant.parameter_path import ParameterPath
@@ -71,6 +72,42 @@ def test_a_branch_between_two_near_hopf_points_ends_at_the_other_one(rod, ends, 
     assert (curve.complete, curve.start_hopf, curve.end_hopf) == (True, start, 1 - start)
     found = [point.parameter_value for point in curve.special_points[1:-1]]
     assert sorted(found) == pytest.approx(folds, rel=1e-8)
+
+
+def test_a_tiny_branch_between_two_coalescing_hopf_points_is_an_ellipse():
+    """At k1 within 2e-7 of the fold of the Hopf curve, relatively, the cycles between the two Hopf points p1
+    and p2 have y^2 = |s/Re c| (p - p1) (p2 - p)/(p2 - p1), with the slope s and Re c of the normal form; a
+    first cycle of fixed amplitude, 0.003, does not exist there."""
+    path = ParameterPath(Rod(F=60.0, k1=147.9215493, k2=1e4, gamma3=1e-4), "F")
+    crossings = find_axis_crossings(path, 60.0, 100.0).thresholds
+    first, second = (hopf_branch_start(path, crossing) for crossing in crossings)
+    limits = BranchLimits(
+        [first, second], (60.0, 100.0), (BranchEndReason.range_end,) * 2, 1e-6, 500, NewtonWorkspace()
+    )
+    curve = follow_branch(0, limits)
+    assert [point.kind.name for point in curve.special_points] == ["hopf", "hopf"]
+    assert (curve.start_hopf, curve.end_hopf) == (0, 1)
+    F = np.array([point.parameter_value for point in curve.points])
+    y = np.array([point.measures.tip_y_max for point in curve.points])
+    p1, p2 = first.parameter_coordinate, second.parameter_coordinate
+    ratios = [abs(hopf.growth_slope.real / hopf.coefficients.landau.real) for hopf in (first, second)]
+    ellipse = np.interp(F, [p1, p2], ratios) * (F - p1) * (p2 - F) / (p2 - p1)
+    # The ratios at both ends differ by 6e-3; their curvature and the next order, y^2, are below 1e-5.
+    assert y**2 == pytest.approx(ellipse, rel=1e-4)
+
+
+@pytest.mark.parametrize("start", [0, 1])
+def test_a_branch_that_returns_between_two_coalescing_hopf_points_ends_at_the_other_one(start):
+    """At k1 within 1e-9 of the fold of the Hopf curve, relatively, cycles of y = 4e-4 are not yet those of
+    one Hopf point alone: the parabola through one of them missed its Hopf point."""
+    path = ParameterPath(Rod(F=70.0, k1=133.06804800284598, k2=1e4, gamma3=0.006), "F")
+    crossings = find_axis_crossings(path, 70.0, 86.0).thresholds
+    hopfs = [hopf_branch_start(path, crossing) for crossing in crossings]
+    limits = BranchLimits(
+        hopfs, (70.0, 86.0), (BranchEndReason.range_end,) * 2, 1e-6, 500, NewtonWorkspace(), 0.16
+    )
+    curve = follow_branch(start, limits)
+    assert (curve.complete, curve.start_hopf, curve.end_hopf) == (True, start, 1 - start)
 
 
 @pytest.mark.long

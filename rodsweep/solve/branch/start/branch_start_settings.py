@@ -13,6 +13,14 @@ class BranchStartSettings:
     """Upper limit of the amplitude of the first cycle, divided by
     |`HopfBranchStart.amplitude_coefficient`|. At larger amplitudes the third-order normal form is too
     inaccurate."""
+    max_half_axis_fraction: float = 0.5
+    """Upper limit of the amplitude of the first cycle on a branch between two Hopf points close together,
+    divided by the largest amplitude on this branch: the parameter then changes by a fifteenth of the distance
+    between both points."""
+    last_half_axis_fraction: float = 0.2
+    """Near two Hopf points close together, the last cycle of a branch is moved towards its Hopf point, down
+    to this fraction of half the axis of the ellipse or hyperbola of the cycles: at this amplitude the
+    parabola of one Hopf point alone misses the parameter by 4 % of the distance from the Hopf point."""
     min_deflection_amplitude: float = 0.1
     """The unit of deflection of an `ArcLengthScale` is at least the deflection that a cycle of this amplitude
     (largest tip y, in L) has by linear theory."""

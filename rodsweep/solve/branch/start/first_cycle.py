@@ -5,6 +5,8 @@ Newton's method starts at the cycle predicted for a small amplitude. The deflect
 parameter is unknown; this system is regular at the Hopf point too.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ....discretization.stress.form import StressForm
@@ -22,17 +24,23 @@ from ..branch_errors import branch_newton_tolerance
 from ..branch_mesh_choice import first_measured_cycle
 from .branch_start_settings import BRANCH_START_SETTINGS
 from .hopf_point import HopfBranchStart
+from .near_hopf_points import max_first_amplitude
 
 ALONG_DEFLECTION = np.array([1.0, 0.0, 0.0])
 """Unit vector along the deflection, (3,), in components (deflection, log period, parameter)."""
 
 
-def first_cycle(hopf: HopfBranchStart, accuracy: float, workspace: NewtonWorkspace) -> BranchCycle:
+def first_cycle(
+    hopf: HopfBranchStart,
+    accuracy: float,
+    workspace: NewtonWorkspace,
+    all_hopfs: Sequence[HopfBranchStart] = (),
+) -> BranchCycle:
     """The first cycle of the branch from the Hopf point `hopf`, to a relative accuracy; raises Unsolvable.
 
-    workspace: memory of Newton's matrices.
+    workspace: memory of Newton's matrices. all_hopfs: Hopf points at which the branch may end.
     """
-    first = _cycle_near_hopf_point(hopf, np.inf, accuracy, workspace)
+    first = _cycle_near_hopf_point(hopf, max_first_amplitude(hopf, all_hopfs), accuracy, workspace)
     amplitude = first.cycle.measures.tip_y_max
     # The parameter moves against the normal form: the branch has a fold before this cycle.
     while (
