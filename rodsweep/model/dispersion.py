@@ -74,10 +74,22 @@ def most_amplified_local_waves(rod: Rod) -> tuple[Array, Array]:
     """Returns (growth rates, wave numbers) of the most amplified wave at each point of `sampled_arm(rod)`,
     (points,) each. A local wave travels on an infinitely long uniform rod with the coefficients of the arm at
     the point. If all waves at a point decay, both numbers are 0."""
-    nu, c2, c3, gamma2, gamma3, g = sampled_arm(rod).local
+    return _most_amplified_waves(rod.F, sampled_arm(rod).local)
+
+
+def largest_growth_at_ends(rod: Rod) -> float:
+    """The larger growth rate, in 1/tau2, of the most amplified local waves at the two ends of an arm: the
+    points of `sampled_arm` are too far apart for a thin tip."""
+    ends = np.nextafter([0.0, 1.0], [1.0, 0.0])
+    return float(_most_amplified_waves(rod.F, rod.local_coefficients(ends))[0].max())
+
+
+def _most_amplified_waves(F: float, coefficients: LocalCoefficients) -> tuple[Array, Array]:
+    """Returns (growth rates, wave numbers) as `most_amplified_local_waves`, at the points of
+    `coefficients`."""
+    nu, c2, c3, gamma2, gamma3, g = coefficients
     # A local rod has its own units: the formula needs bending compliance and drag scaled to 1.
-    max_K = np.maximum(rod.F * c3 * g, 0.0)
-    rate, wave_number = _largest_growth(max_K, g * nu, c2 / c3, gamma3 / gamma2)
+    rate, wave_number = _largest_growth(np.maximum(F * c3 * g, 0.0), g * nu, c2 / c3, gamma3 / gamma2)
     # Rates return to the unit tau2 of the base; the wave number already is in 1/L.
     return rate / (gamma2 * c3), wave_number
 

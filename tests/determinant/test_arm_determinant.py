@@ -92,6 +92,15 @@ def test_arms_that_vary_agree_with_an_ode_solver(taper, material, w):
     assert abs(found.D_w * np.exp(found.log_scale) / slope - 1) < 1e-6
 
 
+@pytest.mark.parametrize("w", [20j, -50 + 200j, 3000.0 + 0j])
+def test_elements_at_a_thin_tip_resolve_the_exponentials(w):
+    """Between the points where local waves are sampled they grew by exp(24) over one element, and D was off
+    by 7e-3 without a word."""
+    determinant = ArmDeterminant(Rod(F=-1.6266, k1=3940.8, k2=763.5, gamma3=0.0884, taper=0.01602))
+    found, finer = determinant.value(w), determinant.value_on_finer_elements(w, 1e3)
+    assert abs(found.D / finer.D * np.exp(found.log_scale - finer.log_scale) - 1) < 1e-11
+
+
 def test_cone_of_radius_ratio_one_half_flutters_where_collocation_says():
     """Issue-independent digits: F = 15.4627583986, frequency 175.530930682 (collocation at two sizes)."""
     rod = Rod(F=15.4627583986, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5)

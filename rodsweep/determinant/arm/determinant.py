@@ -119,6 +119,7 @@ def elements_for(rods: list[Rod], samples: CoefficientSamples, W: float) -> Prop
     FloatingPointError if `max_elements` elements do not resolve an arm."""
     tapers = np.array([rod.taper for rod in rods])
     edges = element_edges(W, samples.squares, tapers, samples.points, rods[0].material.breaks)
+    forces = np.array([rod.F for rod in rods], float)
     points, _, _ = gauss_method(ARM_ELEMENT_SETTINGS.stages)
     for _ in range(ARM_ELEMENT_SETTINGS.max_halvings):
         if not len(edges) <= ARM_ELEMENT_SETTINGS.max_elements:
@@ -127,7 +128,7 @@ def elements_for(rods: list[Rod], samples: CoefficientSamples, W: float) -> Prop
         coefficients = np.array(
             Rod.local_coefficients_of_rods(rods, edges[:-1, None] + lengths[:, None] * points)
         )
-        halved_edges = halved_where_coarse(edges, coefficients)
+        halved_edges = halved_where_coarse(edges, W, forces, coefficients)
         if halved_edges is edges:
             return PropagatorElements(lengths, coefficients)
         edges = halved_edges

@@ -4,7 +4,7 @@ The mesh gives approximate eigenvalues, Newton's method on the determinant D ref
 number of D shows whether an eigenvalue is missing. `rodsweep.solve.spectrum.search` chooses the next attempt.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from operator import truediv
 from typing import Any
 
@@ -42,6 +42,9 @@ class CandidateSettings(KernelConstants):
     min_gap_ratio: float = 1e-6
     """No line is drawn between two real parts if their distance, divided by the modulus of the left real
     part, is at most this."""
+    same_root_ratio: float = 1e-6
+    """Roots found with two shifts are the same root if their distance is at most this times |w|. Taking two
+    roots for one is safe: the count then disagrees; one root taken for two could agree with a wrong count."""
     max_count_lines: int = 3
     """Maximum number of lines tried for the count of one rod."""
     proof_line_distance_in_errors: float = 3.0
@@ -63,6 +66,19 @@ class Candidates:
     roots: Roots
     vectors: Complex | None
     failure: str = ""
+
+    def united_with(self, earlier: "Candidates") -> "Candidates":
+        """These candidates and the roots of D that were found earlier, on another mesh or with another shift;
+        unchanged if they have eigenvectors, which the earlier mesh does not share."""
+        if self.vectors is not None:
+            return self
+        own, other = self.roots, earlier.roots
+        nearest = np.abs(other.w[:, None] - own.w).min(axis=1, initial=np.inf)
+        is_new = nearest > CANDIDATE_SETTINGS.same_root_ratio * np.abs(other.w)
+        united = [np.append(mine, more[is_new]) for mine, more in zip(own[:-1], other[:-1], strict=True)]
+        w = united[Roots._fields.index("w")]
+        order = np.lexsort((-w.imag, -w.real))
+        return replace(self, roots=Roots._make([*(values[order] for values in united), own.unmatched_count]))
 
     def worst_error(self, mode_count: int) -> float:
         """Largest relative error estimate among the first `mode_count` roots."""

@@ -31,7 +31,7 @@ from ...discretization.elements.resolution import (
 )
 from ...discretization.straight.arm_resolution import ArmMesh, arm_mesh
 from ...discretization.straight.transverse_mesh import AnyMesh, finer_mesh
-from ...model.dispersion import most_amplified_local_waves, most_amplified_wave
+from ...model.dispersion import largest_growth_at_ends, most_amplified_local_waves, most_amplified_wave
 from ...model.rod import Rod
 from .arm_solver import ArmSolver, arm_solver
 from .krylov_schur import UniformSolver, uniform_solver
@@ -146,10 +146,11 @@ class ArmProblem(TransverseProblem):
         self.shift = KRYLOV_SETTINGS.shift_over_growth_rate * float(growth.max())
 
     def move_shift_right(self) -> None:
-        """Doubles the shift, at most to the right end of the hull: local waves at a thin tip, between the
-        sample points, may grow faster than the initial shift."""
+        """Doubles the shift, or moves it beyond the growth rate of local waves at a thin tip, which lies
+        between the sample points; at most to the right end of the hull."""
         right_end = self._hull.a**2 / (4 * (1 - self._hull.c))
-        self.shift = max(self.shift, min(2 * self.shift, right_end))
+        growth = KRYLOV_SETTINGS.shift_over_growth_rate * largest_growth_at_ends(self.rod)
+        self.shift = max(self.shift, min(max(2 * self.shift, growth), right_end))
 
     def mesh_for(self, mode_count: int, accuracy: float) -> ArmMesh:
         return arm_mesh(self.rod, mode_count, accuracy)

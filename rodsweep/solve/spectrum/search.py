@@ -7,6 +7,7 @@ error and count are satisfactory.
 """
 
 from dataclasses import dataclass, replace
+from math import inf
 from typing import Any
 
 from ...discretization.elements.resolution import RESOLUTION_SETTINGS, mesh_accuracy
@@ -74,8 +75,8 @@ class SpectrumSearch:
         self.requested_count = default_count if requested_count is None else requested_count
         self.best: CheckedCandidates | None = None
         self.stalled_refinements = self.failure_count = 0
-        self.disagreement: CountComparison | None = None
-        """The comparison of the last count that disagrees with the eigenvalues found."""
+        self.disagreement: CheckedCandidates | None = None
+        """The last candidates that disagree with a count of eigenvalues."""
         self.is_leader_unresolved = False
         """Whether on one of the meshes neither the eigenvalues nor a count showed which eigenvalue leads."""
         self.last_failure = ""
@@ -108,6 +109,8 @@ class SpectrumSearch:
     def check_candidates(self, candidates: Candidates) -> CheckedCandidates | None:
         """The candidates with their count and error; None if eigenvalues are missing, after a finer mesh or
         more eigenvalues were chosen for the next attempt."""
+        if self.disagreement is not None:
+            candidates = candidates.united_with(self.disagreement.candidates)
         if len(candidates.roots.w) < self.modes:
             # Too few eigenvalues converged to roots of D, or SLEPc failed: a finer mesh.
             self.failure_count += bool(candidates.failure)
@@ -126,7 +129,7 @@ class SpectrumSearch:
             self.mesh = self.problem.finer_mesh(self.mesh)
             return None
         if comparison is not None and comparison.count.number is not None and not comparison.agrees:
-            self.disagreement = comparison
+            self.disagreement = CheckedCandidates(candidates, comparison, inf)
             self.request_missing_eigenvalues(comparison.count.number, comparison.found_count)
             return None
         return CheckedCandidates(candidates, comparison, self.error_over_limit(candidates, comparison))
@@ -200,11 +203,10 @@ class SpectrumSearch:
         """The spectrum of the best candidates; without candidates, a failed spectrum with the reason."""
         if self.best is not None:
             return _best_spectrum(self.best, self.problem, self.request)
-        if self.disagreement is not None:
-            counted = self.disagreement.count.number
+        if self.disagreement is not None and (comparison := self.disagreement.comparison) is not None:
             reason = (
-                f"the winding number counts {counted} eigenvalues right of a vertical line, but the meshes "
-                f"give {self.disagreement.found_count}"
+                f"the winding number counts {comparison.count.number} eigenvalues right of a vertical line, "
+                f"but the meshes give {comparison.found_count}"
             )
             return failed_spectrum(SpectrumStatus.modes_missing, self.request, reason)
         if self.is_leader_unresolved:

@@ -182,16 +182,26 @@ def test_two_rows_far_apart_are_the_same_arm_as_many_rows_on_their_line(factor):
     assert (apart <= few.error_estimate + many.error_estimate).all()
 
 
-@pytest.mark.parametrize(
-    ("F", "taper", "modes"),
-    [(0.9, 100.0, 4), (0.3, 0.02, 4)],
-    ids=["more roots than a proof needs", "growth at a thin tip"],
-)
-def test_eigenvalues_right_of_the_line_of_a_count_are_found(F, taper, modes):
-    """Roots refined only as far as a proof needs, or a shift left of the spectrum, hid eigenvalues."""
-    rod = Rod(F=F, k1=1e4, k2=100.0, gamma3=1e-2, taper=taper)
-    found, dense = solve_spectrum(rod, SpectrumRequest(modes, 1e-10, certify=True)), eigenvalues(rod, 16)
+RUBBER = RodMaterial(law="neo_hookean")
+CONES = {
+    "more roots than a proof needs": Rod(F=0.9, k1=1e4, k2=100.0, gamma3=1e-2, taper=100.0),
+    "growth at a thin tip": Rod(F=0.3, k1=1e4, k2=100.0, gamma3=1e-2, taper=0.02),
+    "long elements at a thin tip": Rod(
+        F=0.0257, k1=31549.0, k2=198.0, gamma3=1.79e-4, taper=0.0105, material=RUBBER
+    ),
+    "growth at a pulled tip alone": Rod(F=-0.0212, k1=221.67, k2=32.47, gamma3=1.53e-3, taper=0.01093),
+    "growth rates far apart": Rod(
+        F=-0.238, k1=1665.6, k2=20.4, gamma3=7.226e-6, taper=0.05833, material=RUBBER
+    ),
+}
+
+
+@pytest.mark.parametrize("rod", CONES.values(), ids=CONES)
+def test_eigenvalues_right_of_the_line_of_a_count_are_found(rod):
+    """Roots refined only as far as a proof needs, or a shift left of the spectrum, hid eigenvalues; so did
+    growth between the points where local waves are sampled, and a shift at the largest growth rate."""
+    found, dense = solve_spectrum(rod, SpectrumRequest(4, 1e-10, certify=True)), eigenvalues(rod, 16)
     assert (found.status, found.certified) == (SpectrumStatus.ok, True)
     assert found.unstable_count == int((dense.real > 0).sum())
-    leading = dense[np.lexsort((-dense.imag, -dense.real))][:modes]
+    leading = dense[np.lexsort((-dense.imag, -dense.real))][:4]
     np.testing.assert_allclose(found.eigenvalues, leading, rtol=1e-5)

@@ -73,14 +73,48 @@ def _elements_per_length(W: float, squares: Array, tapers: Array, points: Array)
     return density
 
 
-def halved_where_coarse(edges: Array, coefficients: Array) -> Array:
-    """Boundaries after halving every element that does not resolve the coefficients of an arm; `edges` itself
-    if none is halved. coefficients: of n arms at the Gauss points, (6, n, elements, stages)."""
-    is_coarse = _is_coarse(coefficients, _last_legendre_matrix(ARM_ELEMENT_SETTINGS.stages))
+def halved_where_coarse(edges: Array, W: float, forces: Array, coefficients: Array) -> Array:
+    """Boundaries after halving every element that does not resolve the coefficients or, for |w| <= W, the
+    exponentials of an arm; `edges` itself if none is halved. forces: F of n arms, (n,). coefficients:
+    `LocalCoefficients` of the arms at the Gauss points, (6, n, elements, stages)."""
+    stages = ARM_ELEMENT_SETTINGS.stages
+    is_coarse = _is_coarse(coefficients, _last_legendre_matrix(stages)) | _is_long(
+        edges[1:] - edges[:-1], W, forces, coefficients, _weights_of_mean(stages)
+    )
     if not is_coarse.any():
         return edges
     midpoints = (edges[:-1] + edges[1:])[is_coarse] / 2
     return np.sort(np.append(edges, midpoints))
+
+
+@cache
+def _weights_of_mean(stage_count: int) -> Array:
+    """Weights of the mean over an element at its Gauss points, (stages,)."""
+    return np.polynomial.legendre.leggauss(stage_count)[1] / 2
+
+
+@compiled
+def _is_long(
+    lengths: Array, W: float, forces: Array, coefficients: Array, weights: Array
+) -> NDArray[np.bool_]:
+    """Mask of the elements, (elements,), over which an exponent of an arm exceeds `max_exponent` by more than
+    the factor `max_exponent_excess`: between the points of `element_edges` it may be much larger, as at a
+    thin tip. lengths: of the elements, (elements,). weights: of the mean over an element, (stages,). Other
+    arguments: as in `halved_where_coarse`."""
+    arms, elements, stages = coefficients.shape[1:]
+    limit = ARM_ELEMENT_SETTINGS.max_exponent_excess * ARM_ELEMENT_SETTINGS.max_exponent
+    is_long = np.zeros(elements, np.bool_)
+    for arm in range(arms):
+        for e in range(elements):
+            exponent = 0.0
+            for i in range(stages):
+                nu, c2, c3, gamma2, gamma3, g = coefficients[:, arm, e, i]
+                drag = c2 * gamma2 + c3 * gamma3
+                rate = abs(g * nu * gamma2 * c3) + c2 * c3 * gamma2 * gamma3 * W
+                waves = drag * W + abs(forces[arm] * c3 * g) + 2 * math.sqrt(W * rate)
+                exponent += lengths[e] * weights[i] * math.sqrt(waves)
+            is_long[e] |= not exponent <= limit
+    return is_long
 
 
 @cache

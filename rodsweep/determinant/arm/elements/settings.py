@@ -17,6 +17,9 @@ class ArmElementSettings(KernelConstants):
     max_exponent: float = 3.2
     """Largest |q1 +- q2| h of an element of length h; these are the exponents of the minors. Twelve Gauss
     points integrate exp(3.2) to 1e-19, with rounding errors like those of elements half as long."""
+    max_exponent_excess: float = 1.1
+    """An element is halved if its largest exponent, integrated at its Gauss points, exceeds `max_exponent` by
+    more than this factor: `max_terms` powers of w and twelve Gauss points suffice up to about 3.7."""
     max_length_over_apex_distance: float = 0.5
     """Largest length of an element divided by the distance from the cone's apex, where stiffnesses vanish."""
     max_coefficient_tail: float = 1e-9
