@@ -10,7 +10,7 @@ about the effects are in `rodsweep.verdict`.
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import IntEnum
-from math import inf, isnan, pi
+from math import inf, isnan, nan, pi
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -158,12 +158,15 @@ def fluid_inertia_effect(arm: SlenderArm, omega: Array, drag: Drag) -> Effect:
     # Vorticity diffuses over a wavelength of the bending wave, not over the radius.
     k = FLUTTER_WAVENUMBER / arm.si.length
     relative_frequency = arm.si.fluid_density * omega / (arm.si.viscosity * k**2)
+    is_at_rest = np.isnan(relative_frequency).all()
+    # The search for this frequency would take half of the time of `rodsweep check` for many arms at rest.
+    limit_frequency = nan if is_at_rest else frequency_of_phase_lag(INERTIA_LIMIT, logarithm)
     return Effect(
         name="inertia of the fluid",
         value=drag_phase_lag(relative_frequency, logarithm),
         limit=INERTIA_LIMIT,
         # The relative frequency is proportional to rate over viscosity, thus to 1/viscosity^2.
-        viscosity_factor=np.sqrt(relative_frequency / frequency_of_phase_lag(INERTIA_LIMIT, logarithm)),
+        viscosity_factor=np.sqrt(relative_frequency / limit_frequency),
     )
 
 

@@ -16,6 +16,7 @@ from ..orbit.newton import ConvergedOrbit, largest_multiplier_difference, multip
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import mesh_of
 from ..orbit.path_differences import path_differences
+from ..unsolvable import Unsolvable
 from .bordered.condition import BorderCondition, moved_orbit
 from .bordered.scale import ALONG_PARAMETER
 from .branch_errors import (
@@ -110,7 +111,10 @@ def relative_tip_y_sensitivity(motion: CycleMotion, derivatives: BranchDerivativ
     step = BRANCH_ERROR_SETTINGS.sensitivity_step * derivatives.tangent
     if 0 <= orbit.form.rod.coordinate(name) < -step[-1]:  # no rod has a negative coordinate
         step = -step
-    moved_motion = CycleMotion(moved_orbit(orbit, name, step))
+    try:
+        moved_motion = CycleMotion(moved_orbit(orbit, name, step))
+    except Unsolvable:  # at the end of a branch the force crushes the rod ahead, but not the rod behind
+        moved_motion = CycleMotion(moved_orbit(orbit, name, -step))
     y = motion.extrema["tip_y_max"]
     moved_y = moved_motion.extrema["tip_y_max"]
     return abs((moved_y - y) / (BRANCH_ERROR_SETTINGS.sensitivity_step * y)) / max(

@@ -59,6 +59,18 @@ def test_a_branch_passes_the_drag_below_which_omega_is_an_unknown():
     assert min(point.parameter_value for point in curve.points) == pytest.approx(0.25, rel=1e-9)
 
 
+def test_a_branch_along_the_taper_ends_where_the_force_crushes_the_tip():
+    """The sensitivity of the last cycle was measured by a step towards crushing, where there is no rod: the
+    branch had the status stopped. The tip is crushed at taper = sqrt(F/k1), less the margin 1e-4 of F."""
+    found = solve_branches(
+        Rod(F=20.0, k1=200.0, k2=1e4, gamma3=1e-4), BranchRequest("taper", 0.26, 0.6, 1e-5, False, 500, 50)
+    )
+    assert found.status == BranchStatus.ok
+    end = found.curves[0].special_points[-1]
+    assert (end.kind, end.reason) == (SpecialKind.end, BranchEndReason.crushed)
+    assert end.parameter_value == pytest.approx((0.1 / (1 - 1e-4)) ** 0.5, rel=1e-6)
+
+
 def test_cycles_are_the_same_whether_omega_is_an_unknown_or_eliminated():
     path = ParameterPath(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.33), "taper")
     (crossing,) = find_axis_crossings(path, 0.33, 0.45).thresholds
