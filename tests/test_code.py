@@ -31,7 +31,7 @@ ONE_MEANING = {
     "MOST_UNKNOWNS",
     "CLOSE",
     "SAME",
-    "ROUND_OFF",
+    "MACHINE_EPSILON",
     "PREFIX",
 }
 

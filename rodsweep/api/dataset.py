@@ -119,7 +119,9 @@ def _load_with_checksums(path: Path, header: ResultHeader) -> xr.Dataset:
         stored_digests = json.loads(with_checksums(data).attrs[SEAL_ATTRIBUTE])["variables"]
         for name, digest in digests.items():
             if stored_digests.get(name) != digest:
-                raise ValueError(f"its variable {name} was changed after rodsweep wrote it")
+                raise ValueError(
+                    f"its variable {name} was changed after rodsweep wrote it; restore a copy of the file"
+                )
     return data
 
 

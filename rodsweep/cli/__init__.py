@@ -33,15 +33,15 @@ __all__ = ["commands", "main"]
 for _command in (explore, export, plot, portrait, report):
     commands.add_command(_command)
 
-LONGEST_MESSAGE = 350
+MAX_MESSAGE_LENGTH = 350
 """Maximum length of an error message, in characters; longer messages lose their middle."""
 
 
 def _one_line(message: str) -> str:
-    """The message on one line, shortened to about LONGEST_MESSAGE characters, because quoted values may be
+    """The message on one line, shortened to about MAX_MESSAGE_LENGTH characters, because quoted values may be
     long."""
     line = printable(" ".join(message.split()))
-    return line if len(line) <= LONGEST_MESSAGE else f"{line[: LONGEST_MESSAGE - 100]} ... {line[-90:]}"
+    return line if len(line) <= MAX_MESSAGE_LENGTH else f"{line[: MAX_MESSAGE_LENGTH - 100]} ... {line[-90:]}"
 
 
 def main() -> None:

@@ -49,7 +49,7 @@ class FloatNumberType(click.types.FloatParamType):
         return number
 
 
-NUMBER = FloatNumberType()
+NUMBER_TYPE = FloatNumberType()
 """Type of options that are numbers."""
 CommandFunction = Callable[..., Any]
 """Function of a command."""
@@ -89,7 +89,7 @@ def parameter_options(command: CommandFunction) -> CommandFunction:
         meaning = f"{parameter.meaning[0].upper()}{parameter.meaning[1:]}"
         unit = "" if parameter.unit == "1" else f", in {parameter.unit}"
         default_clause = "" if parameter.default is None else f"; by default {parameter.default:g}"
-        command = click.option(f"--{name}", name, type=NUMBER, help=f"{meaning}{unit}{default_clause}.")(
+        command = click.option(f"--{name}", name, type=NUMBER_TYPE, help=f"{meaning}{unit}{default_clause}.")(
             command
         )
     return command

@@ -8,7 +8,7 @@ from rich.console import Console
 from ..errors import InputError
 from ..model.arm.quantities import UNITS
 
-LINE_STYLES = {"headline": "bold", "warning": "yellow"}
+PARAGRAPH_STYLES = {"headline": "bold", "warning": "yellow"}
 """Text styles of the printed lines, by kind of line."""
 
 
@@ -28,13 +28,13 @@ def print_arm_report(typed_values: dict[str, str | None], poisson: float, segmen
         raise InputError(with_option_names(str(error))) from None
     console = Console(highlight=False, soft_wrap=True)
     for line, kind in report.styled_paragraphs():
-        console.print(line, markup=False, style=LINE_STYLES.get(kind, ""))
+        console.print(line, markup=False, style=PARAGRAPH_STYLES.get(kind, ""))
 
 
-QUANTITY_NAMES = "|".join((*UNITS, "segments"))
+NAME_PATTERN = "|".join((*UNITS, "segments"))
 """Regular expression of all names of quantities."""
-QUANTITY_IN_SENTENCE = re.compile(
-    rf"^({QUANTITY_NAMES})|(?:(?<= and )|(?<=, with )|(?<= is not below ))({QUANTITY_NAMES})(?= = | are )"
+QUANTITY_IN_SENTENCE_PATTERN = re.compile(
+    rf"^({NAME_PATTERN})|(?:(?<= and )|(?<=, with )|(?<= is not below ))({NAME_PATTERN})(?= = | are )"
 )
 """Regular expression of a quantity's name at the beginning of a sentence or before " = " and " are "."""
 
@@ -42,6 +42,6 @@ QUANTITY_IN_SENTENCE = re.compile(
 def with_option_names(sentence: str) -> str:
     """The error message `sentence`, with names of options such as --tip-radius in place of names of
     quantities."""
-    text = QUANTITY_IN_SENTENCE.sub(lambda match: "--" + match[0].replace("_", "-"), sentence)
+    text = QUANTITY_IN_SENTENCE_PATTERN.sub(lambda match: "--" + match[0].replace("_", "-"), sentence)
     text = text.replace("--segments", "--segment")
     return text if text.startswith("--") else f"--{text}"

@@ -32,22 +32,22 @@ def run_benchmarks(study_name: str | None, is_quick: bool, output: Path, directo
     checkout. Raises EnvironmentIncomplete if a package of the benchmark is missing.
     """
     try:
-        from ..bench.limit_cycle.study import limit_cycle_study
+        from ..bench.limit_cycle.study import run_limit_cycle_study
         from ..bench.peers import PeerContribution, peer_package, peers_left_out, peers_of_study
-        from ..bench.spectrum.study import spectrum_study
+        from ..bench.spectrum.study import run_spectrum_study
         from ..bench.study import BenchmarkReport
-        from ..bench.sweep.study import sweep_study
-        from ..bench.thresholds.study import thresholds_study
+        from ..bench.sweep.study import run_sweep_study
+        from ..bench.thresholds.study import run_thresholds_study
     except ModuleNotFoundError as error:
         hint = f"the benchmark needs {error.name}: pip install 'rodsweep[bench]'"
         raise EnvironmentIncomplete(hint) from None
     from ..results.file.benchmark_file import write_measurements
 
     studies: dict[str, Callable[[bool, PeerContribution], BenchmarkReport]] = {
-        "spectrum": spectrum_study,
-        "thresholds": thresholds_study,
-        "limit_cycle": limit_cycle_study,
-        "sweep": lambda is_quick, _: sweep_study(is_quick, MEASURED_COMMAND),
+        "spectrum": run_spectrum_study,
+        "thresholds": run_thresholds_study,
+        "limit_cycle": run_limit_cycle_study,
+        "sweep": lambda is_quick, _: run_sweep_study(is_quick, MEASURED_COMMAND),
     }
     package = peer_package(directory)
     names = [study_name] if study_name else list(studies)

@@ -8,7 +8,7 @@ import click
 from .. import __version__
 from ..errors import InputError
 from ..wording import counted, is_or_are
-from .arm_options import NUMBER, arm_options
+from .arm_options import NUMBER_TYPE, arm_options
 from .file_names import FILE_TYPE, OUTPUT, link_target, result_file_path, with_suffix_replaced
 from .launchers import launcher_rank_values
 from .usage_errors import CommandGroup
@@ -156,7 +156,9 @@ def bench(what: str | None, quick: bool, output: Path | None, directory: Path | 
 
 @commands.command()
 @arm_options()
-@click.option("--poisson", type=NUMBER, default=0.5, show_default=True, help="Poisson's ratio of the arm.")
+@click.option(
+    "--poisson", type=NUMBER_TYPE, default=0.5, show_default=True, help="Poisson's ratio of the arm."
+)
 def arm(poisson: float, segment: tuple[str, ...], **quantities: str | None) -> None:
     """Print when an arm flutters, from quantities with units such as "10 cm" and "100 kPa"."""
     from .arm_report import print_arm_report

@@ -10,7 +10,7 @@ from ..config.values import printable
 from ..errors import InputError
 from ..model.arm.quantities import UNITS
 from ..model.parameters import PARAMETERS
-from .arm_options import NUMBER, arm_options, parameter_options
+from .arm_options import NUMBER_TYPE, arm_options, parameter_options
 from .file_names import FILE_TYPE, OUTPUT, link_target, with_suffix_replaced
 from .portrait_rod import (
     QUANTITIES_WITHOUT_OPTION,
@@ -130,13 +130,13 @@ def report(files: tuple[Path, ...], output: Path | None) -> None:
 @click.command()
 @parameter_options
 @arm_options(QUANTITIES_WITHOUT_OPTION, is_required=False)
-@click.option("--poisson", type=NUMBER, help="Poisson's ratio of the arm; by default 0.5.")
+@click.option("--poisson", type=NUMBER_TYPE, help="Poisson's ratio of the arm; by default 0.5.")
 @click.option("--profile", metavar="FILE", help="A CSV file with factors along the rod, as material.profile.")
 @click.option(
-    "--F-max", "F_max", type=NUMBER, default=DEFAULT_F_MAX, show_default=True, help="Largest force."
+    "--F-max", "F_max", type=NUMBER_TYPE, default=DEFAULT_F_MAX, show_default=True, help="Largest force."
 )
 @click.option(
-    "--accuracy", type=NUMBER,
+    "--accuracy", type=NUMBER_TYPE,
     help="Relative accuracy; by default 1e-5 on branches, and the accuracy of each other task.",
 )  # fmt: skip
 @click.option(
@@ -152,7 +152,7 @@ def portrait(F_max: float, accuracy: float | None, output: Path, **options: Any)
     from ..post.rod_portrait.paragraph import paragraph
     from ..post.rod_portrait.writing import require_portrait, write_portrait
     from ..sweep.progress import ProgressReporter
-    from ..tasks.rod_portrait import PortraitRequest, rod_results
+    from ..tasks.rod_portrait import PortraitRequest, solve_rod_results
     from ..tasks.running.in_memory import solved_view
 
     output = link_target(output)
@@ -166,7 +166,7 @@ def portrait(F_max: float, accuracy: float | None, output: Path, **options: Any)
         solve_with_progress(ProgressReporter(None, "portrait", "solved"), solved_view) as solve,
     ):
         rod = rod_of_options(parameters, quantities, material)
-        results = rod_results(PortraitRequest(rod=rod, F_max=F_max, accuracy=accuracy), solve)
+        results = solve_rod_results(PortraitRequest(rod=rod, F_max=F_max, accuracy=accuracy), solve)
     click.echo(paragraph(results))
     click.echo(write_portrait(results, output))
 

@@ -26,7 +26,7 @@ from .tasks import CONFIGS
 from .values import StrictConfigSection
 
 Schema = dict[str, Any]
-QUANTITY_TEXT = r"^\s*{sign}(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[A-Za-z\u00b5\u03bc{percent}]"
+QUANTITY_TEXT_PATTERN = r"^\s*{sign}(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[A-Za-z\u00b5\u03bc{percent}]"
 """Template of a regular expression for a number followed by the beginning of a unit."""
 BOUNDS_OF_ARM: dict[str, Schema] = {
     **{name: {"exclusiveMinimum": 0} for name in NON_LOAD_KEYS if not QUANTITIES[name].may_be_nonpositive},
@@ -34,7 +34,7 @@ BOUNDS_OF_ARM: dict[str, Schema] = {
     **{name: {"minimum": 0} for name in LOAD_OF_RATIO},
 }
 """Bounds of each quantity of an arm, as JSON schema keywords, by name of the quantity."""
-DIALECT = "http://json-schema.org/draft-07/schema#"
+SCHEMA_DIALECT_URL = "http://json-schema.org/draft-07/schema#"
 """Address of draft 7 of JSON schema, which most editors support."""
 BOUND_KEYWORDS = {"ge": "minimum", "le": "maximum", "gt": "exclusiveMinimum", "lt": "exclusiveMaximum"}
 """JSON schema keyword by pydantic's name of a bound. pydantic does not convert the bounds of values that pass
@@ -65,7 +65,7 @@ def json_schema() -> dict[str, Any]:
                 bound = node.pop(ours)
                 if isfinite(bound):
                     node[theirs] = bound
-    return {"$schema": DIALECT, "title": "A config of rodsweep", **complete_schema}
+    return {"$schema": SCHEMA_DIALECT_URL, "title": "A config of rodsweep", **complete_schema}
 
 
 def section_classes(config: type[BaseModel]) -> Iterator[type[BaseModel]]:
@@ -173,7 +173,7 @@ def add_arm_conditions(section: Schema, axis: Schema) -> None:
         if name not in QUANTITIES:
             continue
         sign = "[+]?" if bound else "[+-]?"
-        pattern = QUANTITY_TEXT.format(sign=sign, percent="%" if name in LOADS else "")
+        pattern = QUANTITY_TEXT_PATTERN.format(sign=sign, percent="%" if name in LOADS else "")
         for node in iterate_subschemas(key):
             if node.get("type") == "string":
                 node["pattern"] = pattern

@@ -124,7 +124,8 @@ def read_profile(path: Path) -> dict[str, list[float]]:
     file_text = f"material.profile: {path}"
     try:
         if not path.is_file():
-            raise InputError(f"{file_text} {'is not a file' if path.exists() else 'does not exist'}")
+            fault = "is not a file" if path.exists() else "does not exist"
+            raise InputError(f"{file_text} {fault}; give the name of a CSV file")
         with path.open(newline="", encoding="utf-8-sig") as file:
             text = file.read(MAX_PROFILE_CHARACTERS + 1)
         rows = [[cell.strip() for cell in row] for row in csv.reader(text.splitlines()) if row]
@@ -133,7 +134,7 @@ def read_profile(path: Path) -> dict[str, list[float]]:
     except (UnicodeDecodeError, csv.Error) as error:
         raise InputError(f"{file_text} is not CSV text ({error})") from error
     if len(text) > MAX_PROFILE_CHARACTERS or len(rows) > MAX_PROFILE_ROWS + 1:
-        raise InputError(f"{file_text} has more than {MAX_PROFILE_ROWS} rows")
+        raise InputError(f"{file_text} has more than {MAX_PROFILE_ROWS} rows; use fewer rows")
     header = rows[0] if rows else []
     if "u" not in header or not set(header) <= {"u", *FACTOR_NAMES} or len(set(header)) < len(header):
         raise InputError(
@@ -143,7 +144,10 @@ def read_profile(path: Path) -> dict[str, list[float]]:
     for number, row in enumerate(rows[1:], 1):
         row_name = f"{file_text}: row {number}"
         if len(row) != len(header):
-            raise InputError(f"{row_name} has {len(row)} values, but the header names {len(header)}")
+            raise InputError(
+                f"{row_name} has {len(row)} values, but the header names {len(header)}; give a value for "
+                "each name of the header"
+            )
         for name, cell in zip(header, row, strict=True):
             try:
                 columns[name].append(cell_number(cell))

@@ -14,14 +14,14 @@ from typing import NamedTuple
 
 from ..model.compiled.compilation import compiled
 from ..model.compiled.kernel_constants import KernelConstants
-from .exponents import ROUND_OFF, HyperbolicFunctions, hyperbolic_functions, modulus
+from .exponents import MACHINE_EPSILON, HyperbolicFunctions, hyperbolic_functions, modulus
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EvenFunctionSettings(KernelConstants):
     """Thresholds that select the formula for the even functions s and d (see the module docstring)."""
 
-    series_terms: int = 13
+    series_term_count: int = 13
     """Number of terms of the series of s and d."""
     series_below: float = 1.5
     """If |M| + 2 |P| is below this number, `even_functions_by_series` computes s and d."""
@@ -35,10 +35,10 @@ class EvenFunctionSettings(KernelConstants):
     the exponentially small eigenvalues of strongly pulled rods depend on exp(-S)."""
 
     def __post_init__(self) -> None:
-        n = self.series_terms
-        if self.series_below**n > ROUND_OFF * math.factorial(2 * n + 2):
+        n = self.series_term_count
+        if self.series_below**n > MACHINE_EPSILON * math.factorial(2 * n + 2):
             raise ValueError(
-                f"series_terms = {n} is too small at |M| + 2 |P| = {self.series_below}: the sum is not "
+                f"series_term_count = {n} is too small at |M| + 2 |P| = {self.series_below}: the sum is not "
                 "accurate to rounding"
             )
 
@@ -173,7 +173,7 @@ def even_functions_by_series(
     triple_sum = 0j  # of (z+, z+, z-)
     quadruple_sum = 0j  # of (z+, z+, z-, z-)
     factor = size / 2
-    for n in range(1, EVEN_FUNCTION_SETTINGS.series_terms):
+    for n in range(1, EVEN_FUNCTION_SETTINGS.series_term_count):
         # 1/(2n + 2)!, updated from term to term.
         factor /= (2 * n + 1) * (2 * n + 2)
         s1 += n * factor * (power_plus + power_minus)

@@ -34,9 +34,9 @@ class ExponentSettings(KernelConstants):
 
 EXPONENT_SETTINGS = ExponentSettings()
 
-ROUND_OFF = sys.float_info.epsilon
+MACHINE_EPSILON = sys.float_info.epsilon
 """Distance from 1 to the next larger double-precision number."""
-ROUNDING_UNIT = 2 * ROUND_OFF
+ROUNDING_UNIT = 2 * MACHINE_EPSILON
 """Unit of the rounding errors of the terms of D: twice the spacing of double-precision numbers at 1."""
 
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from ..model.parameters import CRUSHING_PARAMETERS, PARAMETERS
 from ..model.rod import Rod
 from .arm.determinant import arm_determinant
-from .exponents import ROUND_OFF
+from .exponents import MACHINE_EPSILON
 from .parameter_path import PathDeterminantValue, determinant_along_path
 from .value import DeterminantValue, scaled_determinant
 
@@ -104,7 +104,7 @@ class ParameterPlane:
         (D, D_w, _, log_scale, rounding_error), D_x = self._determinant_along_axis(w, rod, self.axes[0])
         _, D_y = self._determinant_along_axis(w, rod, self.axes[1])
         # The rounding errors of w, x and y add to the rounding error of D.
-        rounding = rounding_error + ROUND_OFF * (abs(D_x) + abs(D_y) + abs(w * D_w))
+        rounding = rounding_error + MACHINE_EPSILON * (abs(D_x) + abs(D_y) + abs(w * D_w))
         return ValueOnPlane(D, D_w, D_x, D_y, log_scale, rounding)
 
     def determinant_value(self, w: complex, x: float, y: float) -> DeterminantValue:
@@ -139,7 +139,7 @@ class ParameterPlane:
                 slope += weight * neighbour.D * exp(neighbour.log_scale - log_scale) / step
             slopes.append(slope)
         D_x, D_y = slopes
-        rounding = rounding_error + ROUND_OFF * (abs(D_x) + abs(D_y) + abs(w * D_w))
+        rounding = rounding_error + MACHINE_EPSILON * (abs(D_x) + abs(D_y) + abs(w * D_w))
         return ValueOnPlane(D, D_w, D_x, D_y, log_scale, rounding)
 
     @staticmethod

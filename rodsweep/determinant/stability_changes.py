@@ -16,7 +16,7 @@ from ..arrays import Array, Complex
 from ..model.compiled.compilation import compiled
 from ..model.compiled.kernel_constants import KernelConstants
 from ..model.rod import Coefficients
-from .roots.newton import crossing_newton, double_eigenvalue_newton
+from .roots.newton import crossing_by_newton, double_eigenvalue_by_newton
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,7 +68,7 @@ def onset_between(
     squared_frequency = complex_w.imag**2
     guess_F = low + (high - low) * squared_half_gap / (squared_half_gap + squared_frequency)
     centre = ((first_w.real + second_w.real) / 2 + complex_w.real) / 2
-    zero = double_eigenvalue_newton(centre, guess_F, *rods, high - low)
+    zero = double_eigenvalue_by_newton(centre, guess_F, *rods, high - low)
     # The comparison is also false for nan, the result of a failure.
     if not low <= zero.p <= high:
         return None
@@ -125,7 +125,7 @@ def crossings_between(
             for w in eigenvalues:
                 if not w.imag > 0:
                     continue
-                zero = crossing_newton(w.imag, F, origin, direction, (w.imag, max(abs(F), high - low)))
+                zero = crossing_by_newton(w.imag, F, origin, direction, (w.imag, max(abs(F), high - low)))
                 # The comparison is also false for nan, the result of a failure.
                 if not low <= zero.p <= high:
                     continue

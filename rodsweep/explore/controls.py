@@ -13,7 +13,7 @@ from ..post.summary.arm.arm import quantity_words
 from .slider_scales import SCALES, ControlScale, PictureAxis
 from .state import MATERIAL_CHOICE_NAMES, SECOND_PARAMETERS, TAB_DEFAULTS, PageState
 
-MAX_FORCE = "Largest force F (k3/L^2)"
+MAX_FORCE_LABEL = "Largest force F (k3/L^2)"
 SLIDER_STEP_COUNT = 400
 """Number of steps of a slider between its ends."""
 ChangeCallback = Callable[..., None]
@@ -98,7 +98,9 @@ class Controls:
             title="Law of the material", name="law", options=list(MATERIAL_CHOICE_NAMES.items())
         )
         self.across = new_select(title="Second parameter of the diagram", name="across")
-        self.F_max = TextInput(title=MAX_FORCE, name="F_max", sizing_mode="stretch_width", stylesheets=sheets)
+        self.F_max = TextInput(
+            title=MAX_FORCE_LABEL, name="F_max", sizing_mode="stretch_width", stylesheets=sheets
+        )
         for key, widget in (("law", self.law), ("across", self.across), ("F_max", self.F_max)):
             widget.on_change("value", partial(self._choice_changed, key))
         self.root = Column(
@@ -123,7 +125,7 @@ class Controls:
         """Writes, for an arm, the pressure that corresponds to the largest force above the field of this
         force."""
         pressure_clause = f": {state.largest_force() * axis.factor:.4g} kPa" if state.tab == "arm" else ""
-        self.F_max.title = MAX_FORCE + pressure_clause
+        self.F_max.title = MAX_FORCE_LABEL + pressure_clause
 
     def _field_changed(self, name: str, text: str) -> None:
         self._changed(values={name: text})

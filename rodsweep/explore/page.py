@@ -19,7 +19,7 @@ from .solving.request_inputs import AnswerInputs, inputs_of_request, state_to_so
 from .solving.requests import Reply, SolveRequest
 from .solving.solvers import Solvers
 from .solving.tip_release import TipPosition
-from .state import PageState, from_address, rod_of
+from .state import PageState, dimensionless_parameters_of, from_address
 from .texts import progress_text, solving_text
 
 STOPPED_SENTENCE = "Stopped. A change of the rod starts the solve again."
@@ -132,7 +132,7 @@ class Page:
         try:
             rod_or_arm = state.subject()
             state.largest_force()
-            F = None if state.has_relative_load else rod_of(rod_or_arm).get("F")
+            F = None if state.has_relative_load else dimensionless_parameters_of(rod_or_arm).get("F")
             if F is None and not state.has_relative_load:
                 section = "parameters.arm" if state.tab == "arm" else "parameters"
                 raise InputError(f"{section}.{state.load} is missing; give the load")

@@ -6,18 +6,18 @@ from pathlib import Path
 from bokeh.models import CustomJS, InlineStyleSheet
 from bokeh.plotting import figure
 
-TEMPLATES = Path(__file__).parent / "templates"
+TEMPLATE_FOLDER = Path(__file__).parent / "templates"
 """Directory of the templates, style sheets and scripts."""
 
 
 def template_text(name: str) -> str:
-    """Text of the file `name` in TEMPLATES."""
-    return (TEMPLATES / name).read_text(encoding="utf-8")
+    """Text of the file `name` in TEMPLATE_FOLDER."""
+    return (TEMPLATE_FOLDER / name).read_text(encoding="utf-8")
 
 
 def style_sheet(name: str) -> InlineStyleSheet:
-    """Style sheet for Bokeh's widgets, from the file `name` in TEMPLATES. A widget inherits the colours of
-    the page, but not its style sheets."""
+    """Style sheet for Bokeh's widgets, from the file `name` in TEMPLATE_FOLDER. A widget inherits the colours
+    of the page, but not its style sheets."""
     return InlineStyleSheet(css=template_text(name))
 
 

@@ -28,7 +28,7 @@ from .state import PageState
 
 LISTEN_ADDRESS = "127.0.0.1"
 """IP address on which the server listens."""
-HOSTS = (LISTEN_ADDRESS, "localhost")
+ALLOWED_HOSTS = (LISTEN_ADDRESS, "localhost")
 """Host names under which a browser on this machine may open the page."""
 UNUSED_SESSION_MILLISECONDS = 5000
 """A session ends this time after its page was closed, in milliseconds; until then a page whose connection was
@@ -93,7 +93,7 @@ class ExploreServer:
         application = Application(FunctionHandler(self._open))
         tornado = BatchTornado(
             {"/": application},
-            extra_websocket_origins=[f"{host}:{self.port}" for host in HOSTS],
+            extra_websocket_origins=[f"{host}:{self.port}" for host in ALLOWED_HOSTS],
             unused_session_lifetime_milliseconds=UNUSED_SESSION_MILLISECONDS,
             check_unused_sessions_milliseconds=CHECK_MILLISECONDS,
         )

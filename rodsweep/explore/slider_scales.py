@@ -9,7 +9,7 @@ from ..model.arm.quantities import QUANTITIES
 from ..model.parameters import PARAMETERS
 from ..model.units import quantity_in_si
 from ..post.summary.arm.arm import quantity_words
-from .state import PageState, float_or_text, rod_of
+from .state import PageState, dimensionless_parameters_of, float_or_text
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -89,7 +89,7 @@ def load_axis(state: PageState) -> PictureAxis:
     if state.tab == "rod":
         return PictureAxis("force F (k3/L^2)", 1.0)
     arm = state.with_values(pressure="1 kPa").subject()
-    return PictureAxis("pressure (kPa)", 1 / rod_of(arm)["F"])
+    return PictureAxis("pressure (kPa)", 1 / dimensionless_parameters_of(arm)["F"])
 
 
 def length_axis(state: PageState) -> PictureAxis:

@@ -154,7 +154,7 @@ class PageState:
         )
 
 
-def rod_of(rod_or_arm: SoftRod | Arm) -> Mapping[str, float]:
+def dimensionless_parameters_of(rod_or_arm: SoftRod | Arm) -> Mapping[str, float]:
     """Dimensionless parameters, by name, of a rod or an arm."""
     return rod_or_arm.parameters if isinstance(rod_or_arm, SoftRod) else SoftRod(arm=rod_or_arm).parameters
 

@@ -35,7 +35,7 @@ from .state import (
 
 HIDDEN_QUANTITIES = ("density_difference", "fluid_density", "law", "section")
 """Keys of an arm that are ignored or have a control outside the tab of the arm."""
-RELATIVE_PRESSURE = "pressure_over_flutter"
+RELATIVE_PRESSURE_KEY = "pressure_over_flutter"
 """Key of an arm's pressure relative to flutter; the page has it as text in the control of the pressure."""
 
 
@@ -113,7 +113,7 @@ def _state_of_arm(config: Config, path: Path) -> PageState:
     section: Any = config.parameters.arm
     quantities = {name: getattr(section, name) for name in type(section).model_fields}
     quantities = {name: value for name, value in quantities.items() if value is not None}
-    shares = quantities.pop(RELATIVE_PRESSURE, None)
+    shares = quantities.pop(RELATIVE_PRESSURE_KEY, None)
     omitted = [name for name in quantities if name not in (*DEFAULT_ARM, *HIDDEN_QUANTITIES)]
     if omitted:
         reason = f"the page cannot show an arm with {omitted[0]}"

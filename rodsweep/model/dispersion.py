@@ -18,7 +18,7 @@ from ..arrays import Array
 from .material.rod_material import LocalCoefficients, RodMaterial
 from .rod import Rod
 
-SAMPLE_COUNT = 64
+WAVE_SAMPLE_COUNT = 64
 """Number of samples of K = kappa^2, with equal ratios. A ratio of 1.15 suffices for an estimate."""
 SAMPLES_PER_INTERVAL = 33
 """Number of points between two neighbouring breaks of an arm's profile at which local waves are computed."""
@@ -26,8 +26,8 @@ CACHED_ARM_COUNT = 16
 """Maximum number of arms, and of materials, in the caches of this module."""
 MIN_K_FRACTION = 1e-4
 """Ratio K/(F g) of the smallest sample of K = kappa^2. Every wave with K > F g decays."""
-K_FRACTIONS: Array = MIN_K_FRACTION ** (1 - np.arange(SAMPLE_COUNT) / SAMPLE_COUNT)
-"""Ratios K/(F g) of all samples of K = kappa^2, increasing, (SAMPLE_COUNT,)."""
+K_FRACTIONS: Array = MIN_K_FRACTION ** (1 - np.arange(WAVE_SAMPLE_COUNT) / WAVE_SAMPLE_COUNT)
+"""Ratios K/(F g) of all samples of K = kappa^2, increasing, (WAVE_SAMPLE_COUNT,)."""
 
 
 def most_amplified_wave(rod: Rod) -> tuple[float, float]:
@@ -133,8 +133,9 @@ def _largest_growth(max_K: Any, damping_at_0: Any, c2: Any, gamma3: Any) -> tupl
 
 
 def _largest_sampled_growth(max_K: Any, damping_at_0: Any, c2: Any, gamma3: Any) -> tuple[Array, Array]:
-    """`_largest_growth` by comparison of SAMPLE_COUNT wave numbers. On a pulled rod with g < 0 the growth
-    rate may have a maximum at K = 0 only, or no maximum. Arguments: as in `_largest_growth`, (..., 1)."""
+    """`_largest_growth` by comparison of WAVE_SAMPLE_COUNT wave numbers. On a pulled rod with g < 0 the
+    growth rate may have a maximum at K = 0 only, or no maximum. Arguments: as in `_largest_growth`, (...,
+    1)."""
     product = c2 * gamma3
     K = max_K * K_FRACTIONS
     # Both branches of each `where` are evaluated, also where they divide by 0.

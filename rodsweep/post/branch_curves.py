@@ -165,12 +165,12 @@ class RodBranches:
     def straight_ranges(self, span: ParameterRange) -> tuple[list[ParameterRange], list[ParameterRange]]:
         """Returns (stable, unstable): ranges within `span` in which the straight rod is stable, or unstable.
         Both lists are empty if special points of some branch are not stored."""
-        intervals = [] if self.hidden_count else self.straight_pieces(span)
+        intervals = [] if self.hidden_count else self.straight_rod_intervals(span)
         stable, unstable = ([(a, b) for a, b, value in intervals if value == kind] for kind in (1, 0))
         return union_of_ranges(stable), union_of_ranges(unstable)
 
-    def straight_pieces(self, span: ParameterRange) -> list[tuple[float, float, int]]:
-        """(low, high, stability) between Hopf points within `span`: 1 stable, 0 unstable, -1 unknown."""
+    def straight_rod_intervals(self, span: ParameterRange) -> list[tuple[float, float, int]]:
+        """Intervals (low, high, stability of the straight rod: 1, 0, -1 if unknown) between Hopf points."""
         stored = self._v
         is_hopf = stored["special_kind"] == HOPF
         values, indices = np.unique(stored["special_at"][is_hopf], return_index=True)

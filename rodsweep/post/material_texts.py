@@ -7,7 +7,7 @@ from ..results.file.view import ResultView
 from ..wording import counted
 
 
-def material_of(view: ResultView) -> Mapping[str, Any]:
+def material_keys_of(view: ResultView) -> Mapping[str, Any]:
     """The given keys of law, section, profile and segments of the arms of a file, in the section `material`
     of the config or in the arm; empty for uniform arms of linear material."""
     arm = view.config.get("parameters", {}).get("arm") or {}
@@ -20,7 +20,7 @@ def material_of(view: ResultView) -> Mapping[str, Any]:
 
 def material_words(view: ResultView) -> str:
     """Law, profile and segments in a few words, for figures; empty for uniform arms of linear material."""
-    section = material_of(view)
+    section = material_keys_of(view)
     phrases = [f"neo-Hookean, {section['section']} section"] if "law" in section else []
     phrases += ["with a profile"] if "profile" in section else []
     phrases += [f"in {counted(len(section['segments']), 'segment')}"] if "segments" in section else []
@@ -29,7 +29,7 @@ def material_words(view: ResultView) -> str:
 
 def material_lines(view: ResultView) -> list[str]:
     """Lines on law, profile and segments, for summaries; empty for uniform arms of linear material."""
-    section = material_of(view)
+    section = material_keys_of(view)
     lines = []
     if "law" in section:
         lines.append(f"material: neo-Hookean rubber with a {section['section']} section")

@@ -83,7 +83,7 @@ PULLED_MOTION_SECONDS = 8.0
 MAX_FORCE_OF_MEASURED_CYCLES = 350.0
 """Largest force, in k3/L^2, at which CYCLE_SECONDS holds: eight random rods under 60 to 300 took 0.04 to 0.17
 s. A rod under 400 took 2 s, one under 1500 25 s, because their motion does not repeat."""
-DOUBTFUL_FORCES = "rods far above flutter, whose motion may not repeat,"
+DOUBTFUL_FORCES_TEXT = "rods far above flutter, whose motion may not repeat,"
 """Kind of rods whose cycles may take many times as long as estimated."""
 CHAINED_CYCLE_SECONDS = 0.01
 """Time of a limit cycle computed from the cycle of a neighbouring point, in s, similar to the benchmark."""
@@ -237,7 +237,7 @@ def cycles_cost(points: Points, first_count: int) -> CostEstimate:
     F = np.asarray(points.values_of(indices)["F"]) if indices.size else np.zeros(1)
     pulled_count = points.count * float(np.mean(-MIN_PULL_OF_SLOW_MOTION >= F))
     seconds = first_count * CYCLE_SECONDS + (points.count - first_count) * CHAINED_CYCLE_SECONDS
-    doubt = DOUBTFUL_FORCES if bool((F > MAX_FORCE_OF_MEASURED_CYCLES).any()) else ""
+    doubt = DOUBTFUL_FORCES_TEXT if bool((F > MAX_FORCE_OF_MEASURED_CYCLES).any()) else ""
     return CostEstimate(seconds + pulled_count * PULLED_MOTION_SECONDS, underestimated_rods=doubt)
 
 

@@ -14,14 +14,14 @@ MAX_SAMPLED_ROWS = 20
 COVERING_MS_PER_BOX = 0.11
 """Time to search one uniform rod under pulls, divided by the number of boxes from which the covering starts,
 in ms: 0.07 to 0.15 for twelve rods with 98 to 2900 boxes."""
-BEYOND_SHEAR_MS = 100.0
+PULL_BEYOND_SHEAR_MS = 100.0
 """Further time to search one rod from a pull beyond its shear stiffness, in ms: 110 for six, k2 = 100."""
 ARM_MS_PER_PULL = 0.6
 """Time to search an arm that is not uniform under pulls, divided by the largest pull in k3/L^2, in ms: 0.5 to
 0.7 for a cone under pulls of 100 and 1000."""
 MAX_ATTEMPT_SECONDS = 30.0
 """Largest time of a search that no mesh resolves, in s: 0.07 to 30 s were measured for six arms and rods."""
-DOUBTFUL_PULLS = "rows that begin at a pull beyond the shear stiffness"
+DOUBTFUL_PULLS_TEXT = "rows that begin at a pull beyond the shear stiffness"
 """Kind of rows whose time is not estimated reliably: of fourteen rods under pulls F < -k2 nu some took ten
 times as long as a rod under half or twice the pull."""
 
@@ -39,7 +39,9 @@ def pulled_rows_seconds(rods: Sequence[Rod], F_values: Array, row_count: int) ->
     # Beyond the shear stiffness g = nu + F c2 is negative somewhere along the arm.
     arms = (sampled_arm(rod.with_values(F=start)) for rod, start in zip(rods, starts, strict=True))
     is_beyond_shear_stiffness = any(float(np.min(arm.local.g)) < 0 for arm in arms)
-    return row_count * float(np.mean(seconds_of_rows)), DOUBTFUL_PULLS if is_beyond_shear_stiffness else ""
+    return row_count * float(
+        np.mean(seconds_of_rows)
+    ), DOUBTFUL_PULLS_TEXT if is_beyond_shear_stiffness else ""
 
 
 def _first_searchable_pull(rod: Rod, pulls: Array) -> float:
@@ -66,7 +68,7 @@ def _row_seconds(rod: Rod, start_pull: float) -> float:
     boxes = _boxes(rod, start_pull)
     covering_ms = COVERING_MS_PER_BOX * (0 if boxes is None else len(boxes))
     drive = start_pull * rod.with_values(F=start_pull).g
-    exchanges_ms = BEYOND_SHEAR_MS + SOFT_SEARCH_MS * drive if drive > 0 else 0.0
+    exchanges_ms = PULL_BEYOND_SHEAR_MS + SOFT_SEARCH_MS * drive if drive > 0 else 0.0
     return 1e-3 * covering_ms + min(1e-3 * exchanges_ms, MAX_ATTEMPT_SECONDS)
 
 

@@ -16,7 +16,7 @@ from .check_rows import crushing_clause, points_clause
 from .protocol import CheckRow, Solver
 
 if TYPE_CHECKING:
-    from ..solve.branch.branch_curve import BranchCurve, BranchPoint
+    from ..solve.branch.branch_curve import BranchCurve, StoredBranchCycle
     from ..solve.branch.branches import BranchesOfRod
     from ..solve.branch.special.special_point import SpecialPoint
     from ..solve.changes.threshold_kinds import Threshold
@@ -124,7 +124,7 @@ def branches_at_breakings(curves: "Sequence[BranchCurve]") -> dict[tuple[int, in
     return numbers
 
 
-def _cycle_values(point: "BranchPoint", parameter_name: str) -> dict[str, Any]:
+def _cycle_values(point: "StoredBranchCycle", parameter_name: str) -> dict[str, Any]:
     """A cycle of a branch as variables of the file."""
     attribute_names = {
         f"branch_{parameter_name}": "parameter_value",

@@ -16,7 +16,7 @@ from ..model.parameters import Range
 from ..results.layouts.limit_cycle import (
     CYCLE_VARIABLES,
     ENERGY_VARIABLES,
-    PERIOD_TAU1,
+    PERIOD_TAU1_VARIABLE,
     SHAPE_VARIABLES,
     STORED_MULTIPLIERS,
     TIP_VARIABLES,
@@ -221,7 +221,7 @@ class LimitCycleTask(Task):
         sources = stored_multipliers, cycle.errors, cycle.measures, cycle
         values = outcome_values(CYCLE_VARIABLES, *sources, names=MULTIPLIER_FIELDS)
         if options.time == "tau1":  # t/tau1 = (t/tau2) k2/gamma3
-            values[PERIOD_TAU1.name] = cycle.measures.period * point["k2"] / point["gamma3"]
+            values[PERIOD_TAU1_VARIABLE.name] = cycle.measures.period * point["k2"] / point["gamma3"]
         if options.samples:
             values |= _values_of_arrays(TIP_VARIABLES, cycle.tip)
             values |= _values_of_arrays(ENERGY_VARIABLES, cycle.energy)

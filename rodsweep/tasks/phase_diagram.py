@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from ..solve.orbit.matrix.workspace import NewtonWorkspace
 
 
-UNCOUNTED_WORK_OF_CYCLES = (
+UNCOUNTED_WORK_TEXT = (
     "branches beyond the range, curves of folds and torus points, and rows that such a curve shows to have a "
     "detached branch"
 )
@@ -120,7 +120,7 @@ class PhaseDiagramTask(CertifiedTask):
             branches,
             seconds=rows_cost.seconds + branches.seconds,
             underestimated_rods=branches.underestimated_rods or rows_cost.underestimated_rods,
-            uncounted_work=UNCOUNTED_WORK_OF_CYCLES,
+            uncounted_work=UNCOUNTED_WORK_TEXT,
         )
 
     def _with_soft_and_pulled_rows(self, rows_cost: CostEstimate, is_varying: bool) -> CostEstimate:
@@ -142,7 +142,7 @@ class PhaseDiagramTask(CertifiedTask):
         row_solver = Solver(
             statuses=tuple(ThresholdStatus),
             warm_up=warm_up,
-            solve=self.straight_row,
+            solve=self.solve_straight_row,
             record=lambda index, result: self.row_record(result),
             sweep_wide_solver=curves if options.curves else None,
         )
@@ -155,18 +155,18 @@ class PhaseDiagramTask(CertifiedTask):
             row_solver,
             statuses=tuple(CoexistenceStatus),
             warm_up=warm_up_branches,
-            solve=lambda index: curves.cache_row(index, self.coexistence_row(index, workspace)),
+            solve=lambda index: curves.cache_row(index, self.solve_coexistence_row(index, workspace)),
             record=lambda index, result: self.coexistence_record(result),
         )
 
-    def straight_row(self, index: int) -> "DiagramRow":
+    def solve_straight_row(self, index: int) -> "DiagramRow":
         """Solves a row without cycles. index: flat index of the row."""
         from ..solve.changes.diagram.rows import crushed_row, solve_row
 
         rod = self.rod_of_row(index)
         return solve_row(rod, self.row_request()) if rod else crushed_row(self.line_values)
 
-    def coexistence_row(
+    def solve_coexistence_row(
         self, index: int, workspace: "NewtonWorkspace", starts: "Sequence[SpecialPoint]" = ()
     ) -> "CoexistenceRow":
         """Solves a row with cycles. starts: special points from which further branches are followed."""

@@ -80,7 +80,7 @@ class PortraitRequest:
         return job_of_config(Path(task), validated_config(document), document)
 
 
-def rod_results(request: PortraitRequest, solve: SolveJob = solved_view) -> RodResults:
+def solve_rod_results(request: PortraitRequest, solve: SolveJob = solved_view) -> RodResults:
     """Solves and returns all results of a portrait.
 
     solve: function that solves the only point of a job. If a result cannot be solved, `RodResults.missing`

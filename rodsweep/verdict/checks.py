@@ -23,7 +23,7 @@ MAX_STATED_SAG = 0.25
 """A check states the ratio of sag to length only below this: beyond, the linear formula is inaccurate."""
 USUAL_POISSON = (0.3, 0.5)
 """Range of Poisson's ratio of rubbers and gels; a check warns of a Poisson's ratio outside this range."""
-NO_COMPRESSION_CHECKED = "no load is given and no flutter was found, so compression is not checked"
+NO_COMPRESSION_CHECK_SENTENCE = "no load is given and no flutter was found, so compression is not checked"
 """Result of the check of compression for an arm without load and without flutter."""
 
 
@@ -97,7 +97,7 @@ def compression_check(assessment: "Assessment", at_flutter: Effect) -> Check:
         f"rubber is some {_one_digit_text(100 * stiffening)} % {change} at this {noun}",
         f"real materials are no longer linear at this {noun}",
     )[validity]
-    shortening = " and ".join(texts) or NO_COMPRESSION_CHECKED
+    shortening = " and ".join(texts) or NO_COMPRESSION_CHECK_SENTENCE
     place_clause = " at the weakest section" if assessment.arm.shape.varies else ""
     return Check(
         validity, f"Compression: {shortening} (F/k1){place_clause}; {remark}.", can_change_verdict=True
@@ -115,7 +115,7 @@ def _rubber_compression_check(assessment: "Assessment") -> Check:
     if flutter is not None:
         flutter_compression = _weakest_section_shortening(arm, flutter)
         texts.append(_strain_text("the flutter load", "it" if texts else "the arm", flutter_compression))
-    shortening = " and ".join(texts) or NO_COMPRESSION_CHECKED
+    shortening = " and ".join(texts) or NO_COMPRESSION_CHECK_SENTENCE
     place_clause = " at the weakest section" if arm.shape.varies else ""
     return Check(
         Validity.applies,

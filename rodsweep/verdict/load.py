@@ -4,7 +4,7 @@ from ..model.arm.arm import SlenderArm
 from ..model.arm.quantities import UNITS
 from ..model.units import split_quantity, unit_of, value_in_unit, with_si_prefix
 from .flutter import RangeOverDrags
-from .rounded_numbers import range_text, three_digits_rounded_down
+from .rounded_numbers import three_digit_range_text, three_digit_text_rounded_down
 
 TYPICAL_FLUTTER_FORCE = 36.0
 """Typical flutter force, in k3/L^2. Without a load, its SI prefix (Pa, kPa) is chosen for this force."""
@@ -38,11 +38,11 @@ class LoadFormatter:
     def range_of_forces_text(self, forces: RangeOverDrags) -> str:
         """A range of forces in k3/L^2, as text in the unit of the load."""
         low, high = (F * self.load_at_unit_force for F in (forces.low, forces.high))
-        return f"{range_text(low, high)} {self.unit}"
+        return f"{three_digit_range_text(low, high)} {self.unit}"
 
     def rounded_down_text(self, F: float) -> str:
         """The force F in k3/L^2, as text in the unit of the load, rounded down to three digits."""
-        return f"{three_digits_rounded_down(F * self.load_at_unit_force)} {self.unit}"
+        return f"{three_digit_text_rounded_down(F * self.load_at_unit_force)} {self.unit}"
 
 
 def _shortened_load(load: object, value: float, si_unit: str) -> str:

@@ -9,7 +9,7 @@ from ..model.arm.shape import Station
 from ..model.material.laws import LINEAR
 from ..model.units import with_si_prefix
 from .planes import PlaneOfMotion
-from .rounded_numbers import range_text
+from .rounded_numbers import three_digit_range_text
 
 LAW_FORMULA = "stress E (h - 1/h^2)/3 at the stretch h, incompressible"
 """Formula of the stress in neo-Hookean rubber, for the table."""
@@ -110,7 +110,7 @@ def flutter_force_row(plane: PlaneOfMotion) -> list[NumberRow]:
 def value_with_drag_range(values: list[float], unit: str = "") -> str:
     """values[0], followed by the range of all values in brackets and by `unit`, as text. values: a quantity
     for each drag, the most likely drag first."""
-    return f"{values[0]:.3g} ({range_text(min(values), max(values))}){unit}"
+    return f"{values[0]:.3g} ({three_digit_range_text(min(values), max(values))}){unit}"
 
 
 def drag_rows(arm: SlenderArm) -> list[NumberRow]:

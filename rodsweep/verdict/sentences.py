@@ -11,7 +11,7 @@ from .flutter import RangeOverDrags, ThresholdsOverDrags
 from .load import LoadFormatter
 from .planes import PlaneOfMotion, PlanesOfMotion
 from .remedies import effect_kind, not_applicable_sentences
-from .rounded_numbers import percent_range_text, range_text
+from .rounded_numbers import percent_range_text, three_digit_range_text
 
 CRUSHED_END_RATIO = 0.999
 """A search ended at crushing if its end, in units of the crushing force, is above this fraction."""
@@ -72,7 +72,11 @@ def _valid_arm_sentences(plane: PlaneOfMotion) -> list[str]:
             consequence = f": whether the arm beats at {load.typed_text} is not known"
         return [f"The arm does not flutter {_search_end_clause(plane, load)}{consequence}."]
     frequency = thresholds.first_frequencies(ThresholdKind.hopf)
-    clause = "" if frequency is None else f" begins to beat at {range_text(frequency.low, frequency.high)} Hz"
+    clause = (
+        ""
+        if frequency is None
+        else f" begins to beat at {three_digit_range_text(frequency.low, frequency.high)} Hz"
+    )
     if arm.load is None:
         sentences = [
             f"The arm flutters at {_flutter_load_text(plane, flutter)}: above, it gives way and{clause}."
@@ -140,7 +144,11 @@ def _excess_text(F: float, flutter: RangeOverDrags) -> str:
     """Excess of the force F over the range of the flutter load, as text: "20 to 30 % above", or as a factor,
     "3 times", if the factor is larger than 2."""
     low, high = (F / end for end in (flutter.high, flutter.low))
-    return f"{range_text(low, high)} times" if low > 2 else f"{percent_range_text(low - 1, high - 1)} % above"
+    return (
+        f"{three_digit_range_text(low, high)} times"
+        if low > 2
+        else f"{percent_range_text(low - 1, high - 1)} % above"
+    )
 
 
 def _flutter_without_effects(plane: PlaneOfMotion, effect_names: str) -> list[str]:
@@ -154,7 +162,9 @@ def _flutter_without_effects(plane: PlaneOfMotion, effect_names: str) -> list[st
     if flutter is None:
         return [f"Without {effect_names} the arm would not flutter {_search_end_clause(plane, load)}."]
     clause = (
-        "" if frequency is None else f" and begin to beat at {range_text(frequency.low, frequency.high)} Hz"
+        ""
+        if frequency is None
+        else f" and begin to beat at {three_digit_range_text(frequency.low, frequency.high)} Hz"
     )
     sentences = [
         f"Without {effect_names} the arm would flutter at {_flutter_load_text(plane, flutter)}{clause}."

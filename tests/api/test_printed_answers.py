@@ -13,7 +13,7 @@ from printed import WINDOW, flaws_of_columns, flaws_of_layout, unit_of
 from surveyed import few
 
 import rodsweep as rs
-from rodsweep.api.answers.frames import frame_of
+from rodsweep.api.answers.frames import data_frame_of
 from rodsweep.api.solved import DatasetResult
 from rodsweep.cli.checking import print_job_check
 from rodsweep.post.headline.one_rod import ColumnTexts
@@ -202,5 +202,5 @@ def test_check_stays_in_the_window(name, monkeypatch):
 
 
 def test_a_frame_holds_no_negative_zero():
-    frame = frame_of([real("multiplier_imag", [-0.0, -1.5, np.nan])])
+    frame = data_frame_of([real("multiplier_imag", [-0.0, -1.5, np.nan])])
     assert frame.to_csv(index=False, header=False, na_rep="none") == "0.0\n-1.5\nnone\n"

@@ -48,7 +48,7 @@ from rodsweep.bench.spectrum.study import (
     hard_rod_table,
     krylov_schur,
     measure_hard_rods,
-    spectrum_study,
+    run_spectrum_study,
 )
 from rodsweep.bench.study import (
     BenchmarkReport,
@@ -180,7 +180,7 @@ def test_study_of_the_spectrum_has_a_row_for_every_method(monkeypatch, tmp_path)
     monkeypatch.setattr(spectrum, "FORCE_COUNT", 1)
     monkeypatch.setattr(arm_race, "ARM_RODS", {"cone": ARM_RODS["cone"]})
     exact = TimedMethod("a peer", "7", "g", partial(rodsweep_spectrum, certify=False))
-    study = spectrum_study(
+    study = run_spectrum_study(
         quick=True, peers=PeerContribution({SPECTRUM_RACE: [exact]}, skipped=["Another is skipped."])
     )
     for name in ("rodsweep, certificate on", "rodsweep, certificate off", KRYLOV_SCHUR, "a peer"):

@@ -12,7 +12,7 @@ from rodsweep.bench.limit_cycle.settling import SettlingMethod, settling_table
 from rodsweep.bench.limit_cycle.study import (
     FOLLOWING_RACE,
     WAITING_RACE,
-    limit_cycle_study,
+    run_limit_cycle_study,
     time_at_error,
     time_at_error_table,
     work_table,
@@ -31,9 +31,9 @@ from rodsweep.bench.limit_cycle.tracking import (
     PERIOD_MAP,
     cycle_request,
     orbit_of,
-    run_errors,
     solve_reference,
     tip_returns,
+    trajectory_measurement_fields,
 )
 from rodsweep.bench.peers import NO_PEERS, PeerContribution
 from rodsweep.bench.study import Measurement, TimedMethod, TimedRuns
@@ -54,7 +54,7 @@ def test_error_of_an_exact_run_is_that_of_the_measurement():
     steps = int(128 * FOLLOWED_PERIODS)
     duration = steps / 128 * at.period
     run = integrator(at.system.mesh, PERIOD_MAP).run(at.system, at.state, duration, at.period / 128)
-    assert run_errors(at, run)["error"] < 1e-8
+    assert trajectory_measurement_fields(at, run)["error"] < 1e-8
 
 
 def test_returns_lie_on_the_section():
@@ -143,7 +143,7 @@ def test_a_point_without_a_cycle_is_shown_as_failed():
 
 @survey_only
 def test_the_benchmark_times_rodsweep_alone(tmp_path):
-    study = limit_cycle_study(quick=True, peers=NO_PEERS)
+    study = run_limit_cycle_study(quick=True, peers=NO_PEERS)
     text = study.text
     assert "| 30, 10000, 100, 0.01, 1 | sweep over F |" in text
     assert len(study.table()["error"]) == len(study.measurements) + 4
@@ -176,7 +176,7 @@ def test_the_benchmark_times_peers_beside_rodsweep(monkeypatch):
         notes=["A note."],
         skipped=["Another is skipped."],
     )
-    study = limit_cycle_study(quick=True, peers=peers)
+    study = run_limit_cycle_study(quick=True, peers=peers)
     assert "\n\nA note.\n\n| method |" in study.text
     assert "| failing | 1e-05 | failed (ArithmeticError) |" in study.text
     assert "| double |" in study.text.split("times the default's time")[1]

@@ -22,14 +22,14 @@ from rodsweep.bench.sweep.launch import (
     launcher_words,
     run_case,
     shuffled_forces,
-    spectrum_case,
+    write_spectrum_case,
 )
 from rodsweep.bench.sweep.study import (
     TWO_COMMAND_CASE,
     growth_table,
     instant_table,
+    run_sweep_study,
     sweep_measurement,
-    sweep_study,
 )
 from rodsweep.cli.benching import MEASURED_COMMAND
 from rodsweep.errors import EnvironmentIncomplete
@@ -68,7 +68,7 @@ def test_quick_study_writes_its_tables_and_its_measurements(monkeypatch, loaded)
     monkeypatch.setattr(sweep, "QUICK_CYCLE_COUNT", 2)
     monkeypatch.setattr(eigenvalue_following, "QUICK_GRID_PAIRS", eigenvalue_following.QUICK_GRID_PAIRS[1:])
     command = (sys.executable, "-SE", str(RANK), str(loaded.ranks), *MEASURED_COMMAND[1:])
-    study = sweep_study(quick=True, command=command)
+    study = run_sweep_study(quick=True, command=command)
     assert "| spectra | 16 | 1 |" in study.text
     assert (f"| {TWO_COMMAND_CASE} | 16 | 1 |" in study.text) == bool(launcher_words(2))
     assert "| no solver | 400 | 1 |" in study.text
@@ -94,7 +94,7 @@ def test_memory_of_a_rank_does_not_grow_with_the_grid(tmp_path):
     """Up to a kill at the last point, and in the next run, which reads all that is there."""
     peaks = {}
     for points in (2_000, 50_000):
-        case = spectrum_case(tmp_path / str(points), "killed", points, "killed")
+        case = write_spectrum_case(tmp_path / str(points), "killed", points, "killed")
         killed = run(case, 1)
         assert killed.journal_bytes > 74 * (points - 1)
         resumed = run(replace(case, solver_kind="instant"), 1, fresh=False)
@@ -106,7 +106,7 @@ def test_memory_of_a_rank_does_not_grow_with_the_grid(tmp_path):
 
 @pytest.mark.long
 def test_file_takes_less_than_a_hundred_bytes_a_point(tmp_path):
-    case = spectrum_case(tmp_path / "grid", "no solver", 20_000, "instant")
+    case = write_spectrum_case(tmp_path / "grid", "no solver", 20_000, "instant")
     taken = run(case, 1)
     assert case.points == 20_000
     assert taken.file_bytes < MOST_BYTES * case.points
@@ -119,7 +119,7 @@ def test_file_takes_less_than_a_hundred_bytes_a_point(tmp_path):
 
 
 def test_a_run_that_fails_is_told(tmp_path):
-    case = spectrum_case(tmp_path / "grid", "no solver", 8, "instant")
+    case = write_spectrum_case(tmp_path / "grid", "no solver", 8, "instant")
     (case.directories[0] / "c.yaml").write_text("task: spectrum\n")
     with pytest.raises(EnvironmentIncomplete, match="parameters"):
         run(case, 1)
@@ -137,7 +137,7 @@ def test_two_ranks_are_skipped_without_a_launcher(monkeypatch):
     monkeypatch.setattr(sweep, "measure_solved_sweeps", sweeps(solved, ["spectra"]))
     monkeypatch.setattr(sweep, "measure_followed_sweeps", lambda *words: [])
     monkeypatch.setattr(sweep, "measure_instant_sweeps", sweeps(instant, ["no solver", KILLED, "resumed"]))
-    assert "Two ranks are skipped" in sweep_study(quick=True, command=()).text
+    assert "Two ranks are skipped" in run_sweep_study(quick=True, command=()).text
     assert {m.method for m in solved + instant} == {"1 rank"}
 
 

@@ -19,8 +19,8 @@ from rodsweep.bench.thresholds.study import (
     FirstThreshold,
     ThresholdCase,
     measure_rods,
+    run_thresholds_study,
     threshold_table,
-    thresholds_study,
 )
 
 CASE = {case.name: case for case in UNIFORM_CASES}
@@ -66,7 +66,7 @@ def test_tables_say_what_was_missed():
 @pytest.mark.long
 def test_the_study_writes_its_text_and_its_figure(monkeypatch, tmp_path):
     monkeypatch.setattr(thresholds, "QUICK_CASES", (CASE["filament"], CASE["Fig. 2d"]))
-    study = thresholds_study(quick=True, peers=NO_PEERS)
+    study = run_thresholds_study(quick=True, peers=NO_PEERS)
     rows = [line.split(" | ") for line in study.text.splitlines() if line.startswith("| rodsweep")]
     assert len(rows) == 8
     of_rods, of_arms = rows[:4], rows[4:]
@@ -84,7 +84,7 @@ def test_peers_take_part_in_the_race_of_their_threshold(monkeypatch):
     monkeypatch.setattr(thresholds, "QUICK_CASES", (CASE["filament"],))
     found = TimedMethod("of Hopf points", "a", "g", lambda case: FirstThreshold(case.hopf, 1))
     peers = PeerContribution({HOPF: [found]}, notes=["A note."], skipped=["Another is skipped."])
-    text = thresholds_study(quick=True, peers=peers).text
+    text = run_thresholds_study(quick=True, peers=peers).text
     introduction, onsets, hopf_points, of_arms, onsets_of_arms, hopf_points_of_arms, skipped = text.split(
         "\n\n"
     )

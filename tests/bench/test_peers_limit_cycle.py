@@ -34,9 +34,9 @@ from rodsweep.bench.limit_cycle.tracking import (
     cycle_request,
     measure_following,
     orbit_of,
-    run_errors,
     solve_reference,
     state_on_cycle,
+    trajectory_measurement_fields,
 )
 from rodsweep.bench.study import Measurement
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
@@ -98,7 +98,7 @@ def test_order_of_the_errors(name):
     for phase, state in enumerate(over.states[: 128 : 128 // PHASES + 1]):
         for i, tolerance in enumerate(tolerances):
             run = family.integrate(tolerance, IntegrationTask(at.system, state, FOLLOWED_PERIODS * at.period))
-            error[i, phase] = run_errors(replace(at, state=state), run)["error"]
+            error[i, phase] = trajectory_measurement_fields(replace(at, state=state), run)["error"]
             steps[i, phase] = len(run.times) - 1
     (loose, tight), (few, many) = np.sqrt((error**2).mean(axis=1)), steps.mean(axis=1)
     assert np.log(loose / tight) / np.log(many / few) == pytest.approx(order, abs=0.7)

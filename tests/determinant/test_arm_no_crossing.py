@@ -5,7 +5,7 @@ import pytest
 from reference.random_arms import random_arm
 from surveyed import RODS
 
-from rodsweep.determinant.arm.count.no_crossing import proves_no_crossing, sampled_point_indices
+from rodsweep.determinant.arm.count.no_crossing import proves_no_crossing_of_arms, sampled_point_indices
 from rodsweep.determinant.arm.count.settings import NO_CROSSING_SETTINGS
 from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.solve.spectrum.path.arm_interval import follow_interval
@@ -21,7 +21,7 @@ def proves(path, found, line, ends, kept):
     points = sampled_point_indices(*ends)
     known = found.track.w[points][:, kept], found.track.error[points][:, kept]
     rods = [path.rod_at(p) for p in found.p[points].tolist()]
-    return proves_no_crossing(line, rods, found.p[points], known, found.family, found.hulls)
+    return proves_no_crossing_of_arms(line, rods, found.p[points], known, found.family, found.hulls)
 
 
 def followed_path(rng):

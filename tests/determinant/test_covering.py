@@ -21,7 +21,7 @@ from rodsweep.determinant.parameter_path import (
     determinant_along_path,
     dispersion_coefficient_derivatives,
 )
-from rodsweep.determinant.roots.newton import eigenvalue_newton
+from rodsweep.determinant.roots.newton import eigenvalue_by_newton
 from rodsweep.determinant.value import scaled_determinant
 from rodsweep.model.rod import Rod
 
@@ -185,11 +185,11 @@ def test_a_path_of_one_rounding_is_one_interval(ends):
 
 def test_an_eigenvalue_and_its_slope_along_the_force():
     path = ParameterPath(RODS[0], "F")
-    w, slope, error = eigenvalue_newton(complex(-60, 150), path.rod.coefficients, path.direction)
+    w, slope, error = eigenvalue_by_newton(complex(-60, 150), path.rod.coefficients, path.direction)
     assert error < 1e-11
     h = 1e-4
     after, before = (
-        eigenvalue_newton(
+        eigenvalue_by_newton(
             w + s * slope, coefficients_at(30 + s, path.origin, path.direction), path.direction
         )[0]
         for s in (h, -h)

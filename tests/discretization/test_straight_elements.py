@@ -4,7 +4,11 @@ import numpy as np
 import pytest
 from mixed_motion import mixed_form
 
-from rodsweep.discretization.straight.elements import LONGITUDINAL, TRANSVERSE, StraightElements
+from rodsweep.discretization.straight.elements import (
+    LONGITUDINAL_COMPONENTS,
+    TRANSVERSE_COMPONENTS,
+    StraightElements,
+)
 from rodsweep.model.rod import Rod
 
 INF = np.inf
@@ -18,7 +22,9 @@ RODS = pytest.mark.parametrize(
     ],
 )
 MESHES = pytest.mark.parametrize("elements, order", [(1, 12), (1, 17), (2, 9), (5, 13), (9, 25)])
-PARTS = pytest.mark.parametrize("components, parity", [(LONGITUDINAL, 1), (TRANSVERSE, -1)])
+PARTS = pytest.mark.parametrize(
+    "components, parity", [(LONGITUDINAL_COMPONENTS, 1), (TRANSVERSE_COMPONENTS, -1)]
+)
 
 
 def vectors(form, parity, seed=0):
@@ -60,6 +66,6 @@ def test_solutions_are_those_of_the_whole_rod(rod, elements, order, components, 
 
 def test_several_elements_of_even_order_are_refused():
     with pytest.raises(ValueError, match="odd order, not 8"):
-        StraightElements(mixed_form(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4), 2, 8), LONGITUDINAL).lu_factors(
-            0.0
-        )
+        StraightElements(
+            mixed_form(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4), 2, 8), LONGITUDINAL_COMPONENTS
+        ).lu_factors(0.0)

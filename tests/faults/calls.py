@@ -5,7 +5,7 @@ from random import Random
 from typing import Any
 
 from rodsweep.config.tasks import CONFIGS
-from rodsweep.post.tables.table_names import BRANCHES, GRID, POINTS, TABLE_NAMES
+from rodsweep.post.tables.table_names import BRANCHES_TABLE, GRID_TABLE, POINTS_TABLE, TABLE_NAMES
 
 TASKS = ("spectrum", "thresholds", "modes", "limit_cycle", "criticality", "branch")
 """The tasks of one rod."""
@@ -100,7 +100,7 @@ def asked_of_a_result(rng: Random, variables: list[str]) -> Asked:
     if rng.random() < 0.6:
         names = [*variables, *variables, "k3", "crossing", "", misspelt(rng, rng.choice(variables))]
         columns = rng.sample(names, rng.choice([1, 2, 3]))
-        table = rng.choice([None, *TABLE_NAMES.values(), GRID, BRANCHES, POINTS, "mode", 3])
+        table = rng.choice([None, *TABLE_NAMES.values(), GRID_TABLE, BRANCHES_TABLE, POINTS_TABLE, "mode", 3])
         return Asked(
             "table", rng.choice([{"columns": columns}, {"name": table}, {"name": table, "columns": columns}])
         )
@@ -213,7 +213,9 @@ def config(rng: Random) -> str:
 def words(rng: Random, file: str, config: str) -> Words:
     """A command on a result file or a config, its options often wrong."""
     output = rng.choice(["o", "out put", "ö", "sub/o"]) + rng.choice(ENDINGS)
-    table = rng.choice([*TABLE_NAMES.values(), GRID, BRANCHES, POINTS, "", "crossing", "Modes"])
+    table = rng.choice(
+        [*TABLE_NAMES.values(), GRID_TABLE, BRANCHES_TABLE, POINTS_TABLE, "", "crossing", "Modes"]
+    )
     column = rng.choice(
         ["F", "k1", "status", "growth_rate", "crossing_F", "F_hopf", "seconds", "k3", "", "class"]
     )

@@ -19,7 +19,7 @@ from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.arc_length_step import BranchCycle, next_cycle
 from rodsweep.solve.branch.bordered.scale import deflection_of
-from rodsweep.solve.branch.branch_curve import BranchPoint
+from rodsweep.solve.branch.branch_curve import StoredBranchCycle
 from rodsweep.solve.branch.branch_mesh_choice import is_measurement_due, with_errors_within_accuracy
 from rodsweep.solve.branch.start.first_cycle import first_cycle
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
@@ -112,7 +112,7 @@ def broken_promises(case: Case) -> list[str]:
     """What of the cycles of a case is further off than it says, or than the accuracy."""
     wrong = []
     for point in islice(cycles_of(case), 0, None, EACH):
-        stored, mesh = BranchPoint.from_cycle(point, case.accuracy), mesh_of(point.orbit)
+        stored, mesh = StoredBranchCycle.from_cycle(point, case.accuracy), mesh_of(point.orbit)
         longer = ceil(1.7 * mesh.interval_count) + 1
         fine = replace(
             mesh, order=mesh.order + 6, interval_count=longer, stage_count=min(mesh.stage_count + 1, 6)

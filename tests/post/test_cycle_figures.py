@@ -18,7 +18,7 @@ from rodsweep.discretization.elements.trigonometric import interpolate_samples, 
 from rodsweep.errors import EnvironmentIncomplete, InputError
 from rodsweep.post.figures import draw
 from rodsweep.post.figures.cycle.amplitudes.amplitude import draw_amplitude
-from rodsweep.post.figures.cycle.amplitudes.branches import amplitude_branches
+from rodsweep.post.figures.cycle.amplitudes.branches import amplitude_series
 from rodsweep.post.figures.cycle.amplitudes.square_root import square_root_laws
 from rodsweep.post.figures.cycle.animation import prepared_animation
 from rodsweep.post.figures.cycle.energy import draw_energy
@@ -114,7 +114,7 @@ def test_amplitudes_are_zero_where_straight_and_unknown_where_there_is_no_cycle(
     grid = make_view(SWEEP, SWEPT)
     columns = [c.ravel() for c in np.meshgrid(*SWEEP, indexing="ij")]
     for view in (grid, make_view(columns, SWEPT, as_list=True)):
-        lines = amplitude_branches(view, "F")
+        lines = amplitude_series(view, "F")
         assert [line.parameters["gamma1"] for line in lines] == [1.0, 0.5]
         for line in lines:
             wanted = expected[line.parameters["gamma1"]]
@@ -146,7 +146,7 @@ def test_period_and_power_are_drawn_where_there_are_cycles():
 def test_a_list_that_goes_up_and_down_stays_in_its_order():
     F = [20.0, 30.0, 40.0, 30.0, 20.0]
     columns = (F, [1e4] * 5, [1e2] * 5, [1e-2] * 5, [1.0] * 5)
-    (line,) = amplitude_branches(make_view(columns, [1, 1, 0, 0, 1], as_list=True), "F")
+    (line,) = amplitude_series(make_view(columns, [1, 1, 0, 0, 1], as_list=True), "F")
     assert line.x.tolist() == F
     assert line.amplitude_y == pytest.approx([0, 0, 40**0.5 / 16, 30**0.5 / 16, 0])
 

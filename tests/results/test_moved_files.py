@@ -80,7 +80,7 @@ def test_another_file_in_the_place_of_a_result_is_left_and_the_points_wait(comma
     other = path.read_bytes()
     refused = command("run", "c.yaml", "-o", "a.h5")
     for said in (err, refused.stderr):
-        assert "move it away, and the same command will use the points in a.h5.journal" in said
+        assert "move this file away, and the same command will use the points in a.h5.journal" in said
     assert (refused.returncode, path.read_bytes()) == (2, other)
     path.rename(path.with_name("b.h5"))
     goes_on(command)

@@ -271,7 +271,7 @@ def test_a_sealed_file_whose_variables_do_not_fit_its_config_is_refused(tmp_path
         del file["seconds"]
         file["seconds"] = other
     seal(path)
-    with pytest.raises(InputError, match="its variable seconds does not fit its config"):
+    with pytest.raises(InputError, match="its variable seconds does not have the type and shape"):
         read_header(path)
 
 

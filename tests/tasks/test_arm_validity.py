@@ -20,7 +20,7 @@ from rodsweep.model.arm.neglected import (
 )
 from rodsweep.post.figures import draw
 from rodsweep.post.summary.arm.answer import arm_answer
-from rodsweep.post.summary.arm.validity_sentences import row_clause, validity_sentence
+from rodsweep.post.summary.arm.validity_sentences import row_motion_clause, validity_sentence
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.phase_diagram import STABILITY_CLASSES
 from rodsweep.results.layouts.si_variables import VALIDITY_NOT_KNOWN, VALIDITY_VARIABLES
@@ -96,7 +96,7 @@ def test_a_short_list_of_crossings_of_a_diagram_hides_no_effect(crossings):
     validity = {v.name: data[v.name].values.ravel() for v in VALIDITY_VARIABLES}
     said = (
         "whether the model applies is not known at all 2 points: an unstable mode or a cycle may have been "
-        "missed, and the neglected effects depend on its frequency"
+        "missed, and the neglected effects depend on the frequency of the motion"
     )
     assert validity_sentence(validity) == said
     mixed = {
@@ -139,10 +139,10 @@ def test_rows_with_and_without_a_hopf_point_are_counted():
     data = rs.sweep("phase_diagram", arm=arm, k1=[100.0, 1600.0], curves=False, progress=False)
     view = view_of_dataset(data, Path("a.h5"))
     every = np.ones(data.status.shape, bool)
-    assert row_clause(view, every) == (
+    assert row_motion_clause(view, every) == (
         ", judged at the first Hopf point of each row, and at rest without load on 1 row without"
     )
-    assert row_clause(view, ~every) == ""
+    assert row_motion_clause(view, ~every) == ""
 
 
 def test_a_search_that_failed_is_no_arm_at_rest():

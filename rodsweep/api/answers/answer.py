@@ -10,21 +10,21 @@ import numpy as np
 import xarray as xr
 
 from ...config.document.call_arguments import refusing_wrong_arguments
-from ...post.headline.one_rod import OneRod
+from ...post.headline.one_rod import SingleRodResult
 from ...post.headline.sentences import HEADLINES
 from ...post.tables.column import Column, column_of
-from ...post.tables.table_names import POINTS
+from ...post.tables.table_names import POINTS_TABLE
 from ...post.tables.tables import Tables
 from ...results.layouts import layout_of
 from ..solved import Result
-from .frames import frame_of, series_of
+from .frames import data_frame_of, series_of
 from .printing import PrintedAnswer, brief_html, brief_text, heading_lines, whole_html, whole_text
 
 EIGENVALUE_VARIABLES = ("growth_rate", "frequency")
 """Variables with the real and the imaginary part of an eigenvalue."""
 UNPRINTED_VARIABLES = ("status", "seconds")
 """Variables that a printed answer omits: the heading has the status, and the time depends on the machine."""
-UNITS_OF_ARM_VARIABLES = ("Pa", "N", "Hz", "s", "1/s", "m", "J", "W")
+SI_UNITS_OF_ARM_VARIABLES = ("Pa", "N", "Hz", "s", "1/s", "m", "J", "W")
 """SI units of the variables of an arm. Variables with other units are in units of the rod."""
 TOTAL_VARIABLES = {"crossings": "crossing_count", "special_points": "special_count", "cycles": "point_count"}
 """For each list, by name: the variable with the number of items found, including items that are not stored.
@@ -119,7 +119,9 @@ class Answer:
         tables = self._tables
         if name in self.lists:
             columns = tables.list_columns(name)
-            return frame_of(columns, columns[0].name if len(tables.contents.dimensions(name)) == 1 else None)
+            return data_frame_of(
+                columns, columns[0].name if len(tables.contents.dimensions(name)) == 1 else None
+            )
         for variable in tables.contents.point_variables:
             if variable.name == name:
                 return _scalar(column_of(variable, np.ravel(tables.view.variables[name])))
@@ -172,9 +174,9 @@ class Answer:
 
     def _printed(self) -> PrintedAnswer:
         tables = self._tables
-        rod = OneRod(tables.view)
+        rod = SingleRodResult(tables.view)
         is_special = int(self.data["status"]) != 0  # a special outcome, such as a rod at rest
-        columns = [c for c in tables.table(POINTS).columns if c.name not in UNPRINTED_VARIABLES]
+        columns = [c for c in tables.table(POINTS_TABLE).columns if c.name not in UNPRINTED_VARIABLES]
         columns = sorted((c for c in columns if not c.is_input), key=_is_dimensionless)
         lists = {}
         for name in self.lists:
@@ -216,7 +218,7 @@ def _statuses(task: str, names: tuple[str, ...]) -> type[StrEnum]:
 
 def _is_dimensionless(column: Column) -> bool:
     """Whether a column is in dimensionless units of the rod. Columns in SI units are printed first."""
-    return column.unit not in UNITS_OF_ARM_VARIABLES
+    return column.unit not in SI_UNITS_OF_ARM_VARIABLES
 
 
 def _scalar(column: Column) -> float | int | bool | str | None:

@@ -10,7 +10,7 @@ import pandas as pd
 from ...post.tables.column import Column
 
 
-def frame_of(columns: Iterable[Column], index: str | None = None) -> pd.DataFrame:
+def data_frame_of(columns: Iterable[Column], index: str | None = None) -> pd.DataFrame:
     """A DataFrame with a column per `Column`; `frame.attrs` has `units` and `meanings` by name.
 
     index: name of the column with row numbers from 1, which becomes the index; None: rows are numbered from

@@ -29,9 +29,9 @@ P = ParamSpec("P")
 """Parameters of a decorated function."""
 R = TypeVar("R")
 """Type of the value returned by a decorated function."""
-AT_OPTION = re.compile(r"--at (?:'(\w+)=([^']*)'|(\w+)=(\S*[^\s:;,)]))")
+AT_OPTION_PATTERN = re.compile(r"--at (?:'(\w+)=([^']*)'|(\w+)=(\S*[^\s:;,)]))")
 """Regular expression of the option `--at NAME=VALUE` of `rodsweep plot`, with or without quotes."""
-NUMBER_TEXT = re.compile(r"-?(?:\d[\d.]*(?:e[+-]?\d+)?|inf)")
+NUMBER_TEXT_PATTERN = re.compile(r"-?(?:\d[\d.]*(?:e[+-]?\d+)?|inf)")
 """Regular expression of a number in a value of `--at`."""
 ARGUMENTS_OF_OPTIONS = (
     (re.compile(r"--what (\w+)"), r'what="\1"'),
@@ -47,17 +47,19 @@ PLOT_EXAMPLE = 'rs.plot(data, "figure.pdf", width="single")'
 
 def as_python_arguments(sentence: str) -> str:
     """A sentence in which arguments of `rs.plot` replace options of `rodsweep plot`."""
-    sentence = AT_OPTION.sub(_at_argument_text, sentence)
+    sentence = AT_OPTION_PATTERN.sub(_at_argument_text, sentence)
     for option, argument in ARGUMENTS_OF_OPTIONS:
         sentence = option.sub(argument, sentence)
     return sentence
 
 
 def _at_argument_text(match: re.Match[str]) -> str:
-    """The argument `at` of `rs.plot` as Python code, from a match of AT_OPTION. Only values that are not
-    numbers are quoted."""
+    """The argument `at` of `rs.plot` as Python code, from a match of AT_OPTION_PATTERN. Only values that are
+    not numbers are quoted."""
     name, value = (match[1], match[2]) if match[1] else (match[3], match[4])
-    return f'at={{"{name}": {value}}}' if NUMBER_TEXT.fullmatch(value) else f'at={{"{name}": "{value}"}}'
+    return (
+        f'at={{"{name}": {value}}}' if NUMBER_TEXT_PATTERN.fullmatch(value) else f'at={{"{name}": "{value}"}}'
+    )
 
 
 def naming_python_arguments(function: Callable[P, R]) -> Callable[P, R]:

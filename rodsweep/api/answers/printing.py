@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from html import escape
 
 from ...model.arm.neglected import Validity
-from ...post.headline.one_rod import OneRod
+from ...post.headline.one_rod import SingleRodResult
 from ...post.headline.sentences import HEADLINES, Headline
 from ...post.summary.arm.validity_sentences import validity_caveat
 from ...post.tables.alignment import (
@@ -38,7 +38,7 @@ ERROR_SIGN = "+-"
 class PrintedAnswer:
     """Everything that the text or HTML of an answer contains."""
 
-    rod: OneRod
+    rod: SingleRodResult
     """Numbers and lists of the answer, with the digits to print."""
     heading: tuple[str, ...]
     """Lines with the result in a sentence, the rod, and the meaning of the status."""
@@ -66,7 +66,9 @@ class PrintedAnswer:
             yield f"none: {', '.join(self.absent_names)}"
 
 
-def heading_lines(rod: OneRod, name: str, status: str, sentence: str, message: str) -> tuple[str, ...]:
+def heading_lines(
+    rod: SingleRodResult, name: str, status: str, sentence: str, message: str
+) -> tuple[str, ...]:
     """Lines of the heading: the result in a sentence, the rod with its status, and the status's meaning. The
     first line says if the model does not apply to an arm, or is doubtful.
 

@@ -16,7 +16,7 @@ from ...post.rod_portrait.writing import require_portrait, write_portrait
 from ...post.tables.alignment import wrap_cell_text
 from ...results.file.view import ResultView
 from ...solve.solve_lock import one_at_a_time
-from ...tasks.rod_portrait import PortraitRequest, rod_results
+from ...tasks.rod_portrait import PortraitRequest, solve_rod_results
 from ...tasks.running.job import Job
 from ..dataset import named_file_path, view_of_dataset
 from ..keyword_arguments import plain_keyword
@@ -123,5 +123,5 @@ def solved_portrait(rod: str, request: PortraitRequest, progress: bool | None) -
         answers[job.config_text] = Answer(rod, solved, solved.messages[0])
         return view_of_dataset(solved.dataset, Path(job.title))
 
-    results = rod_results(replace(request, **plain_values), solve)
+    results = solve_rod_results(replace(request, **plain_values), solve)
     return RodPortrait(rod, results, answers)

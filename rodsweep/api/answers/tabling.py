@@ -15,7 +15,7 @@ from ...results.file.view import ResultView, read_view
 from ...solve.solve_lock import one_at_a_time
 from ..dataset import named_file_path, view_of_dataset
 from .answer import Answer
-from .frames import frame_of
+from .frames import data_frame_of
 
 TABLE_EXAMPLE = 'rs.table(data, "crossings")'
 TableSource = xr.Dataset | Answer | str | Path
@@ -39,7 +39,7 @@ def table(data: TableSource, name: str | None = None, *, columns: Sequence[str] 
     if not isinstance(names, list | tuple) or not all(isinstance(column_name, str) for column_name in names):
         text = short_repr(columns)
         raise InputError(f"columns = {text} is not a list of names, such as ['F', 'growth_rate']")
-    return frame_of(Tables(view_of_result(data, TABLE_EXAMPLE)).table(name, tuple(names)).columns)
+    return data_frame_of(Tables(view_of_result(data, TABLE_EXAMPLE)).table(name, tuple(names)).columns)
 
 
 def view_of_result(data: Any, example: str) -> ResultView:

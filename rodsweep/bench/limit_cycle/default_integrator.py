@@ -54,14 +54,14 @@ class IntegratorWithTolerances:
     def following_contenders(self) -> list[TimedMethod]:
         """Contenders of the race FOLLOWING_RACE, which follow a cycle in time: one for each of
         `tolerances`."""
-        return [self._at(tolerance) for tolerance in self.tolerances]
+        return [self._method_at_tolerance(tolerance) for tolerance in self.tolerances]
 
     def settling_contenders(self) -> list[TimedMethod]:
         """Contenders of the race WAITING_RACE, which integrate until the motion is periodic: one for each of
         `waiting_tolerances`."""
-        return [self._at(tolerance) for tolerance in self.waiting_tolerances]
+        return [self._method_at_tolerance(tolerance) for tolerance in self.waiting_tolerances]
 
-    def _at(self, tolerance: float) -> TimedMethod:
+    def _method_at_tolerance(self, tolerance: float) -> TimedMethod:
         run = partial(self.integrate, tolerance)
         return TimedMethod(self.name, f"{tolerance:.0e}", self.name.split()[0], run)
 

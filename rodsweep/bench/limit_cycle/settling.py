@@ -25,7 +25,7 @@ from .tracking import (
 
 NEAR_HOPF_F = 27.43
 """Force F at a distance of 0.003 above the Hopf point, where a motion approaches the cycle very slowly."""
-SOLVE_NAME = "solve_cycle"
+SOLVE_METHOD_NAME = "solve_cycle"
 """Name of rodsweep's `solve_cycle` in the table."""
 WAITING_PREFIX = "waiting, "
 """Prefix, in the table, of the names of integrations until the motion is periodic."""
@@ -87,7 +87,7 @@ def compare_settling(reference: ReferenceCycle, contenders: Sequence[TimedMethod
 
 def _solve_method(force: float, periods: float, error: float) -> SettlingMethod:
     """The method `solve_cycle` at a force."""
-    return SettlingMethod(force, SOLVE_NAME, "", periods, error, partial(solve_cycle_at_force, force))
+    return SettlingMethod(force, SOLVE_METHOD_NAME, "", periods, error, partial(solve_cycle_at_force, force))
 
 
 def settling_table(methods: Sequence[SettlingMethod], times: Sequence[TimedRuns]) -> str:

@@ -40,7 +40,7 @@ ERROR_NAMES_BY_PANEL = {
 """Names of the errors in the figure, by the title of the panel."""
 
 
-def limit_cycle_study(quick: bool, peers: PeerContribution) -> BenchmarkReport:
+def run_limit_cycle_study(quick: bool, peers: PeerContribution) -> BenchmarkReport:
     """Runs the benchmark and returns the results: errors and times of integrators, methods that reach a
     cycle, cost of a point of a sweep, and sections of the peers. quick: whether to use fewer rounds,
     tolerances and rods."""

@@ -168,12 +168,13 @@ def measure_sweep_points(points: Sequence[Rod], round_count: int) -> list[Measur
     """Measurements of all `cycle_contenders` on all rods `points`, in `round_count` timed rounds."""
     rods = [swept_rod(point, ACCURACY) for point in points]
     cases = [
-        CaseWithErrorMeasure(rod_label(rod.rod), rod, partial(cycle_errors, rod.exact_cycle)) for rod in rods
+        CaseWithErrorMeasure(rod_label(rod.rod), rod, partial(cycle_measurement_fields, rod.exact_cycle))
+        for rod in rods
     ]
     return measure_cases(cases, cycle_contenders(ACCURACY), round_count)
 
 
-def cycle_errors(exact: AccurateCycle, cycle: CycleOutcome) -> dict[str, Any]:
+def cycle_measurement_fields(exact: AccurateCycle, cycle: CycleOutcome) -> dict[str, Any]:
     """Fields of `Measurement` for a cycle: errors, error estimate, mesh, and number of Floquet multipliers.
     Mesh and number are missing if there is no orbit."""
     errors = exact.errors_of(cycle.measures.period, cycle.measures.tip_y_max)

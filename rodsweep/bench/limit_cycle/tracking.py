@@ -121,14 +121,14 @@ def measure_following(
     """Measurements of the `contenders`, which follow the reference cycle `reference` in time; times are
     divided by the number of periods."""
     task = IntegrationTask(reference.system, reference.state, FOLLOWED_PERIODS * reference.period)
-    measure_error = partial(run_errors, reference)
+    measure_error = partial(trajectory_measurement_fields, reference)
     return [
         replace(m, seconds=m.seconds / FOLLOWED_PERIODS, least_seconds=m.least_seconds / FOLLOWED_PERIODS)
         for m in measure_case(f"F = {CYCLE_FORCE:g}", task, list(contenders), round_count, measure_error)
     ]
 
 
-def run_errors(reference: ReferenceCycle, trajectory: Trajectory) -> dict[str, Any]:
+def trajectory_measurement_fields(reference: ReferenceCycle, trajectory: Trajectory) -> dict[str, Any]:
     """Fields of `Measurement` for a trajectory: relative rms errors of the period and of the largest tip y,
     without the first return, and steps per period."""
     returns = tip_returns(reference.system, trajectory)

@@ -19,7 +19,7 @@ from ...solve.spectrum.arm_solver import arm_solver
 from ...solve.spectrum.problem import ArmProblem
 from ...wording import counted
 from ..study import Measurement, TimedMethod, measure_case
-from .exact import relative_error_by_name
+from .exact import error_as_measurement_field
 from .rodsweep_spectrum import (
     CERTIFIED_NAME,
     KRYLOV_SCHUR,
@@ -91,7 +91,7 @@ def measure_arm_spectra(peers: Sequence[TimedMethod], round_count: int) -> list[
     eigenproblem."""
     measurements = []
     for name, rod in ARM_RODS.items():
-        measure_error = partial(relative_error_by_name, exact_arm_spectrum(rod))
+        measure_error = partial(error_as_measurement_field, exact_arm_spectrum(rod))
         measurements += measure_case(
             name, UncachedArms(rod), [*contenders(), *peers], round_count, measure_error
         )

@@ -78,6 +78,6 @@ def relative_error(w: Complex | Exception, exact: list[Any]) -> float:
         return max(float(min(abs(value - root) for value in computed) / abs(root)) for root in exact)
 
 
-def relative_error_by_name(exact: list[Any], w: Complex) -> dict[str, float]:
-    """{"error": relative error of computed eigenvalues w, (modes,)}, a field of `Measurement`."""
+def error_as_measurement_field(exact: list[Any], w: Complex) -> dict[str, float]:
+    """The relative error of computed eigenvalues w, (modes,), as field `error` of a `Measurement`."""
     return {"error": relative_error(w, exact)}

@@ -11,7 +11,7 @@ from ..study import Measurement, grouped_by_fields, markdown_table
 
 MODE_COUNT = 4
 """Number of leading eigenvalues that every method computes."""
-ACCURACY = 1e-12
+SPECTRUM_ACCURACY = 1e-12
 """Relative accuracy requested from rodsweep; the error of the eigenvalues does not depend on this request."""
 UNCERTIFIED_NAME = "rodsweep, certificate off"
 """Name of rodsweep without certificate in the tables."""
@@ -26,7 +26,7 @@ RODSWEEP_GROUP, PENCIL_GROUP = "this tool", "the same pencil"
 def rodsweep_spectrum(rod: Rod, certify: bool) -> Complex:
     """Leading eigenvalues, (modes,), of a rod by rodsweep, with a mesh chosen by rodsweep. certify: whether
     to prove the list of eigenvalues complete."""
-    return solve_spectrum(rod, SpectrumRequest(MODE_COUNT, ACCURACY, certify)).eigenvalues
+    return solve_spectrum(rod, SpectrumRequest(MODE_COUNT, SPECTRUM_ACCURACY, certify)).eigenvalues
 
 
 def leading_eigenvalues(w: Complex, count: int) -> Complex:

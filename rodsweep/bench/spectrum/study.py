@@ -31,7 +31,7 @@ from ..study import (
     time_runs,
 )
 from .arm_race import ARM_RACE, arm_table, measure_arm_spectra
-from .exact import exact_spectrum, relative_error, relative_error_by_name
+from .exact import error_as_measurement_field, exact_spectrum, relative_error
 from .rodsweep_spectrum import (
     CERTIFIED_NAME,
     KRYLOV_SCHUR,
@@ -74,7 +74,7 @@ QUICK_STRIDE = 3
 """n: a quick run uses every n-th size on hard rods and arms."""
 
 
-def spectrum_study(quick: bool, peers: PeerContribution) -> BenchmarkReport:
+def run_spectrum_study(quick: bool, peers: PeerContribution) -> BenchmarkReport:
     """Runs the benchmark and returns the results: the paper's rods at equal errors, hard rods at all sizes,
     and arms. quick: whether to use fewer rounds, target errors and sizes."""
     warm_up()
@@ -156,7 +156,7 @@ def measure_hard_rods(methods: Sequence[TimedMethod], round_count: int) -> list[
     """Measurements of the contenders `methods` on all HARD_RODS."""
     measurements = []
     for case, rod in HARD_RODS.items():
-        measure_error = partial(relative_error_by_name, exact_spectrum(rod, MODE_COUNT))
+        measure_error = partial(error_as_measurement_field, exact_spectrum(rod, MODE_COUNT))
         measurements += measure_case(case, rod, methods, round_count, measure_error)
     return measurements
 

@@ -64,7 +64,7 @@ class SweepCase:
     solver_kind: str
 
 
-def spectrum_case(directory: Path, name: str, point_count: int, solver_kind: str) -> SweepCase:
+def write_spectrum_case(directory: Path, name: str, point_count: int, solver_kind: str) -> SweepCase:
     """A sweep of spectra, named `name`, over F, two values of k1, and k2, whose config is written into the
     new directory `directory`.
 
@@ -77,7 +77,7 @@ def spectrum_case(directory: Path, name: str, point_count: int, solver_kind: str
     return SweepCase(name, 2 * force_count * k2_count, (directory,), solver_kind)
 
 
-def cycle_case(directory: Path, point_count: int, solver_kind: str) -> SweepCase:
+def write_cycle_case(directory: Path, point_count: int, solver_kind: str) -> SweepCase:
     """A sweep of limit cycles whose costs differ much, in random order; its config is written into the new
     directory `directory`."""
     directory.mkdir()
@@ -147,7 +147,7 @@ def run_case(command: Sequence[str], case: SweepCase, rank_count: int, fresh: bo
     processes = [
         _start_command(full_command, solver_kind, directory, fresh) for directory in case.directories
     ]
-    stated_seconds = [_printed_seconds(process, solver_kind) for process in processes]
+    stated_seconds = [_wait_for_printed_seconds(process, solver_kind) for process in processes]
     seconds = time.monotonic() - start
     other_load = np.maximum(0.0, (_other_process_seconds() - seconds_of_others) / seconds)
     files = [directory / RESULT for directory in case.directories]
@@ -185,7 +185,7 @@ def _start_command(
     )
 
 
-def _printed_seconds(process: subprocess.Popen[str], solver_kind: str) -> float:
+def _wait_for_printed_seconds(process: subprocess.Popen[str], solver_kind: str) -> float:
     """Waits for the command to finish, and returns the time in s that the command printed; nan if the command
     was killed on purpose. Raises EnvironmentIncomplete if the command failed."""
     output, errors = process.communicate()

@@ -21,10 +21,10 @@ from .launch import (
     SOLVED,
     CommandRunCost,
     SweepCase,
-    cycle_case,
     launcher_words,
     run_case,
-    spectrum_case,
+    write_cycle_case,
+    write_spectrum_case,
 )
 
 SWEEP_SIZES, QUICK_SIZES = (10**3, 10**4, 10**5, 10**6), (10**3, 10**4)
@@ -56,7 +56,7 @@ RunCase = Callable[..., CommandRunCost]
 """`run_case` with its first argument, the start of the measured command, bound."""
 
 
-def sweep_study(quick: bool, command: Sequence[str]) -> BenchmarkReport:
+def run_sweep_study(quick: bool, command: Sequence[str]) -> BenchmarkReport:
     """Runs the benchmark and returns the results: speedup by a second rank, followed eigenvalues, and
     overhead of a point.
 
@@ -80,14 +80,16 @@ def measure_solved_sweeps(folder: Path, run: RunCase, quick: bool, ranks: Sequen
     """Measurements of sweeps of spectra and of limit cycles with the real solver, run in turn."""
     rounds, cycle_rounds = (QUICK_ROUND_COUNT,) * 2 if quick else (ROUND_COUNT, CYCLE_ROUND_COUNT)
     count = QUICK_SPECTRUM_COUNT if quick else SPECTRUM_COUNT
-    spectra = spectrum_case(folder / "spectra", "spectra", count, SOLVED)
-    cycles = cycle_case(folder / "cycles", QUICK_CYCLE_COUNT if quick else CYCLE_COUNT, SOLVED)
+    spectra = write_spectrum_case(folder / "spectra", "spectra", count, SOLVED)
+    cycles = write_cycle_case(folder / "cycles", QUICK_CYCLE_COUNT if quick else CYCLE_COUNT, SOLVED)
     # Not timed: the first runs may compile the formulas.
-    run(spectrum_case(folder / "first", "first", 8, SOLVED), 1)
-    run(cycle_case(folder / "first_cycle", 1, SOLVED), 1)
+    run(write_spectrum_case(folder / "first", "first", 8, SOLVED), 1)
+    run(write_cycle_case(folder / "first_cycle", 1, SOLVED), 1)
     entries = [(spectra, rank_count, rounds) for rank_count in ranks]
     if len(ranks) > 1:
-        halves = [spectrum_case(folder / f"half{i}", TWO_COMMAND_CASE, count // 2, SOLVED) for i in (0, 1)]
+        halves = [
+            write_spectrum_case(folder / f"half{i}", TWO_COMMAND_CASE, count // 2, SOLVED) for i in (0, 1)
+        ]
         both = replace(halves[0], points=count, directories=halves[0].directories + halves[1].directories)
         entries.append((both, 1, rounds))
     return measure_in_turn(run, entries + [(cycles, rank_count, cycle_rounds) for rank_count in ranks])
@@ -101,11 +103,11 @@ def measure_instant_sweeps(
     sizes, rounds = (QUICK_SIZES, QUICK_ROUND_COUNT) if quick else (SWEEP_SIZES, ROUND_COUNT)
     entries = []
     for size in sizes:
-        case = spectrum_case(folder / f"instant{size}", "no solver", size, INSTANT)
+        case = write_spectrum_case(folder / f"instant{size}", "no solver", size, INSTANT)
         entries += [(case, rank_count, 1 if size >= SINGLE_RUN_POINTS else rounds) for rank_count in ranks]
     measurements = measure_in_turn(run, entries)
     for size in sizes:
-        killed = spectrum_case(folder / f"killed{size}", KILLED, size, KILLED)
+        killed = write_spectrum_case(folder / f"killed{size}", KILLED, size, KILLED)
         resumed = replace(killed, name="resumed", solver_kind=INSTANT)
         measurements.append(sweep_measurement(killed, 1, [run(killed, 1)]))
         measurements.append(sweep_measurement(resumed, 1, [run(resumed, 1, fresh=False)]))
@@ -148,7 +150,7 @@ def sweep_measurement(case: SweepCase, rank_count: int, runs: Sequence[CommandRu
     )
 
 
-def numbers_of_row(m: Measurement) -> dict[str, object]:
+def table_row_numbers(m: Measurement) -> dict[str, object]:
     """Numbers of a measured sweep, by name, for a row of a table."""
     microseconds = 1e6 * m.extra["ranks"] * m.seconds / m.extra["points"]
     return {"case": m.case, "seconds": m.seconds, "microseconds": microseconds, **m.extra}
@@ -165,7 +167,7 @@ def solved_table(measurements: Sequence[Measurement]) -> str:
             "inside": nan if m is single else single.extra["inside_seconds"] / m.extra["inside_seconds"],
             "busy": 100 * m.extra["share_busy"],
         }
-        rows.append(numbers_of_row(m) | gains)
+        rows.append(table_row_numbers(m) | gains)
     return markdown_table(
         "sweep | points | ranks | s | points a second | gain | gain inside | % busy "
         "| µs a point outside the solver | MB a rank | processors busy elsewhere",
@@ -187,7 +189,7 @@ def instant_table(measurements: Sequence[Measurement]) -> str:
         "{case} | {points:.0f} | {ranks:.0f} | {seconds:.2f} | {microseconds:.1f} "
         "| {rss_megabytes_first:.1f} | {rss_megabytes_other:.1f} | {file_bytes_per_point:.1f} "
         "| {journal_bytes_per_point:.1f}",
-        map(numbers_of_row, measurements),
+        map(table_row_numbers, measurements),
     )
 
 
@@ -206,7 +208,7 @@ def growth_table(measurements: Sequence[Measurement]) -> str:
                 name: (end - start[name]) / (many_points - few_points)
                 for name, end in sweep_totals(large_sweep).items()
             }
-            rows.append(row | {"power": growth_power(sizes[0], small_sweep, large_sweep)})
+            rows.append(row | {"power": growth_exponent(sizes[0], small_sweep, large_sweep)})
     return (
         'Cost of an additional point, summed over ranks. "Power" is the exponent with which the time, minus '
         "the time of the smallest sweep, grows with the number of points:\n\n"
@@ -228,7 +230,7 @@ def sweep_totals(m: Measurement) -> dict[str, float]:
     }
 
 
-def growth_power(start: Measurement, small: Measurement, large: Measurement) -> float:
+def growth_exponent(start: Measurement, small: Measurement, large: Measurement) -> float:
     """Exponent p of growth, t(n) - t(n0) ~ (n - n0)^p; t(n): time of a sweep with n points, n0: points of
     `start`.
 

@@ -131,7 +131,7 @@ RODSWEEP_GROUP = "rodsweep"
 """Group of rodsweep in the figure."""
 
 
-def thresholds_study(quick: bool, peers: PeerContribution) -> BenchmarkReport:
+def run_thresholds_study(quick: bool, peers: PeerContribution) -> BenchmarkReport:
     """Runs the benchmark and returns the results: tables of the onset and of the Hopf point, for uniform rods
     and for arms. quick: whether to use fewer rods and rounds."""
     warm_up()
@@ -181,12 +181,12 @@ def measure_rods(
     for case in cases:
         name = f"{case.name}, {KIND_TITLES[threshold_kind]}"
         measurements += measure_case(
-            name, case, contenders, round_count, partial(threshold_error, case, threshold_kind)
+            name, case, contenders, round_count, partial(threshold_measurement_fields, case, threshold_kind)
         )
     return measurements
 
 
-def threshold_error(
+def threshold_measurement_fields(
     case: ThresholdCase, threshold_kind: str, computed_threshold: FirstThreshold
 ) -> dict[str, Any]:
     """Fields of `Measurement` for the computed threshold `computed_threshold` of the kind `threshold_kind`:

@@ -18,7 +18,7 @@ LOAD_KEYS = (*LOADS, *LOAD_OF_RATIO)
 SINGLE_PARAMETER_OF = dict.fromkeys(LOADS, "F") | {"poisson": "k2"}
 """Name of the only parameter that depends on a quantity of the arm, by name of the quantity. Quantities on
 which several parameters depend are not included."""
-CHANGED_PARAMETER = SINGLE_PARAMETER_OF | dict.fromkeys(LOAD_OF_RATIO, "F")
+PARAMETER_CHANGED_ALONG = SINGLE_PARAMETER_OF | dict.fromkeys(LOAD_OF_RATIO, "F")
 """Name of the parameter that changes along an axis of a grid over an arm's quantities, by name of the
 axis."""
 PARAMETER_STORED_ALONG = SINGLE_PARAMETER_OF | {"drag": "gamma3", "tau2": "gamma3"}
@@ -49,4 +49,4 @@ def grid_axis_names(sizes: Mapping[str, int], in_diagram: bool) -> tuple[str, ..
 def parameter_of_axis(axis: str) -> str:
     """Name of the only parameter that changes along an axis of an arm's grid; "" if several parameters or no
     parameter change."""
-    return axis if axis in PARAMETERS else CHANGED_PARAMETER.get(axis, "")
+    return axis if axis in PARAMETERS else PARAMETER_CHANGED_ALONG.get(axis, "")

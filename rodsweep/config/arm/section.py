@@ -20,8 +20,8 @@ from ..values import StrictConfigSection
 from .axes import LOAD_KEYS, NON_LOAD_KEYS, SINGLE_PARAMETER_OF
 from .quantities import DragAxis, QuantityAxis, drag_names_of_indices, with_load_over_flutter
 from .shape import (
+    ALLOWED_SEGMENTS_TEXT,
     MATERIAL_KEYS,
-    SEGMENTS_ALLOWED,
     Segments,
     material_of,
     materials_of,
@@ -50,7 +50,7 @@ class ArmConfig(StrictConfigSection):
     """Radius of the bore of a tube, which is closed at its tip."""
     tip_radius: Annotated[QuantityAxis | None, QUANTITY_FIELD] = None
     """Radius at the tip of a solid cone, which has `radius` at its base."""
-    segments: Annotated[Segments, Field(description=SEGMENTS_ALLOWED)] = None
+    segments: Annotated[Segments, Field(description=ALLOWED_SEGMENTS_TEXT)] = None
     """Segments from the base to the tip, each with length, radius, and optionally inner_radius and young."""
     width: Annotated[QuantityAxis | None, QUANTITY_FIELD] = None
     """Width of a rectangular section, across the plane of motion."""

@@ -124,7 +124,7 @@ _SEGMENTS_SCHEMA = [_SEGMENT_LIST_SCHEMA | {"maxItems": MAX_SEGMENTS}, *_SEGMENT
 Segments = Annotated[
     tuple[str, ...] | None, BeforeValidator(as_segments), WithJsonSchema({"anyOf": _SEGMENTS_SCHEMA})
 ]
-SEGMENTS_ALLOWED = (
+ALLOWED_SEGMENTS_TEXT = (
     f"a list of segments, each as '{EXAMPLE_SEGMENT}' or a mapping of {', '.join(SEGMENT_KEYS)}"
 )
 """Phrase for messages that describes the allowed values of the key `segments`."""

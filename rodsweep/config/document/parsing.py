@@ -26,7 +26,7 @@ HDF5_SIGNATURE = b"\x89HDF"
 """First bytes of an HDF5 file, hence of a result file."""
 TABLE_ENDINGS = (".csv", ".tsv")
 """Suffixes of files with lists of points, and of the tables that `rodsweep export` writes."""
-MAX_DEPTH = 20
+MAX_KEY_DEPTH = 20
 """Maximum depth of nested lists and mappings in a config."""
 
 
@@ -63,14 +63,14 @@ def read_config_text(path: Path) -> str:
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError:
-        raise InputError(f"{name} is not UTF-8 text") from None
+        raise InputError(f"{name} is not UTF-8 text; save the file as UTF-8") from None
 
 
 def parsed_yaml(text: str, source: str) -> Any:
     """Value of a YAML text, as nested dicts and lists; InputError if the text is not valid or not allowed.
     source: name of the text, with which the message begins."""
     if any(line.startswith("%") for line in text.splitlines()):
-        raise InputError(f"{source}: directives (%...) are not allowed in a config")
+        raise InputError(f"{source}: directives (%...) are not allowed in a config; remove the line")
     yaml = YAML(typ="safe", pure=True)
     yaml.Parser = _PlainDataParser
     try:
@@ -96,15 +96,15 @@ class _PlainDataParser(Parser):
         event = super().get_event()
         if getattr(event, "anchor", None):
             text = printable_name(("*" if isinstance(event, AliasEvent) else "&") + event.anchor)
-            raise InputError(f"anchors and aliases ({text}) are not allowed in a config")
+            raise InputError(f"anchors and aliases ({text}) are not allowed in a config; write the value out")
         if getattr(event, "tag", None):
-            raise InputError(f"tags ({printable_name(event.tag)}) are not allowed in a config")
+            raise InputError(f"tags ({printable_name(event.tag)}) are not allowed in a config; remove them")
         if isinstance(event, ScalarEvent):
             _refuse_scalar(event)
         name = type(event).__name__
         self.depth += name.endswith("StartEvent") - name.endswith("EndEvent")
-        if self.depth > MAX_DEPTH:
-            raise InputError(f"keys are nested more than {MAX_DEPTH} levels deep, the limit for a config")
+        if self.depth > MAX_KEY_DEPTH:
+            raise InputError(f"keys are nested more than {MAX_KEY_DEPTH} levels deep, the limit for a config")
         return event
 
 
@@ -116,9 +116,9 @@ def _refuse_scalar(event: ScalarEvent) -> None:
         limit = f"a value of a config has at most {MAX_TEXT_LENGTH}"
         raise InputError(f"{short_repr(text)} has {len(text)} characters; {limit}")
     if not text.isprintable():
-        raise InputError(f"{short_repr(text)} has characters that cannot be printed")
+        raise InputError(f"{short_repr(text)} has characters that cannot be printed; remove them")
     if event.style is None and text == "<<":
-        raise InputError("merge keys (<<) are not allowed in a config")
+        raise InputError("merge keys (<<) are not allowed in a config; write the keys out")
     is_integer = text.lstrip("+-").isdigit()  # refused later, with its key
     if event.style is None and overflows_float(text) and not is_integer:
         raise InputError(f"{short_repr(text)} is too large for a floating-point number")

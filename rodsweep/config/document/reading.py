@@ -22,7 +22,7 @@ from ..base_config import Config
 from ..material import with_profile_read
 from ..tasks import CONFIGS, makes_diagram
 from ..values import printable_name
-from .parsing import MAX_DEPTH, parsed_yaml, read_config_text
+from .parsing import MAX_KEY_DEPTH, parsed_yaml, read_config_text
 from .refusals import MAX_KEY_LENGTH, dotted_key, message_of_problem, similar_keys
 
 ROUNDING_TOLERANCE = 1e-12
@@ -165,9 +165,9 @@ def _apply_override(tree: dict, override: str) -> None:
     path = key.strip().split(".")
     if not separator or not all(path):
         raise InputError(f"{override_text}: write it as key=value, for example parameters.F.num=50")
-    if len(path) > MAX_DEPTH:
+    if len(path) > MAX_KEY_DEPTH:
         raise InputError(
-            f"{override_text}: keys are nested more than {MAX_DEPTH} levels deep, the limit for a config"
+            f"{override_text}: keys are nested more than {MAX_KEY_DEPTH} levels deep, the limit for a config"
         )
     node = tree
     for depth, name in enumerate(path[:-1]):

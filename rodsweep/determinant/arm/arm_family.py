@@ -15,7 +15,7 @@ from numpy.polynomial import chebyshev
 
 from ...arrays import Array
 from ...model.compiled.kernel_constants import KernelConstants
-from ..exponents import ROUND_OFF
+from ..exponents import MACHINE_EPSILON
 from ..parameter_path import ParameterPath
 from .determinant import CoefficientSamples, coefficient_samples, elements_for
 from .elements.minor_rates import PADDED
@@ -91,7 +91,7 @@ def interpolated_family(path: ParameterPath, low: float, high: float, W: float) 
             coefficients = np.tensordot(_chebyshev_coefficient_matrix(node_count), propagators, 1)
             # The last coefficients show truncation errors, which may exceed rounding errors of small entries.
             largest_entry = (
-                np.abs(propagators).max(axis=0) + np.abs(coefficients[-2:]).sum(axis=0) / ROUND_OFF
+                np.abs(propagators).max(axis=0) + np.abs(coefficients[-2:]).sum(axis=0) / MACHINE_EPSILON
             )
             entry_sizes = np.stack([largest_entry[:, 0], largest_entry[:, 1:].sum(axis=1)], axis=1)
             return ArmFamily(low, high, scale, W, np.ascontiguousarray(coefficients), entry_sizes)

@@ -34,7 +34,7 @@ from .value import determinant_from_propagators
 class CompletenessSettings(KernelConstants):
     """Settings for proofs of completeness, and for the points x_j at which D'/D is summed."""
 
-    additional_eigenvalues: int = 2
+    further_eigenvalue_count: int = 2
     """Number of eigenvalues requested beyond the modes to prove. With 2 additional eigenvalues, 59 of 100
     random arms need a count; with 0, 73 arms. A count costs more than two eigenvalues."""
     point_counts: tuple[int, ...] = (3, 6)

@@ -19,7 +19,7 @@ from ..value import DeterminantValue, newton_correction_and_scales
 from .elements.edges import element_edges, halved_where_coarse
 from .elements.propagators import element_propagators, gauss_method
 from .elements.settings import ARM_ELEMENT_SETTINGS
-from .local_waves import ArmSamples, arm_samples, mean_wave_number_and_w_scale
+from .local_waves import ExponentSamples, exponent_samples, mean_wave_number_and_w_scale
 from .value import determinant_from_propagators
 
 PropagatorsUpToW = tuple[float, Array]
@@ -35,7 +35,7 @@ class ArmDeterminant:
         self.rod = rod
         self._known_propagators: list[PropagatorsUpToW] = [] if propagator_set is None else [propagator_set]
         points, weights, coefficients = sampled_arm(rod)
-        self.samples = arm_samples(float(rod.F), coefficients, weights)
+        self.samples = exponent_samples(float(rod.F), coefficients, weights)
         with_arm_dimension = LocalCoefficients(*(x[None] for x in coefficients))
         self._coefficient_samples = CoefficientSamples(
             points, with_arm_dimension, self.samples.squares[:, None]
@@ -63,14 +63,14 @@ class ArmDeterminant:
         return mean_wave_number_and_w_scale(w, self.samples)[1]
 
     @cached_property
-    def gauss_samples(self) -> ArmSamples:
+    def gauss_samples(self) -> ExponentSamples:
         """Samples of the arm at the Gauss points of each interval between breaks of the profile."""
         points, _, weights = gauss_method(ARM_ELEMENT_SETTINGS.stages)
         lengths = np.diff(self.rod.material.breaks)[:, None]
         coefficients = self.rod.local_coefficients(
             (self.rod.material.breaks[:-1, None] + lengths * points).ravel()
         )
-        return arm_samples(float(self.rod.F), coefficients, (lengths * weights).ravel())
+        return exponent_samples(float(self.rod.F), coefficients, (lengths * weights).ravel())
 
     def propagators_for(self, min_W: float, max_ratio: float | None = None) -> PropagatorsUpToW:
         """Returns (W, propagators that are valid for |w| <= W, (elements, terms, PADDED)) with W >= min_W.
@@ -91,7 +91,7 @@ class ArmDeterminant:
 class CoefficientSamples(NamedTuple):
     """Samples of n arms between the breaks of their profile. points: material coordinates u, (points,).
     local: `LocalCoefficients` at the points, each (n, points). squares: coefficients of z+-, as in
-    `ArmSamples`, (4, n, points)."""
+    `ExponentSamples`, (4, n, points)."""
 
     points: Array
     local: LocalCoefficients
@@ -111,7 +111,7 @@ def coefficient_samples(rods: list[Rod]) -> CoefficientSamples:
     points, weights, _ = sampled_arm(rods[0])
     coefficients = Rod.local_coefficients_of_rods(rods, points)
     forces = np.array([[rod.F] for rod in rods])
-    return CoefficientSamples(points, coefficients, arm_samples(forces, coefficients, weights).squares)
+    return CoefficientSamples(points, coefficients, exponent_samples(forces, coefficients, weights).squares)
 
 
 def elements_for(rods: list[Rod], samples: CoefficientSamples, W: float) -> PropagatorElements:

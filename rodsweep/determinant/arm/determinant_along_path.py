@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from ..exponents import EXPONENT_SETTINGS, ROUND_OFF
+from ..exponents import EXPONENT_SETTINGS, MACHINE_EPSILON
 from ..parameter_path import ParameterPath
 from ..roots.newton import FAILED_EIGENVALUE, LocatedEigenvalue
 from ..roots.settings import ROOT_NEWTON_SETTINGS, ROOT_SETTINGS
@@ -185,7 +185,7 @@ class ArmAlongPath:
             return _DoubleEigenvalueStep(math.nan, math.nan, math.nan, math.nan)
         rounding = rounding_error_from_propagators(complex(x, 0.0), W, polynomials, log_scale)
         # p itself is rounded, which changes D by this much even if D were evaluated exactly.
-        total_rounding = rounding + ROUND_OFF * abs(p * D_p)
+        total_rounding = rounding + MACHINE_EPSILON * abs(p * D_p)
         rounding_of_slope = rounding / max(abs(x), EXPONENT_SETTINGS.min_divisor)
         x_step = (D_p * D_w - D_wp * D) / cross
         p_step = (D_ww * D - D_w * D_w) / cross

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...model.compiled.compilation import compiled, compiled_for_vectors
-from ..exponents import EXPONENT_SETTINGS, ROUND_OFF
+from ..exponents import EXPONENT_SETTINGS, MACHINE_EPSILON
 from ..roots.settings import ROOT_NEWTON_SETTINGS
 from ..value import DeterminantValue
 from .arm_family import LINEAR_SCALE, ArmFamily
@@ -124,4 +124,4 @@ def eigenvalue_of_family_arm(family: ArmFamily, guess: complex, p: float) -> tup
     if w.imag == 0:
         slope = complex(slope.real, 0.0)
     e = error_of_interpolated_chain(w, W, polynomials, S, family.entry_sizes)
-    return w, slope, (e + ARM_ROOT_SETTINGS.residual * abs(D)) / size + ROUND_OFF * abs(w)
+    return w, slope, (e + ARM_ROOT_SETTINGS.residual * abs(D)) / size + MACHINE_EPSILON * abs(w)

@@ -17,7 +17,7 @@ from ...model.material.rod_material import LocalCoefficients
 from ..exponents import EXPONENT_SETTINGS
 
 
-class ArmSamples(NamedTuple):
+class ExponentSamples(NamedTuple):
     """Coefficients of z+-(w) at points along an arm, and the weights of a quadrature over these points.
 
     squares: coefficients of z+-, the squared exponents (see the module docstring), (4, points): c2 gamma2 +
@@ -29,13 +29,13 @@ class ArmSamples(NamedTuple):
     weights: Array
 
 
-def arm_samples(F: float | Array, coefficients: LocalCoefficients, weights: Array) -> ArmSamples:
+def exponent_samples(F: float | Array, coefficients: LocalCoefficients, weights: Array) -> ExponentSamples:
     """Samples of an arm from the force F, its coefficients at points, (points,), and weights, (points,). For
     n arms, F is (n, 1), each coefficient (n, points), and squares get the shape (4, n, points)."""
     nu, c2, c3, gamma2, gamma3, g = coefficients
     shear = c2 * gamma2
     rotation = c3 * gamma3
-    return ArmSamples(
+    return ExponentSamples(
         np.array([shear + rotation, F * c3 * g, g * nu * gamma2 * c3, shear * rotation]), weights
     )
 
@@ -56,7 +56,7 @@ def modulus_of_parts(real: float, imag: float) -> float:
 
 
 @compiled_for_vectors
-def mean_wave_number_and_w_scale(w: complex, samples: ArmSamples) -> tuple[float, float]:
+def mean_wave_number_and_w_scale(w: complex, samples: ExponentSamples) -> tuple[float, float]:
     """Returns (wave number, scale of w) at w. wave number: (|sqrt z+| + |sqrt z-|)/2, a bound of |q|,
     averaged along the arm. scale of w: change of w over which an exponent of D changes by about one,
     1/(average along the arm of the larger |d sqrt(z+-)/dw|)."""
@@ -88,7 +88,7 @@ def mean_wave_number_and_w_scale(w: complex, samples: ArmSamples) -> tuple[float
 
 
 @compiled
-def mean_wave_numbers_and_w_scales(w: Complex, samples: ArmSamples) -> Array:
+def mean_wave_numbers_and_w_scales(w: Complex, samples: ExponentSamples) -> Array:
     """Wave numbers and scales of w of `mean_wave_number_and_w_scale` at every w, (n,), as (2, n)."""
     results = np.empty((2, len(w)))
     for n in range(len(w)):

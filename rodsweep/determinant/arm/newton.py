@@ -13,7 +13,7 @@ import numpy as np
 from ...arrays import Array, Complex
 from ...model.compiled.compilation import compiled
 from ...model.compiled.kernel_constants import KernelConstants
-from ..exponents import EXPONENT_SETTINGS, ROUND_OFF
+from ..exponents import EXPONENT_SETTINGS, MACHINE_EPSILON
 from ..roots.roots import roots_of_parabola
 from ..roots.settings import ROOT_NEWTON_SETTINGS, ROOT_SETTINGS
 from ..value import DETERMINANT_SETTINGS, DeterminantValue, second_difference
@@ -56,10 +56,10 @@ def _root_error_from_value(w: complex, value: DeterminantValue, level: Propagato
     if error > ROOT_SETTINGS.double_root_correction_ratio * abs(w):
         # Near a double root e/|D'| is unbounded, but a root of the second-order polynomial is near.
         D_ww = abs(_second_derivative(w, value.log_scale, level))
-        if size**2 < ROOT_SETTINGS.min_squared_slope * e * D_ww:
+        if size**2 < ROOT_SETTINGS.min_squared_slope_ratio * e * D_ww:
             root_distance = math.sqrt(2 * e / D_ww)
             error = min(max(error, root_distance), size / D_ww + root_distance)
-    return error + ROUND_OFF * abs(w)
+    return error + MACHINE_EPSILON * abs(w)
 
 
 @compiled

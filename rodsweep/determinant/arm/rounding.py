@@ -20,7 +20,7 @@ import numpy as np
 from ...arrays import Array
 from ...model.compiled.compilation import compiled
 from ...model.compiled.kernel_constants import KernelConstants
-from ..exponents import ROUND_OFF
+from ..exponents import MACHINE_EPSILON
 from .elements.evaluation import (
     apply_propagator,
     apply_transposed_propagator,
@@ -93,4 +93,4 @@ def error_of_interpolated_chain(
         apply_transposed_propagator(C[e], next_moduli, moduli)
         scale_after += divide_by_norm(moduli)
         next_moduli, moduli = moduli, next_moduli
-    return ROUND_OFF * total
+    return MACHINE_EPSILON * total

@@ -29,7 +29,7 @@ from ...model.compiled.kernel_constants import KernelConstants
 from ...model.rod import Coefficients
 from ..exponents import EXPONENT_SETTINGS
 from ..parameter_path import coefficients_at, determinant_along_path, dispersion_coefficient_derivatives
-from ..roots.newton import FAILED_EIGENVALUE, LocatedEigenvalue, crossing_newton
+from ..roots.newton import FAILED_EIGENVALUE, LocatedEigenvalue, crossing_by_newton
 from .discs import DISC_BOUND_SETTINGS, BidiscCentre, DerivativePair, bidisc_centre, bound_on_bidisc
 
 
@@ -207,7 +207,7 @@ def cover_with_boxes(
         if outcome == EMPTY_BOX:
             continue
         if outcome == REGULAR_BOX:
-            zero = crossing_newton(eta, p, origin, direction, half)
+            zero = crossing_by_newton(eta, p, origin, direction, half)
             distance = _box_distance(zero, eta, p, half)
             if distance <= 2:  # false if Newton's method failed, which returns nan
                 # A zero outside the box is found from a neighbouring box too.

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from ...model.compiled.compilation import compiled
 from ...model.rod import Coefficients
-from ..exponents import EXPONENT_SETTINGS, ROUND_OFF
+from ..exponents import EXPONENT_SETTINGS, MACHINE_EPSILON
 from ..parameter_path import coefficients_at, determinant_along_path
 from ..value import scaled_determinant
 from .settings import ROOT_NEWTON_SETTINGS
@@ -33,7 +33,7 @@ FAILED_EIGENVALUE = LocatedEigenvalue(math.nan, math.nan, math.nan, math.nan)
 
 
 @compiled
-def crossing_newton(
+def crossing_by_newton(
     eta: float, p: float, origin: Coefficients, direction: Coefficients, scale: tuple[float, float]
 ) -> LocatedEigenvalue:
     """The zero of D(i eta; p) near the guess (eta, p), with errors from rounding and the last Newton step.
@@ -54,7 +54,7 @@ def crossing_newton(
         eta_step = -(D * D_p.conjugate()).imag / cross
         p_step = (D * a.conjugate()).imag / cross
         # The rounding errors of p and eta add to the rounding error of D.
-        rounding = rounding_error + ROUND_OFF * (abs(p * D_p) + abs(eta * D_w))
+        rounding = rounding_error + MACHINE_EPSILON * (abs(p * D_p) + abs(eta * D_w))
         e_eta = rounding * abs(D_p) / abs(cross)
         e_p = rounding * abs(a) / abs(cross)
         step = max(abs(eta_step) / scale[0], abs(p_step) / scale[1])
@@ -77,7 +77,7 @@ def crossing_newton(
 
 
 @compiled
-def double_eigenvalue_newton(
+def double_eigenvalue_by_newton(
     x: float, p: float, origin: Coefficients, direction: Coefficients, expected_distance: float
 ) -> LocatedEigenvalue:
     """The double real eigenvalue D = D_w = 0 near the guess (x, p).
@@ -104,7 +104,7 @@ def double_eigenvalue_newton(
             return FAILED_EIGENVALUE
         x_step = (D_p * D_w - D_wp * D) / cross
         p_step = (D_ww * D - D_w * D_w) / cross
-        rounding = rounding_error + ROUND_OFF * abs(p * D_p)
+        rounding = rounding_error + MACHINE_EPSILON * abs(p * D_p)
         e_p = rounding * abs(D_ww) / abs(cross)
         e_x = (
             rounding * abs(D_wp) + rounding_error / max(abs(x), EXPONENT_SETTINGS.min_divisor) * abs(D_p)
@@ -160,7 +160,7 @@ def refine_eigenvalue(w: complex, coefficients: Coefficients, max_first_step: fl
 
 
 @compiled
-def eigenvalue_newton(
+def eigenvalue_by_newton(
     w: complex, coefficients: Coefficients, direction: Coefficients
 ) -> tuple[complex, complex, float]:
     """Returns (w, dw/dp, error of w) of the simple eigenvalue w of a uniform rod near the guess w. direction:

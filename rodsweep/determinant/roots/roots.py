@@ -69,7 +69,7 @@ def root_error_and_scales(w: complex, coefficients: Coefficients) -> tuple[float
             D_ww = abs(second_derivative(w, S, coefficients))
             # Close to a double root Newton's correction is useless: the roots of the parabola bound the
             # distance.
-            if abs(D1) ** 2 < ROOT_SETTINGS.min_squared_slope * e * D_ww:
+            if abs(D1) ** 2 < ROOT_SETTINGS.min_squared_slope_ratio * e * D_ww:
                 root_distance = math.sqrt(2 * e / D_ww)
                 error = min(max(error, root_distance), abs(D1) / D_ww + root_distance)
     return error, length, wave
@@ -190,7 +190,7 @@ def refined_roots(raw: Complex, coefficients: Coefficients, sqrt_bound: float, m
     w = w[order]
     error = error[order]
     wave = wave[order]
-    _raise_errors_of_equal_roots(w, error, coefficients)
+    _increase_errors_of_equal_roots(w, error, coefficients)
     axis = np.abs(w.real) <= np.maximum(
         ROOT_SETTINGS.axis_tolerance_in_errors * error, ROOT_SETTINGS.axis_tolerance * np.abs(w)
     )
@@ -228,7 +228,7 @@ def _refine_candidates(
 
 
 @compiled
-def _raise_errors_of_equal_roots(w: Complex, error: Array, coefficients: Coefficients) -> None:
+def _increase_errors_of_equal_roots(w: Complex, error: Array, coefficients: Coefficients) -> None:
     """Raises, in place, the errors of any two entries of w that converged to the same root of D, to at least
     2 |D'/D''|, the distance of the next root. w, error: roots and their errors, (n,)."""
     for i in range(len(w)):

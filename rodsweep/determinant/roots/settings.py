@@ -34,7 +34,7 @@ class RootSettings(KernelConstants):
     """The rounding error of D at an ill-conditioned eigenvalue is estimated by this fraction of its bound
     `rounding_error_at_root`. The estimate must cover nearly all errors: of 46000 ill-conditioned eigenvalues
     of random rods near double eigenvalues, 3 in 10000 have larger errors, by up to 1.13 times."""
-    min_squared_slope: float = 16.0
+    min_squared_slope_ratio: float = 16.0
     """The Newton correction e/|D'| is a valid error estimate if |D'|^2 >= this number times e |D''|, with the
     error e of D: the next root, at 2 |D'/D''|, is then at least 32 corrections away."""
     same_root_distance_in_errors: float = 4.0

@@ -20,7 +20,7 @@ from .basis import differentiation_matrix, lagrange_interpolation_matrix
 class RadauSettings:
     """Settings for the collocation nodes of Radau IIA."""
 
-    newton_steps: int = 3
+    newton_step_count: int = 3
     """Number of Newton steps that correct the nodes from the eigenvalues of a companion matrix, which have
     errors of 1e-15. The first step already reaches rounding error."""
 
@@ -54,7 +54,7 @@ def radau_method(stage_count: int) -> CollocationMethod:
     legendre_coefficients = np.zeros(stage_count + 1)
     legendre_coefficients[-2:] = 1.0, -1.0
     x = np.sort(legendre.legroots(legendre_coefficients).real)
-    for _ in range(RADAU_SETTINGS.newton_steps):
+    for _ in range(RADAU_SETTINGS.newton_step_count):
         x = x - legendre.legval(x, legendre_coefficients) / legendre.legval(
             x, legendre.legder(legendre_coefficients)
         )

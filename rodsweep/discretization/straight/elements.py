@@ -29,9 +29,9 @@ from ..state_layout import SE2_DIMENSION
 from .element_numbering import ElementNumbering, element_numbering
 from .mixed_form import MixedForm
 
-LONGITUDINAL = (0,)
+LONGITUDINAL_COMPONENTS = (0,)
 """Indices of the components of stresses and velocities in se(2) that reflection in the rod's axis keeps."""
-TRANSVERSE = (1, 2)
+TRANSVERSE_COMPONENTS = (1, 2)
 """Indices of the components of stresses and velocities in se(2) that change their sign under reflection in
 the rod's axis."""
 

@@ -45,14 +45,16 @@ class LawDerivativesAtRest:
     M333: Array
 
     def second_derivative_form(self, S: Values, T: Values) -> Values:
-        """The second derivative of s, a bilinear form, applied to S and T; all (3, ..., nodes + 1)."""
+        """The second derivative of the law s(S) at S = 0, a bilinear form, applied to S and T; all (3, ...,
+        nodes + 1)."""
         out = np.zeros(np.broadcast(S, T).shape, np.result_type(S, T))
         out[0] = self.N11 * S[0] * T[0] + self.N33 * S[2] * T[2]
         out[2] = self.M13 * (S[0] * T[2] + S[2] * T[0])
         return out
 
     def third_derivative_form(self, S: Values, T: Values, R: Values) -> Values:
-        """The third derivative of s, a trilinear form, applied to S, T and R; all (3, ..., nodes + 1)."""
+        """The third derivative of the law s(S) at S = 0, a trilinear form, applied to S, T and R; all (3,
+        ..., nodes + 1)."""
         out = np.zeros(np.broadcast(S, T, R).shape, np.result_type(S, T, R))
         mixed_sum = S[0] * T[2] * R[2] + S[2] * T[0] * R[2] + S[2] * T[2] * R[0]
         out[0] = self.N111 * S[0] * T[0] * R[0] + self.N133 * mixed_sum

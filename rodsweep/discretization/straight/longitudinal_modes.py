@@ -42,7 +42,7 @@ class LongitudinalModeSettings:
     """The order is no longer increased if the eigenvalues of two orders differ relatively by at most this."""
     rounding: float = 5e-14
     """Relative rounding error of an eigenvalue; the error estimate is a difference of orders plus this."""
-    extra_points: int = 6
+    extra_point_count: int = 6
     """Number of quadrature points per element for displacements, minus the number for strains."""
 
 
@@ -80,10 +80,10 @@ def _leading_eigenvalues(rod: Rod, mesh: Elements, order: int, mode_count: int) 
 
 
 def _displacement_matrix(rod: Rod, edges: Array, order: int) -> Array:
-    """The matrix A of the module docstring, (elements (order + extra_points), elements order). edges: edges
-    of the elements, (elements + 1,). order: number of strains per element."""
+    """The matrix A of the module docstring, (elements (order + extra_point_count), elements order). edges:
+    edges of the elements, (elements + 1,). order: number of strains per element."""
     strain_points, strain_weights = gauss_legendre_rule(order)
-    points, weights = gauss_legendre_rule(order + LONGITUDINAL_MODE_SETTINGS.extra_points)
+    points, weights = gauss_legendre_rule(order + LONGITUDINAL_MODE_SETTINGS.extra_point_count)
     half_lengths = np.diff(edges)[:, None] / 2
     midpoints = (edges[1:] + edges[:-1])[:, None] / 2
     sections_at_strains, sections_at_points = (

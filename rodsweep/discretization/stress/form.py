@@ -21,7 +21,7 @@ from ..state_layout import SE2_DIMENSION, plane_layout
 class StressFormSettings:
     """Settings for the choice of the unknowns of a `StressForm`."""
 
-    min_eliminated_drag: float = 1e-5
+    min_eliminated_rotational_drag: float = 1e-5
     """Omega is eliminated if the rotational drag is at least this; else Omega is an unknown. Division by a
     smaller drag costs digits of Floquet multipliers (errors of 2e-9 at a drag of 1e-6, of 2e-7 at 1e-8), and
     cycles of soft rods are not found. A form with Omega as an unknown takes 2.4 times as long."""
@@ -44,7 +44,7 @@ OMEGA_COMPONENT = (2,)
 
 def has_small_rotational_drag(rod: Rod) -> bool:
     """Whether the rotational drag is somewhere so small that Omega must be an unknown."""
-    return rod.least_rotational_drag < STRESS_FORM_SETTINGS.min_eliminated_drag
+    return rod.least_rotational_drag < STRESS_FORM_SETTINGS.min_eliminated_rotational_drag
 
 
 @dataclass(frozen=True, eq=False)

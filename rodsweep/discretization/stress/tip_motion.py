@@ -39,7 +39,7 @@ class TipMatrices(NamedTuple):
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def tip_matrices(mesh: Elements) -> TipMatrices:
     """The `TipMatrices` of a mesh, cached."""
-    points = mesh.order + RECONSTRUCTION_SETTINGS.extra_points
+    points = mesh.order + RECONSTRUCTION_SETTINGS.extra_point_count
     matrices = [shape_integration_matrices(order, points) for order in mesh.orders]
     return TipMatrices(
         values_at_gauss_points=np.concatenate([m.values_at_gauss_points for m in matrices]),

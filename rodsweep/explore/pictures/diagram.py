@@ -38,7 +38,7 @@ class DiagramCell(NamedTuple):
     unstable: int
 
 
-def cell_edges(values: Array) -> Array:
+def geometric_cell_edges(values: Array) -> Array:
     """Edges, (n + 1,), of the cells around n increasing positive values, (n,): the geometric means of
     neighbouring values, and an edge beyond each end."""
     logs = np.log(values)
@@ -51,7 +51,9 @@ def cell_edges(values: Array) -> Array:
 def diagram_cells(x: Array, y: Array, counts: Array) -> list[DiagramCell]:
     """Rectangles of equal numbers of unstable modes on a grid. x: loads, (columns,). y: second parameter,
     (rows,). counts: numbers of unstable modes, (rows, columns)."""
-    return joined_cells(np.concatenate(([x[0]], (x[1:] + x[:-1]) / 2, [x[-1]])), cell_edges(y), counts)
+    return joined_cells(
+        np.concatenate(([x[0]], (x[1:] + x[:-1]) / 2, [x[-1]])), geometric_cell_edges(y), counts
+    )
 
 
 def joined_cells(edges: Array, row_edges: Array, counts: Array) -> list[DiagramCell]:

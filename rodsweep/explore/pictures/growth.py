@@ -15,7 +15,7 @@ ROD_THRESHOLD_FORMATS = ("F* = {:.7g}", "F** = {:.7g}", "stable from {:.7g}")
 """Formats of `NAMED_THRESHOLDS` in the title, for a rod (load F)."""
 ARM_THRESHOLD_FORMATS = ("oscillates from {:.5g} kPa", "flutters from {:.5g} kPa", "stable from {:.5g} kPa")
 """Formats of `NAMED_THRESHOLDS` in the title, for an arm (load: pressure)."""
-THRESHOLD_LOOKS = {
+THRESHOLD_LINE_LOOKS = {
     "onset": ("oscillates from F*", card.NEUTRAL_COLOUR),
     "hopf": ("flutters, Hopf point F**", card.UNSTABLE_COLOUR),
     "hopf_reverse": ("a mode becomes stable", card.STABLE_COLOUR),
@@ -67,9 +67,9 @@ class GrowthPicture:
         title."""
         frequencies = answer.get(SI_NAMES["crossing_frequency"], answer["crossing_frequency"])
         rows = [
-            (F * load.factor, *THRESHOLD_LOOKS[kind], frequency)
+            (F * load.factor, *THRESHOLD_LINE_LOOKS[kind], frequency)
             for F, kind, frequency in zip(answer["crossing_F"], answer["kinds"], frequencies, strict=True)
-            if kind in THRESHOLD_LOOKS
+            if kind in THRESHOLD_LINE_LOOKS
         ]
         names = ("F", "kind", "colour", "frequency")
         self.threshold_source.data = {name: [row[i] for row in rows] for i, name in enumerate(names)}

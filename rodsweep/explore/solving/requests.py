@@ -19,7 +19,7 @@ from ...arrays import Array
 from ...config.parameters_section import DEFAULT_VALUES_OF_PARAMETERS
 from ...errors import InputError
 from ...post.branch_curves import RodBranches, stability_runs
-from ..state import MATERIAL_CHOICES, PageState, rod_of
+from ..state import MATERIAL_CHOICES, PageState, dimensionless_parameters_of
 from .diagrams import Dataset, cycle_diagram_answer, diagram_answer, flag_words
 from .tip_release import TipPosition, dragged_equilibrium, motion_film_answer, released_motion_answer
 
@@ -91,7 +91,7 @@ def growth_answer(state: PageState) -> AnswerVariables:
     the crushing force (zero stretch). unit: "1/tau2" for a rod, "1/s" for an arm."""
     rod_or_arm = state.subject()
     tau2, unit = (rod_or_arm.tau2, "1/s") if isinstance(rod_or_arm, Arm) else (1.0, "1/tau2")
-    rod = rod_of(rod_or_arm)
+    rod = dimensionless_parameters_of(rod_or_arm)
     keywords: dict[str, Any] = {name: rod[name] for name in ("k1", "k2", "gamma3", "taper") if name in rod}
     keywords |= {"material": MATERIAL_CHOICES[state.law]} if MATERIAL_CHOICES[state.law] else {}
     F_max = min(state.largest_force(), MAX_CRUSHING_FRACTION * crushing_force(rod))
@@ -111,7 +111,7 @@ def cycle_answer(state: PageState) -> AnswerVariables:
 
 def load_answer(state: PageState) -> AnswerVariables:
     """The load F in k3/L^2. For a load relative to flutter the flutter threshold is solved first."""
-    return {"F": rod_of(state.subject())["F"]}
+    return {"F": dimensionless_parameters_of(state.subject())["F"]}
 
 
 def film_answer(state: PageState) -> AnswerVariables:
@@ -191,7 +191,7 @@ def drawn_branches(rod: RodBranches, end: float) -> dict[str, Any]:
         for curve in rod.curves
         for run, stable in stability_runs(curve.stable)
     ]
-    straight = rod.straight_pieces((0.0, end))
+    straight = rod.straight_rod_intervals((0.0, end))
     pieces += [(np.array([low, high]), np.zeros(2), stable) for low, high, stable in straight]
     special_points = [
         (special_point.at, special_point.tip_y_max, special_point.kind, special_point.period)

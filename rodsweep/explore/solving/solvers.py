@@ -20,7 +20,7 @@ from .requests import Reply, SolveRequest
 RequestKey = tuple[str, str]
 """(session, kind) of a request; a session is a page in a browser tab. A new request replaces an older request
 with an equal key."""
-OnReply = Callable[[Reply], None]
+ReplyCallback = Callable[[Reply], None]
 """Function that is called with the reply to a request, or with a progress message."""
 
 
@@ -66,8 +66,8 @@ class SolverProcess:
     def __init__(self, delays: CancellationDelays | None = None, niceness: int = 0):
         self.delays = delays or CancellationDelays()
         self.niceness = niceness
-        self.waiting: dict[RequestKey, tuple[SolveRequest, OnReply, OnReply]] = {}
-        self.current_request: tuple[RequestKey, OnReply, OnReply] | None = None
+        self.waiting: dict[RequestKey, tuple[SolveRequest, ReplyCallback, ReplyCallback]] = {}
+        self.current_request: tuple[RequestKey, ReplyCallback, ReplyCallback] | None = None
         self.request_number = 0
         """Number of requests sent so far. A timer compares this number with the number at which the timer
         was set, and acts only if both are equal."""
@@ -86,7 +86,11 @@ class SolverProcess:
         return None if self._process is None else self._process.pid
 
     def ask(
-        self, key: RequestKey, request: SolveRequest, on_reply: OnReply, progress: OnReply = ignore_progress
+        self,
+        key: RequestKey,
+        request: SolveRequest,
+        on_reply: ReplyCallback,
+        progress: ReplyCallback = ignore_progress,
     ) -> None:
         """Queues a request. An older request with the same key is removed from the queue, or cancelled if it
         is being solved."""
@@ -218,7 +222,11 @@ class Solvers:
             self.ask("warm up", SolveRequest(kind, PageState()), lambda reply: None)
 
     def ask(
-        self, session: str, request: SolveRequest, on_reply: OnReply, progress: OnReply = ignore_progress
+        self,
+        session: str,
+        request: SolveRequest,
+        on_reply: ReplyCallback,
+        progress: ReplyCallback = ignore_progress,
     ) -> None:
         """Queues a request of a session."""
         self.groups[PROCESS_GROUPS[request.kind]].ask((session, request.kind), request, on_reply, progress)

@@ -13,7 +13,7 @@ from ...tasks.released_motion import FRAMES_PER_RETURN, ReleasedMotion, bent_sha
 from ...tasks.rod_portrait import PortraitRequest
 from ...tasks.running.job import Job
 from ..slider_scales import length_axis
-from ..state import MATERIAL_CHOICES, PageState, rod_of
+from ..state import MATERIAL_CHOICES, PageState, dimensionless_parameters_of
 
 TipPosition = tuple[float, float]
 """Coordinates (x, y) of the tip, in units of the arm's length L."""
@@ -36,7 +36,7 @@ def released_motion_answer(state: PageState, tip: TipPosition) -> dict[str, Any]
     """
     motion = released_motion(_limit_cycle_job(state, shapes=48), tip)
     if motion is None:
-        raise InputError("the motion after the release could not be integrated")
+        raise InputError("the motion could not be integrated; release the tip at another point")
     page_values = {"tip": tip, "frames": FRAMES_PER_RETURN, "period": float(motion.cycle["period"])}
     return vars(motion) | _film_shapes(motion) | page_values
 
@@ -69,6 +69,6 @@ def _film_shapes(motion: ReleasedMotion) -> dict[str, Any]:
 
 
 def _limit_cycle_job(state: PageState, **options: int) -> Job:
-    rod = dict(rod_of(state.subject()))
+    rod = dict(dimensionless_parameters_of(state.subject()))
     request = PortraitRequest(rod=DescribedRod(parameters=rod, material=MATERIAL_CHOICES[state.law]))
     return request.job_of_task("limit_cycle", options, rod["F"])

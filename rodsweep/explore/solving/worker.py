@@ -25,7 +25,7 @@ CANCELLATION_RETRY_SECONDS = 0.05
 time, in seconds."""
 
 
-class Cancellation:
+class CancellationHandler:
     """Handler of SIGINT that raises KeyboardInterrupt only during a solve.
 
     During an import or while a progress message is sent, SIGALRM calls the handler again later: a partly
@@ -58,7 +58,9 @@ def is_importing(frame: FrameType | None) -> bool:
     return False
 
 
-def reply_to(request: SolveRequest, cancellation: Cancellation, send: Callable[[Reply], None]) -> Reply:
+def reply_to(
+    request: SolveRequest, cancellation: CancellationHandler, send: Callable[[Reply], None]
+) -> Reply:
     """Solves a request and returns the reply. An unexpected exception gives the outcome "failed", and its
     traceback is printed to standard error.
 
@@ -100,22 +102,22 @@ def reply_to(request: SolveRequest, cancellation: Cancellation, send: Callable[[
     return Reply(outcome, content, time.perf_counter() - start)
 
 
-def end_with_page(life: "Connection[Any, Any]") -> None:
-    """Waits until the other end of the pipe `life` closes, then ends this process. No data are written to
-    `life`."""
-    life.poll(None)
+def exit_when_pipe_closes(page_pipe: "Connection[Any, Any]") -> None:
+    """Waits until the other end of the pipe `page_pipe` closes, then ends this process. No data are written
+    to `page_pipe`."""
+    page_pipe.poll(None)
     os._exit(0)
 
 
 def answer_requests(
-    connection: "Connection[Reply, SolveRequest]", life: "Connection[Any, Any]", niceness: int
+    connection: "Connection[Reply, SolveRequest]", page_pipe: "Connection[Any, Any]", niceness: int
 ) -> None:
-    """Answers the requests from the pipe `connection` until the pipe closes. life: pipe that closes when the
-    page's process ends."""
+    """Answers the requests from the pipe `connection` until the pipe closes. page_pipe: pipe that closes when
+    the page's process ends."""
     os.setpgid(0, 0)  # protects from Ctrl-C, which ends the page; a separate session would undo the niceness
     os.nice(niceness)
-    Thread(target=end_with_page, args=(life,), daemon=True).start()
-    cancellation = Cancellation()
+    Thread(target=exit_when_pipe_closes, args=(page_pipe,), daemon=True).start()
+    cancellation = CancellationHandler()
     for number in (signal.SIGINT, signal.SIGALRM):
         signal.signal(number, cancellation)
 

@@ -37,12 +37,14 @@ class Profile:
         if len(self.u) < 2:
             raise ValueError(f"there must be rows at u = 0 and u = 1; the number of rows is {len(self.u)}")
         if self.u[0] != 0 or self.u[-1] != 1:
-            first, last = _digits(self.u[0]), _digits(self.u[-1])
+            first, last = _all_digits_text(self.u[0]), _all_digits_text(self.u[-1])
             raise ValueError(f"the rows go from u = {first} to {last}; they must go from 0 to 1")
         for a, b in zip(self.u[:-1], self.u[1:], strict=True):
             # Negated, so that nan is refused too.
             if not a <= b:
-                raise ValueError(f"u = {_digits(b)} follows u = {_digits(a)}; u must not decrease")
+                raise ValueError(
+                    f"u = {_all_digits_text(b)} follows u = {_all_digits_text(a)}; u must not decrease"
+                )
             # Distance 0 is a jump, which the elements follow exactly; only nearly equal rows are a problem.
             if 0 < b - a < MIN_ROW_DISTANCE * (1 - ROW_ROUNDING):
                 raise ValueError(
@@ -137,7 +139,7 @@ def _hermite_cubics(first: Array, last: Array, first_slope: Array, last_slope: A
     )
 
 
-def _digits(u: float) -> str:
+def _all_digits_text(u: float) -> str:
     """Text of u with all digits that distinguish u from other numbers; 1 for 1.0."""
     return repr(float(u)).removesuffix(".0")
 

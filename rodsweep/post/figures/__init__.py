@@ -16,7 +16,7 @@ from ...errors import EnvironmentIncomplete, InputError
 from ...results.file.view import ResultView
 from .arm.map import can_draw_arm_map, draw_arm_map
 from .branch import draw_branch
-from .criticality import draw_hopf_curves_by_criticality
+from .criticality import draw_criticality
 from .limit_cycle import draw_limit_cycle
 from .modes import draw_modes
 from .phase_diagram import draw_phase_diagram
@@ -31,7 +31,7 @@ FIGURES: dict[str, Callable[[FigureRequest], str]] = {
     "phase_diagram": draw_phase_diagram,
     "modes": draw_modes,
     "limit_cycle": draw_limit_cycle,
-    "criticality": draw_hopf_curves_by_criticality,
+    "criticality": draw_criticality,
     "branch": draw_branch,
 }
 """For each task, the function that writes the figure and returns a description of the figure."""

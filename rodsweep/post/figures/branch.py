@@ -79,12 +79,12 @@ def draw_branch(request: FigureRequest) -> str:
     upper.set_ylabel("largest $y/L$ of the tip")
     lower.set(ylabel=r"period$/\tau_2$", xlabel=style.LABELS[parameter], yscale="log")
     for axes in hopf_panel:
-        marker_handles["predicted"] = _compare_prediction(axes, curves, colours, parameter)
+        marker_handles["predicted"] = _draw_predicted_amplitudes(axes, curves, colours, parameter)
     handles = stability_entries(curves)
     common_text, rod_texts = shared_and_own_of_points(view, [rod.index + 1 for rod in drawn_rods])
     pairs = zip(BRANCH_COLOURS, rod_texts, strict=False)
     handles += [Line2D([], [], color=colour, lw=2, label=text) for colour, text in pairs if text]
-    style.legend_below(figure, [*handles, *marker_handles.values()], column_count=3)
+    style.draw_legend_below(figure, [*handles, *marker_handles.values()], column_count=3)
     figure.suptitle(style.heading_text(view, common_text))
     caption = f"{counted(len(curves), 'branch')} of cycles over {parameter}"
     return request.write(figure, caption + _omissions_clause(rods, len(rods_with_cycles), len(drawn_rods)))
@@ -168,7 +168,7 @@ def _mark_special_points(
         marker_handles.setdefault(kind_or_reason, artist)
 
 
-def _compare_prediction(
+def _draw_predicted_amplitudes(
     axes: Axes, curves: list[StoredBranch], colours: Sequence[str], parameter_name: str
 ) -> Line2D:
     """Draws the amplitudes near Hopf points and the amplitudes predicted by the normal form, divided by the

@@ -51,7 +51,7 @@ LINEAR_FRACTION = 0.1
 """Fraction of the Hopf points whose Re c lies in the linear range of a symmetric logarithmic axis."""
 
 
-def draw_hopf_curves_by_criticality(request: FigureRequest) -> str:
+def draw_criticality(request: FigureRequest) -> str:
     """Draws a map of the first Hopf points over two parameters, or the coefficients a and Re c against one
     parameter, or else predicted amplitudes against F; returns a sentence. Raises InputError for options that
     the task does not have, and if nothing can be drawn."""
@@ -88,7 +88,7 @@ def _curves_figure(view: ResultView, name: str) -> Figure:
         style.scale_axis(axes, "x", np.sort(x[is_finite]))
     upper.set_ylabel("amplitude coefficient $a/L$")
     lower.set(ylabel=r"$\mathrm{Re}\,c$ in $1/(\tau_2 L^2)$", xlabel=style.LABELS[name])
-    style.legend_below(figure, handles, column_count=3)
+    style.draw_legend_below(figure, handles, column_count=3)
     set_heading(figure, view, style.constant_parameters_text(view, name))
     return figure
 
@@ -125,7 +125,7 @@ def _maps_figure(view: ResultView, points: PointMap, is_narrow: bool) -> Figure:
     label_maps(panels, points)
     drawn = (look for i, look in enumerate(CRITICALITY_CLASSES) if (classes == i).any())
     legend_entries = [Patch(facecolor=colour, label=word) for word, colour in drawn]
-    style.legend_below(figure, legend_entries, column_count=3)
+    style.draw_legend_below(figure, legend_entries, column_count=3)
     set_heading(figure, view, style.parameter_text(points.common_parameters))
     return figure
 
@@ -171,7 +171,7 @@ def draw_predictions(view: ResultView) -> tuple[Figure, str]:
     handles.append(Line2D([], [], color="0.3", marker="o", ms=4, ls="", label="Hopf point"))
     pairs = zip(style.LINE_COLOURS, rod_texts, strict=False)
     handles += [Line2D([], [], color=colour, lw=2, label=text) for colour, text in pairs if text]
-    style.legend_below(figure, handles, column_count=3)
+    style.draw_legend_below(figure, handles, column_count=3)
     figure.suptitle(style.heading_text(view, common_text))
     caption = f"the cycles that normal forms predict within {MAX_DRAWN_DISTANCE:.0%} of every Hopf point"
     if len(drawn_rods) < rods_with_prediction.size:

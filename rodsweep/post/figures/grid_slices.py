@@ -14,9 +14,9 @@ from ...model.arm.quantities import ALL_QUANTITIES
 from ...model.parameters import NONLINEAR_PARAMETERS
 from ...model.units import quantity_in_si
 from ...results.file.view import ResultView
-from .point_lists import OTHER_DIMENSIONS
+from .point_lists import DIMENSIONS_OF_ITEMS
 
-TYPED_TOLERANCE = 1e-6
+TYPED_VALUE_TOLERANCE = 1e-6
 """A value typed by the user selects the values of the file that differ by at most this relative amount."""
 UNITS_OF_ARM = ("tau2", "force_scale", "pressure_scale")
 """Names of the units of an arm, which a file stores beside its quantities; no axes."""
@@ -68,7 +68,7 @@ def _slice_at_value(view: ResultView, name: str, value: float) -> ResultView:
     if name not in axes:
         raise InputError(f"--at {name}={value:.15g}: {view.path} {_axes_sentence(view, name, axes)}")
     values = view.variables[name]
-    is_chosen = np.isclose(values, value, rtol=TYPED_TOLERANCE, atol=0.0)
+    is_chosen = np.isclose(values, value, rtol=TYPED_VALUE_TOLERANCE, atol=0.0)
     if not is_chosen.any():
         raise InputError(
             f"--at {name}={value:.15g}: {view.path} has no point there; it has {name} = "
@@ -78,7 +78,7 @@ def _slice_at_value(view: ResultView, name: str, value: float) -> ResultView:
         axis_name = name if name in (*view.arm_axes, *view.parameters) else PARAMETER_STORED_ALONG[name]
         return _grid_at(view, axis_name, is_chosen)
     variables = {
-        key: data[is_chosen] if data.shape[:1] == is_chosen.shape and key not in OTHER_DIMENSIONS else data
+        key: data[is_chosen] if data.shape[:1] == is_chosen.shape and key not in DIMENSIONS_OF_ITEMS else data
         for key, data in view.variables.items()
     }
     return replace(view, variables=variables)
@@ -121,7 +121,7 @@ def _grid_at(view: ResultView, name: str, is_chosen: np.ndarray) -> ResultView:
     for key, data in view.variables.items():
         if key in sliced_names and np.ndim(data):
             variables[key] = data[is_chosen]
-        elif data.shape[: len(shape)] == shape and key not in (*names, *OTHER_DIMENSIONS):
+        elif data.shape[: len(shape)] == shape and key not in (*names, *DIMENSIONS_OF_ITEMS):
             variables[key] = np.compress(is_chosen, data, axis=axis)
         else:
             variables[key] = data

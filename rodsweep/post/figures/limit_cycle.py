@@ -6,7 +6,7 @@ import numpy as np
 from ...errors import InputError
 from ...results.file.view import ResultView
 from ..summary.summary_lines import varied_parameters_at_points
-from .cycle.amplitudes.amplitude import BRANCH_LOOKS, draw_amplitude
+from .cycle.amplitudes.amplitude import SERIES_LOOKS, draw_amplitude
 from .cycle.amplitudes.branches import abscissa_parameter
 from .cycle.animation import FILM_SUFFIXES, write_animation
 from .cycle.energy import draw_energy
@@ -14,9 +14,9 @@ from .cycle.maps import draw_maps
 from .cycle.point_map import point_map, varies_two_parameters_on_grid
 from .cycle.portrait import draw_portrait
 from .cycle.selection import (
-    ENERGY_BUDGET_VARIABLES,
+    ENERGY_BUDGET_VARIABLE_NAMES,
     MAX_CYCLES,
-    SHAPE_VARIABLES,
+    SHAPE_VARIABLE_NAMES,
     TRANSIENT_VARIABLE_NAMES,
     chosen_cycles,
 )
@@ -26,7 +26,11 @@ from .request import FIGURE_KINDS_BY_TASK, FigureRequest
 
 ALL_POINT_FIGURES = {"amplitude": "amplitudes", "maps": "maps"}
 """Kinds of figures that show all points of a file, with the noun for messages."""
-NEEDED_VARIABLES = {"cycle": SHAPE_VARIABLES, "animation": SHAPE_VARIABLES, "energy": ENERGY_BUDGET_VARIABLES}
+NEEDED_VARIABLES = {
+    "cycle": SHAPE_VARIABLE_NAMES,
+    "animation": SHAPE_VARIABLE_NAMES,
+    "energy": ENERGY_BUDGET_VARIABLE_NAMES,
+}
 """Variables of a cycle that are necessary for a figure, by kind of figure."""
 FEW_POINT_FIGURES = {"cycle": draw_portrait, "energy": draw_energy, "transient": draw_transients}
 """For each kind of figure that shows a few points, the function that draws the figure."""
@@ -92,7 +96,7 @@ def _default_figure_kind(request: FigureRequest) -> str:
     indices = [number - 1 for number in request.points]
     few_cycles = len(indices) > 0 or is_cycle.sum() <= MAX_CYCLES
     few_points = len(indices) > 0 or is_cycle.size <= MAX_CYCLES
-    shaped = SHAPE_VARIABLES[0] in first_view.variables
+    shaped = SHAPE_VARIABLE_NAMES[0] in first_view.variables
     drawable = (
         shaped
         and is_cycle.any()
@@ -113,4 +117,4 @@ def _has_many_lines(view: ResultView) -> bool:
     if not varies_two_parameters_on_grid(view):
         return False
     other_name = next(name for name in point_map(view).names if name != abscissa_parameter(view))
-    return len(np.unique(view.point_columns[other_name])) > len(BRANCH_LOOKS)
+    return len(np.unique(view.point_columns[other_name])) > len(SERIES_LOOKS)

@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 from ...results.file.view import ResultView
 from .arm.quantities import set_heading
 from .request import FigureRequest
-from .style import BLUE, VERMILION, legend_below, number_in_tex, parameter_text, require_content
+from .style import BLUE, VERMILION, draw_legend_below, number_in_tex, parameter_text, require_content
 
 MAX_RODS = 4
 """Largest number of points in one figure; a narrow figure shows one point."""
@@ -48,7 +48,7 @@ def draw_modes(request: FigureRequest) -> str:
         panel.set_xlabel("material coordinate $u/L$")
     texts = _point_texts(view, int(drawn_points[0])) if point_count == 1 else ()
     set_heading(figure, view, *texts)
-    legend_below(figure, _part_entries(view, drawn_points), column_count=2)
+    draw_legend_below(figure, _part_entries(view, drawn_points), column_count=2)
     omission_clause = ""
     if point_indices.size > point_count:
         first_words = f"first {point_count}" if point_count > 1 else "first"

@@ -85,7 +85,7 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), xlabel=style.LABELS[line], ylabel=style.LABELS[row])
     curves = _draw_stored_curves(axes, view, palette, line, row)
     handles = [*palette.legend_entries(pixels), *curves, *boundaries]
-    style.legend_below(figure, handles, column_count=2 if "bautin_curve" in view.variables else 3)
+    style.draw_legend_below(figure, handles, column_count=2 if "bautin_curve" in view.variables else 3)
     set_heading(figure, view, _constant_parameters_text(view, line, row), stored_crossings_text(view))
     lacks_curves = lacks_sweep_wide_variables(view.attributes)
     missing_clause = "; curves are missing, the file is not finished" if lacks_curves else ""
@@ -156,7 +156,7 @@ def _draw_rows(view: ResultView, palette: Palette, line_parameter: str, row_para
     axes.set_yticks(np.arange(len(y)), texts)
     axes.tick_params("y", length=0)
     axes.set(xlim=(x[0], x[-1]), xlabel=style.LABELS[line_parameter])
-    style.legend_below(figure, palette.legend_entries(table), column_count=3)
+    style.draw_legend_below(figure, palette.legend_entries(table), column_count=3)
     set_heading(figure, view, _constant_parameters_text(view, line_parameter, row_parameter))
     return figure
 

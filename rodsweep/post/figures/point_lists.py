@@ -13,7 +13,7 @@ from ...model.units import with_si_prefix
 from ...results.file.view import ResultView
 from ..summary.arm.arm import quantity_words
 
-OTHER_DIMENSIONS = ("mode", "u", "crossing")
+DIMENSIONS_OF_ITEMS = ("mode", "u", "crossing")
 """Names of dimensions that are not dimensions of points; their length may equal the length of the list."""
 MAX_LABELLED_POINTS = 12
 """With at most this number of points, every point has a tick label."""
@@ -37,7 +37,7 @@ def as_grid_if_possible(view: ResultView) -> ResultView:
     order = np.argsort(flat_indices)
     variables = {name: data for name, data in view.variables.items() if name != "point"}
     for name, data in variables.items():
-        if data.shape[:1] == (count,) and name not in OTHER_DIMENSIONS:
+        if data.shape[:1] == (count,) and name not in DIMENSIONS_OF_ITEMS:
             variables[name] = data[order].reshape(*sizes, *data.shape[1:])
     variables |= {name: unique for name, (unique, _) in values.items()}
     return replace(view, variables=variables)

@@ -61,7 +61,9 @@ class FigureLook:
     """Width of the figure, in inches; None for the natural width."""
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "width_in_inches", None if self.width is None else _inches(self.width))
+        object.__setattr__(
+            self, "width_in_inches", None if self.width is None else _width_in_inches(self.width)
+        )
 
     @property
     def is_narrow(self) -> bool:
@@ -78,7 +80,7 @@ class FigureLook:
         fit_layout(figure, min_aspect)
 
 
-def _inches(width: str) -> float:
+def _width_in_inches(width: str) -> float:
     """Width in inches, from a name in WIDTHS or a length with a unit. Raises InputError for another text, and
     for a width outside MIN_WIDTH to MAX_WIDTH."""
     if isinstance(width, str) and width in WIDTHS:

@@ -174,13 +174,13 @@ def _growth_map(view: ResultView, names: list[str]) -> Figure:
     axes.set(xlabel=style.LABELS[horizontal], ylabel=style.LABELS[vertical])
     colours = matplotlib.cm.ScalarMappable(norm, MAP_COLOURS)
     figure.colorbar(colours, ax=axes, label=GROWTH_LABEL)
-    _note_points(axes, x, y, growth)
+    _add_invisible_points(axes, x, y, growth)
     note = "black: zero growth, interpolated between the points"
     set_heading(figure, view, style.constant_parameters_text(view, *names), note)
     return figure
 
 
-def _note_points(axes: Axes, x: np.ndarray, y: np.ndarray, growth: np.ndarray) -> None:
+def _add_invisible_points(axes: Axes, x: np.ndarray, y: np.ndarray, growth: np.ndarray) -> None:
     """Adds an invisible scatter plot of the points of a map, from which `rodsweep report` reads the values.
     x, y: values along the axes, (nx,) and (ny,). growth: growth rates, (nx, ny)."""
     limits = axes.axis()
@@ -213,6 +213,6 @@ def draw_panels(views: Sequence[ResultView], roots: str, is_narrow: bool) -> Fig
         panel.set_title(f"({letter})  {text}", loc="left")
     for panel in panels[len(views) :]:
         panel.remove()
-    style.legend_below(figure, list(handles.values()), 2 if is_narrow else 3)
+    style.draw_legend_below(figure, list(handles.values()), 2 if is_narrow else 3)
     figure.suptitle(ROOT_CHOICE_TEXTS[roots])
     return figure

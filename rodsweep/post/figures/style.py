@@ -156,7 +156,7 @@ def require_content(view: ResultView, available: object, noun: str) -> None:
         )
 
 
-def legend_below(figure: Figure, handles: list[Any], column_count: int) -> None:
+def draw_legend_below(figure: Figure, handles: list[Any], column_count: int) -> None:
     """Draws one legend, with up to `column_count` columns, below the panels of the figure."""
     figure.legend(handles=handles, loc="outside lower center", ncols=column_count, frameon=False)
 

@@ -115,7 +115,7 @@ def _threshold_maps(view: ResultView, names: list[str], is_narrow: bool) -> tupl
         lacking |= bool(np.isnan(values).any())
     label_maps(panels, points)
     if lacking:
-        style.legend_below(figure, [Patch(facecolor=NO_THRESHOLD, label="none found")], column_count=1)
+        style.draw_legend_below(figure, [Patch(facecolor=NO_THRESHOLD, label="none found")], column_count=1)
     constants_text = style.parameter_text(points.common_parameters)
     set_heading(figure, view, constants_text, searched_range_clause(view))
     return figure, points.omissions

@@ -11,7 +11,7 @@ from ...results.layouts.si_variables import si_variables_of
 from ..summary.errors import ABSOLUTE_ERRORS, RELATIVE_ERRORS, absolute_errors
 from ..summary.number_texts import error_text, number_and_error, rounded_text
 from ..tables.column import Column
-from ..tables.table_names import POINTS
+from ..tables.table_names import POINTS_TABLE
 from ..tables.tables import Tables
 
 BOOLEAN_WORDS = ("no", "yes")
@@ -109,7 +109,7 @@ CROSSINGS_TABLE = "crossings"
 """Name of the table of crossings."""
 
 
-class OneRod:
+class SingleRodResult:
     """Numbers and lists in the result of one rod. For an arm, variables in SI units are printed where they
     exist."""
 
@@ -117,7 +117,7 @@ class OneRod:
         self.view = view
         self.tables = Tables(view)
         self.si_names = _si_variable_names(view)
-        answer_columns = [column for column in self.tables.table(POINTS).columns if not column.is_input]
+        answer_columns = [column for column in self.tables.table(POINTS_TABLE).columns if not column.is_input]
         self.list_texts: dict[str, ColumnTexts] = {
             name: ColumnTexts(self.tables.list_columns(name), self.si_names)
             for name in self.tables.contents.tables[1:]

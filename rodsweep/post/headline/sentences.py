@@ -10,7 +10,7 @@ import numpy as np
 from ...wording import counted
 from ..branch_curves import RodBranches
 from ..summary.thresholds import later_flutter_changes
-from .one_rod import OneRod
+from .one_rod import SingleRodResult
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,13 +22,13 @@ class Headline:
     columns: columns of this list. The most important numbers and columns come first.
     """
 
-    sentence: Callable[[OneRod], str]
+    sentence: Callable[[SingleRodResult], str]
     numbers: tuple[str, ...]
     table: str = ""
     columns: tuple[str, ...] = ()
 
 
-def eigenvalue_sentence(rod: OneRod) -> str:
+def eigenvalue_sentence(rod: SingleRodResult) -> str:
     """Sentence on the number of unstable modes and the leading eigenvalue; empty if no eigenvalue is
     stored."""
     unstable_count = rod.count("unstable_count")
@@ -48,7 +48,7 @@ def eigenvalue_sentence(rod: OneRod) -> str:
     )
 
 
-def threshold_sentence(rod: OneRod) -> str:
+def threshold_sentence(rod: SingleRodResult) -> str:
     """Sentence on the first force of each kind of threshold; empty if the count of crossings is unknown."""
     if rod.count("crossing_count") is None:
         return ""
@@ -63,12 +63,12 @@ def threshold_sentence(rod: OneRod) -> str:
         if column is not None:
             name = column.name.removesuffix(f"_{event}")
             clauses.append(f"{verb} {name} = {rod.text(f'F_{event}')}")
-    clauses += _later_flutter(rod)
+    clauses += _later_flutter_clauses(rod)
     none_text = "" if rod.count("crossing_count") else f"no threshold up to {_search_end_text(rod)}"
     return (", ".join(clauses) or none_text) + _early_end_clause(rod)
 
 
-def _later_flutter(rod: OneRod) -> list[str]:
+def _later_flutter_clauses(rod: SingleRodResult) -> list[str]:
     """Clauses on the starts and ends of all windows of flutter after the first."""
     verbs = {"hopf": "flutter again from", "restabilization": "stable again from"}
     crossings = rod.list_texts["crossings"]
@@ -80,7 +80,7 @@ def _later_flutter(rod: OneRod) -> list[str]:
     ]
 
 
-def hopf_sentence(rod: OneRod) -> str:
+def hopf_sentence(rod: SingleRodResult) -> str:
     """Sentence on the numbers of supercritical, subcritical and undecided Hopf points; empty if the count is
     unknown."""
     hopf_count = rod.count("crossing_count")
@@ -95,7 +95,7 @@ def hopf_sentence(rod: OneRod) -> str:
     return f"{counted(hopf_count, 'Hopf point')}: {kinds_text}{_early_end_clause(rod)}"
 
 
-def branch_sentence(rod: OneRod) -> str:
+def branch_sentence(rod: SingleRodResult) -> str:
     """Sentence on the numbers of branches and cycles, and the largest y of the tip. If no branch exists, the
     sentence states the searched range of the parameter. Empty if the number of branches is unknown."""
     branches = rod.count("branch_count")
@@ -117,7 +117,7 @@ def branch_sentence(rod: OneRod) -> str:
     return f"{text}: {counted(rod.count('point_count') or 0, 'cycle')}, largest tip y {largest_y_text}"
 
 
-def cycle_sentence(rod: OneRod) -> str:
+def cycle_sentence(rod: SingleRodResult) -> str:
     """Sentence on the period and the amplitude of the cycle; empty if the result has no period."""
     if period := rod.text("period"):
         status = str(rod.view.status_names[0])
@@ -126,13 +126,13 @@ def cycle_sentence(rod: OneRod) -> str:
     return ""
 
 
-def _search_end_text(rod: OneRod) -> str:
+def _search_end_text(rod: SingleRodResult) -> str:
     """Largest load of the search as text, such as "F = 200"; empty if unknown."""
     column = rod.column("F_end")
     return "" if column is None else f"{column.name.removesuffix('_end')} = {rod.text('F_end')}"
 
 
-def _early_end_clause(rod: OneRod) -> str:
+def _early_end_clause(rod: SingleRodResult) -> str:
     """Clause that says at which load a search ended early; empty for a complete search."""
     clause_format = "; not known beyond {}, where the search ended early"
     return clause_format.format(_search_end_text(rod)) if rod.view.has_status("ended_early").all() else ""

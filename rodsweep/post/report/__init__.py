@@ -25,7 +25,7 @@ from .pictures import Pictures, pictures_of
 from .report_contents import ReportContents, report_contents
 from .vector_picture import VectorPicture, dark_page_colour
 
-QUOTED_TEXT = re.compile("`([^`]*)`")
+QUOTED_TEXT_PATTERN = re.compile("`([^`]*)`")
 """Pattern for a text between backquotes in a sentence: a command, or a key of a config."""
 
 
@@ -75,4 +75,4 @@ def rendered_template(template: str, page_pictures: Sequence[VectorPicture], **c
 
 def _with_code(text: str) -> Markup:
     """A sentence as HTML, with texts between backquotes as code."""
-    return Markup(QUOTED_TEXT.sub(r"<code>\1</code>", str(escape(text))))
+    return Markup(QUOTED_TEXT_PATTERN.sub(r"<code>\1</code>", str(escape(text))))

@@ -4,17 +4,17 @@ import re
 import unicodedata
 from functools import cache
 
-FORMULA = re.compile(r"\$(.+?)(?<!\\)\$")
+FORMULA_PATTERN = re.compile(r"\$(.+?)(?<!\\)\$")
 """Pattern for a formula between two dollar signs."""
-DERIVATIVE = re.compile(r"\\dot\s*(?:\{([^{}]*)\}|(\w))")
+DERIVATIVE_PATTERN = re.compile(r"\\dot\s*(?:\{([^{}]*)\}|(\w))")
 """Pattern for the TeX command of a time derivative: a dot above the argument."""
-COMMAND_WITH_ARGUMENT = re.compile(r"\\(?:mathrm|text|tilde|mathit)\s*(?:\{([^{}]*)\}|(\w))")
+COMMAND_WITH_ARGUMENT_PATTERN = re.compile(r"\\(?:mathrm|text|tilde|mathit)\s*(?:\{([^{}]*)\}|(\w))")
 """Pattern for a TeX command that is replaced by its argument: a font, or a tilde above a letter."""
-SUBSCRIPT = re.compile(r"_(?:\{([^{}]*)\}|(.))")
+SUBSCRIPT_PATTERN = re.compile(r"_(?:\{([^{}]*)\}|(.))")
 """Pattern for a TeX subscript."""
-SUPERSCRIPT = re.compile(r"\^(?:\{([^{}]*)\}|(\\?\w+|.))")
+SUPERSCRIPT_PATTERN = re.compile(r"\^(?:\{([^{}]*)\}|(\\?\w+|.))")
 """Pattern for a TeX superscript."""
-TEX_COMMAND = re.compile(r"\\([A-Za-z]+|.)")
+TEX_COMMAND_PATTERN = re.compile(r"\\([A-Za-z]+|.)")
 """Pattern for a TeX command that has no pattern of its own."""
 TEX_SIGNS = {
     "times": "×",
@@ -31,21 +31,21 @@ TEX_SIGNS = {
 
 def label_text(label: str) -> str:
     """A label as plain text on one line. An escaped dollar sign becomes a dollar sign."""
-    text = FORMULA.sub(lambda match: _unicode_of_formula(match[1]), label).replace(r"\$", "$")
+    text = FORMULA_PATTERN.sub(lambda match: _unicode_of_formula(match[1]), label).replace(r"\$", "$")
     return " ".join(text.split())
 
 
 def _unicode_of_formula(tex: str) -> str:
     """A formula as text: a subscript directly after its letter, a power after "^"."""
-    tex = DERIVATIVE.sub(lambda match: rf"d{match[1] or match[2]}/dt\,", tex)
+    tex = DERIVATIVE_PATTERN.sub(lambda match: rf"d{match[1] or match[2]}/dt\,", tex)
     previous = None
     while previous != tex:  # arguments may contain commands
         previous = tex
-        tex = COMMAND_WITH_ARGUMENT.sub(lambda match: match[1] or match[2] or "", tex)
-    tex = SUBSCRIPT.sub(lambda match: match[1] or match[2], tex)
-    tex = SUPERSCRIPT.sub(lambda match: f"^{match[1] or match[2]}", tex)
+        tex = COMMAND_WITH_ARGUMENT_PATTERN.sub(lambda match: match[1] or match[2] or "", tex)
+    tex = SUBSCRIPT_PATTERN.sub(lambda match: match[1] or match[2], tex)
+    tex = SUPERSCRIPT_PATTERN.sub(lambda match: f"^{match[1] or match[2]}", tex)
     tex = tex.replace(r"^\dagger", r"\dagger")  # of an adjoint mode
-    tex = TEX_COMMAND.sub(lambda match: _unicode_of_tex_command(match[1]), tex)
+    tex = TEX_COMMAND_PATTERN.sub(lambda match: _unicode_of_tex_command(match[1]), tex)
     return tex.replace("{", "").replace("}", "")
 
 

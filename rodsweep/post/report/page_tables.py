@@ -8,7 +8,7 @@ import numpy as np
 
 from ...results.file.view import ResultView
 from ..tables.column import Column
-from ..tables.table_names import DEFAULT_TABLE, POINTS
+from ..tables.table_names import DEFAULT_TABLE, POINTS_TABLE
 from ..tables.tables import Table, Tables
 
 MAX_ROWS = 60
@@ -46,7 +46,7 @@ def page_tables(view: ResultView) -> Iterator[PageTable]:
     """Yields all nonempty tables of a result: first the default table of the task, then the table of points,
     then the other tables."""
     tables = Tables(view)
-    for name in dict.fromkeys((DEFAULT_TABLE[view.task], POINTS, *tables.contents.tables)):
+    for name in dict.fromkeys((DEFAULT_TABLE[view.task], POINTS_TABLE, *tables.contents.tables)):
         if name in tables.contents.tables and (table := tables.table(name)).rows:
             yield _table_for_page(table)
 

@@ -13,7 +13,7 @@ from .hover_points import hover_points
 
 SVG = "http://www.w3.org/2000/svg"
 XLINK = "http://www.w3.org/1999/xlink"
-HEX_COLOUR = re.compile(r"#([0-9a-f]{6})(?![0-9a-f])")
+HEX_COLOUR_PATTERN = re.compile(r"#([0-9a-f]{6})(?![0-9a-f])")
 """Pattern for a colour in SVG: "#" and six hexadecimal digits."""
 HOVER_RADIUS = "4"
 """Radius, in points, of the invisible circle around a value. The browser shows the title of the circle under
@@ -76,8 +76,8 @@ def _name_colours(root: ElementTree.Element) -> frozenset[str]:
     for element in root.iter():
         for attribute in ("style", "fill", "stroke"):
             if text := element.get(attribute):
-                colours |= set(HEX_COLOUR.findall(text))
-                element.set(attribute, HEX_COLOUR.sub(r"var(--c\1, \g<0>)", text))
+                colours |= set(HEX_COLOUR_PATTERN.findall(text))
+                element.set(attribute, HEX_COLOUR_PATTERN.sub(r"var(--c\1, \g<0>)", text))
     return frozenset(colours)
 
 

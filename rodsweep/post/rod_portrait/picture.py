@@ -16,7 +16,7 @@ from ...results.file.view import ResultView
 from ...results.layouts.limit_cycle import CYCLE_STATUSES
 from ..figures import style
 from ..figures.branch import BRANCH_COLOURS, draw_branch_curves, draw_straight_rod, stability_entries
-from ..figures.cycle.portrait import ARROW_LENGTH, UNUSED_COLOUR_FRACTION, draw_clamp, force_arrow
+from ..figures.cycle.portrait import ARROW_LENGTH, UNUSED_COLOUR_FRACTION, draw_clamp, draw_force_arrow
 from ..figures.stability.class_bars import draw_class_bar, mark_thresholds_on_bars
 from ..figures.stability.class_colours import class_legend_entries
 from .paragraph import paragraph
@@ -66,7 +66,7 @@ def portrait_figure(results: RodResults, with_words: bool = True) -> Figure:
         lower = figure.add_subplot(grid[2, :], sharex=bar_panel)
         handles = _draw_thresholds(bar_panel, results)
         handles += _draw_branches(upper, lower, results)
-        _show_units((bar_panel, upper, lower), results)
+        _convert_to_portrait_units((bar_panel, upper, lower), results)
         if not lower.axison:  # the bar has the only axis of the force
             bar_panel.tick_params(labelbottom=True)
             bar_panel.set_xlabel(results.units.labels[0])
@@ -74,7 +74,7 @@ def portrait_figure(results: RodResults, with_words: bool = True) -> Figure:
             _draw_mode(figure.add_subplot(grid[3, column]), results, kind)
         panels = [figure.add_subplot(grid[3, len(modes) + cycle_index]) for cycle_index in range(CYCLE_COUNT)]
         _draw_cycles(panels, results)
-        style.legend_below(figure, handles, column_count=4)
+        style.draw_legend_below(figure, handles, column_count=4)
         if with_words:
             paragraph_text = textwrap.fill(paragraph(results), PARAGRAPH_WIDTH)
             figure.suptitle(style.escape_dollar_signs(paragraph_text), x=0.01, ha="left", fontsize=8)
@@ -86,7 +86,7 @@ def _has_branches(results: RodResults) -> bool:
     return results.branches is not None and bool(results.branches.curves)
 
 
-def _show_units(panels: Sequence[Axes], results: RodResults) -> None:
+def _convert_to_portrait_units(panels: Sequence[Axes], results: RodResults) -> None:
     """Converts the panels of the thresholds, the largest y and the period to the units of the portrait."""
     units = results.units
     end = panels[0].get_xlim()[1]
@@ -200,7 +200,7 @@ def _draw_cycles(panels: Sequence[Axes], results: RodResults) -> None:
             stored["shape_x"], stored["shape_y"], stored["shape_theta"], shades, strict=True
         ):
             axes.plot(length * x, length * y, color=shade, lw=1.3)
-            force_arrow(axes, length * x, length * y, theta, shade, length)
+            draw_force_arrow(axes, length * x, length * y, theta, shade, length)
         period = units.time.text(float(stored["period"]), float(stored["period"] * stored["period_error"]))
         axes.set_title(f"{force}\n$T$ = {period}".replace("tau2", r"$\tau_2$"))
         ends = length * np.array([-0.1, 1 + ARROW_LENGTH])

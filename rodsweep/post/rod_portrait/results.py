@@ -31,7 +31,9 @@ class DescribedRod:
     @property
     def description(self) -> str:
         """Description of the rod as text: quantities of an arm, parameters other than F, and material."""
-        quantity_texts = [f"{name.replace('_', ' ')} {_quantity(value)}" for name, value in self.arm.items()]
+        quantity_texts = [
+            f"{name.replace('_', ' ')} {_quantity_text(value)}" for name, value in self.arm.items()
+        ]
         quantity_texts += [f"{name} = {value:g}" for name, value in self.parameters.items() if name != "F"]
         quantity_texts += [
             f"{key} {self.material[key]}" for key in ("law", "section") if key in self.material
@@ -69,7 +71,7 @@ class RodResults:
         return RodBranches(self.views["branch"]) if "branch" in self.views else None
 
 
-def _quantity(value: Any) -> str:
+def _quantity_text(value: Any) -> str:
     """A quantity of an arm as text: as the user wrote it, or the values of all segments from base to tip."""
     if isinstance(value, str) or not isinstance(value, Sequence):
         return str(value)

@@ -13,7 +13,7 @@ from .arm.arm import crossings_of_arm
 from .errors import absolute_errors
 from .number_texts import number_and_error, rounded_text, span_text
 from .summary_lines import MAX_LISTED_ITEMS, SummaryLines, TextTable, in_brackets, proof_clause, region_text
-from .thresholds import ENDED_EARLY, unknown_beyond_clause, unknown_clause, unstored_clause
+from .thresholds import ENDED_EARLY, unknown_beyond_clause, unknown_clause, unstored_crossings_clause
 
 CRITICALITY_WORDS = {-1: "supercritical", 1: "subcritical", 0: "undecided"}
 """Word for the criticality of a Hopf point, by sign of Re c (c: cubic coefficient of the normal form)."""
@@ -64,7 +64,7 @@ def criticality_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
     )
     lines += _subcritical_lines(view)
     symbols = {"landau": "c", "growth_slope": "dw/dF", "amplitude_coefficient": "a", "frequency_slope": "b"}
-    worst = [f"{symbol} {_maximum(v[f'{name}_error'][computed])}" for name, symbol in symbols.items()]
+    worst = [f"{symbol} {_maximum_text(v[f'{name}_error'][computed])}" for name, symbol in symbols.items()]
     reliability = [_searched_range_line(view, computed), f"worst relative errors: {', '.join(worst)}"]
     scope = "stored" if (v["crossing_count"][computed] > is_known.sum(axis=-1)).any() else "all"
     coefficients_text = f"a = {span_text(*values)} L, b = {span_text(*errors)} L^2/(k3 tau2)"
@@ -171,11 +171,11 @@ def _searched_range_line(view: ResultView, computed: np.ndarray) -> str:
     search_clause = f"searched up to F = {span_text(ends)}; " if np.isfinite(ends).any() else ""
     return (
         f"{search_clause}the list of Hopf points {proof_clause(view)} for "
-        f"{count_of_total(certified, rods, 'rod')}{unstored_clause(unlisted)}"
+        f"{count_of_total(certified, rods, 'rod')}{unstored_crossings_clause(unlisted)}"
     )
 
 
-def _maximum(values: np.ndarray) -> str:
+def _maximum_text(values: np.ndarray) -> str:
     """Largest of the values that are not NaN, as text; "not known" if all values are NaN."""
     known_values = values[~np.isnan(values)]
     return f"{known_values.max():.1e}" if known_values.size else "not known"

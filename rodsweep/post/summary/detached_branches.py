@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...results.file.view import ResultView
-from ...results.layouts.detached_branches import CURVES_LOST_BEYOND, DETACHED_ROW
+from ...results.layouts.detached_branches import CURVES_LOST_BEYOND, DETACHED_ROW_NAME
 from ...wording import count_of_total
 from .number_texts import axis_values_text
 
@@ -19,9 +19,9 @@ the row, divided by the length of the row."""
 def detached_branch_lines(view: ResultView, row_parameter: str) -> list[str]:
     """Lines about the rows with cycles on detached branches, and about curves lost beyond the range."""
     lost = lost_beyond_lines(view)
-    if DETACHED_ROW not in view.variables:
+    if DETACHED_ROW_NAME not in view.variables:
         return lost
-    row_indices = view.variables[DETACHED_ROW] - 1
+    row_indices = view.variables[DETACHED_ROW_NAME] - 1
     rows_text = count_of_total(len(row_indices), view.variables["status"].size, "row")
     values_text = axis_values_text(view.point_columns[row_parameter][row_indices])
     return [

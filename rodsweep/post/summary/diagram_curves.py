@@ -48,7 +48,7 @@ def curve_lines(view: ResultView, line_parameter: str, row_parameter: str) -> li
     """Lines about folds, generalised Hopf points and their curves, and curves of folds and torus points of
     cycles."""
     variables = view.variables
-    lines = fold_lines(view, line_parameter, row_parameter)
+    lines = curve_fold_lines(view, line_parameter, row_parameter)
     if "curve_criticality" in variables:
         lines += bautin_lines(view, line_parameter, row_parameter)
     if "bautin_along_curve" in variables:
@@ -145,7 +145,7 @@ def _on_no_curve_clause(point_count: int, noun: str) -> str:
     return f"{counted(point_count, noun)} {is_or_are(point_count)} on no curve" if point_count else none_text
 
 
-def fold_lines(view: ResultView, line_parameter: str, row_parameter: str) -> list[str]:
+def curve_fold_lines(view: ResultView, line_parameter: str, row_parameter: str) -> list[str]:
     """Lines about folds of curves, and about the fold in the partial beam limit of the paper's Sec. VIII."""
     variables = view.variables
     lines = []

@@ -49,9 +49,13 @@ def limit_cycle_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
     beats = computed & view.has_status("cycle")
     orbit = computed & view.has_status(*CYCLE_STATUSES)
     stability, arm_sentences = _threshold_lines(view)
-    answer = [outcome_line(view, computed, region_text), *stability, *_second_state_lines(view, computed)]
+    answer = [
+        outcome_count_line(view, computed, region_text),
+        *stability,
+        *_second_state_lines(view, computed),
+    ]
     if view.quantities and computed.size > 1 and not beats[computed].all():
-        arm_sentences.insert(0, outcome_line(view, computed, region_of_arms))
+        arm_sentences.insert(0, outcome_count_line(view, computed, region_of_arms))
     reliability = _proof_lines(view)
     rate, frequency = (
         known_range_text(variables, f"linear_{name}", computed) for name in ("growth_rate", "frequency")
@@ -68,7 +72,7 @@ def limit_cycle_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
             f"unstable cycles inside the tori have a largest |Floquet multiplier| of {modulus}"
         )
     if computed.size == 1 and orbit.any():
-        answer.insert(1, orbit_line(variables, stable=bool(beats.any())))
+        answer.insert(1, cycle_stability_line(variables, stable=bool(beats.any())))
         numbers = orbit_table(variables)
     elif beats.any():
         period_text, y_text = (known_range_text(variables, name, beats) for name in ("period", "tip_y_max"))
@@ -78,7 +82,7 @@ def limit_cycle_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
     return SummaryLines(answer, reliability, details, arm_sentences, numbers)
 
 
-def outcome_line(
+def outcome_count_line(
     view: ResultView, computed: np.ndarray, region: Callable[[ResultView, np.ndarray], str]
 ) -> str:
     """Line on the number of points with each outcome, and on the region of parameters of these points.
@@ -131,7 +135,7 @@ def _proof_lines(view: ResultView) -> list[str]:
     return [f"the list of Hopf points between neighbouring points {proof_clause(view)} for {proved_text}"]
 
 
-def orbit_line(variables: Mapping[str, np.ndarray], stable: bool) -> str:
+def cycle_stability_line(variables: Mapping[str, np.ndarray], stable: bool) -> str:
     """Line that says whether the only cycle in a file is stable, or that no Floquet multiplier is computed.
     variables: variables of the file, (1, ...) each. stable: whether the status is "cycle"."""
     if np.isnan(variables["multiplier"]).all():

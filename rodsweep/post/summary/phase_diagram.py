@@ -19,7 +19,7 @@ from .diagram_curves import (
 )
 from .followed_ranges import followed_range_text
 from .number_texts import axis_values_text, span_text
-from .stable_states import state_lines
+from .stable_states import stable_state_lines
 from .summary_lines import SummaryLines
 from .thresholds import cost_lines, search_lines
 
@@ -47,13 +47,13 @@ def phase_diagram_summary(view: ResultView, computed: np.ndarray) -> SummaryLine
         *lines_about_rows(view, computed, line_parameter, row_parameter),
     ]
     if "stable_states" in variables:
-        answer += state_lines(view, computed, line_parameter, row_parameter)
+        answer += stable_state_lines(view, computed, line_parameter, row_parameter)
     reliability = search_lines(view, computed, "row")
     if "stable_states" in variables:
         followed_text = followed_range_text(view, computed, line_parameter, "cycle_followed_")
         reliability.append(f"{followed_text}, unless a curve of folds or torus points crosses the row there")
     details = [
-        *count_lines(variables["class"][computed]),
+        *class_count_lines(variables["class"][computed]),
         *cost_lines(view, computed),
         *cost_saving_lines(view, computed, line_parameter),
     ]
@@ -68,7 +68,7 @@ def phase_diagram_summary(view: ResultView, computed: np.ndarray) -> SummaryLine
     return SummaryLines(answer, reliability, details, crossings_of_arms(view, computed))
 
 
-def count_lines(classes: np.ndarray) -> list[str]:
+def class_count_lines(classes: np.ndarray) -> list[str]:
     """List with a line on the number of grid points in each class. classes: class of each point, of any
     shape."""
     counts = ((int((classes == value).sum()), word) for value, word in STABILITY_CLASSES)

@@ -30,12 +30,18 @@ def spectrum_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
         numbers = eigenvalue_table(view)
         return SummaryLines([unstable_count_line(view)], [], unknowns_lines(view, computed), numbers=numbers)
     lines, location_note, arm_sentences = threshold_lines(view)
-    reliability = [*error_lines(view, computed), stability_line(view, computed), *location_note]
-    details = [*leading_lines(view, computed), *unknowns_lines(view, computed)]
-    return SummaryLines([stable_line(view, computed), *lines], reliability, details, arm_sentences)
+    reliability = [
+        *eigenvalue_error_lines(view, computed),
+        unstable_mode_count_line(view, computed),
+        *location_note,
+    ]
+    details = [*leading_eigenvalue_lines(view, computed), *unknowns_lines(view, computed)]
+    return SummaryLines(
+        [stable_point_count_line(view, computed), *lines], reliability, details, arm_sentences
+    )
 
 
-def stable_line(view: ResultView, computed: np.ndarray) -> str:
+def stable_point_count_line(view: ResultView, computed: np.ndarray) -> str:
     """Line on the numbers of points at which the straight rod is stable, unstable, or of unknown stability.
     computed: mask of the computed points, of the shape of the points."""
     unstable = view.variables["unstable_count"]
@@ -49,7 +55,7 @@ def stable_line(view: ResultView, computed: np.ndarray) -> str:
     return f"straight rod, of {points_text}: {', '.join(counts)}"
 
 
-def leading_lines(view: ResultView, computed: np.ndarray) -> list[str]:
+def leading_eigenvalue_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     """List with a line on the leading eigenvalues; empty if none is known. computed: mask of the computed
     points, of the shape of the points."""
     variables = view.variables
@@ -92,7 +98,7 @@ def unstable_count_line(view: ResultView) -> str:
     return f"unstable modes: {unstable}, {proof}" if unstable >= 0 else "unstable modes: not known"
 
 
-def error_lines(view: ResultView, computed: np.ndarray) -> list[str]:
+def eigenvalue_error_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     """List with a line on the errors of the eigenvalues; empty if no error is known. computed: mask of the
     computed points, of the shape of the points."""
     variables = view.variables
@@ -117,7 +123,7 @@ def unknowns_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     return [text]
 
 
-def stability_line(view: ResultView, computed: np.ndarray) -> str:
+def unstable_mode_count_line(view: ResultView, computed: np.ndarray) -> str:
     """Line with three numbers: the largest number of unstable modes at a point; the number of points at which
     the number of unstable modes is proved or, for rods that vary along their length, confirmed by an
     estimate; the number of points at which it is unknown. computed: mask of the computed points, of the shape

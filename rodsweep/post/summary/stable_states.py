@@ -29,7 +29,9 @@ NO_CYCLE_CHANGE = tuple(map(SPECIAL_KINDS.index, ("none", "hopf")))
 """Stored numbers of special points that are no change of cycles beside the changes of the straight rod."""
 
 
-def state_lines(view: ResultView, computed: np.ndarray, line_parameter: str, row_parameter: str) -> list[str]:
+def stable_state_lines(
+    view: ResultView, computed: np.ndarray, line_parameter: str, row_parameter: str
+) -> list[str]:
     """Lines about the fraction of the grid with each stable state, the ranges of some states, and the special
     points of cycles. computed: mask of the computed rows, (...,)."""
     variables = view.variables

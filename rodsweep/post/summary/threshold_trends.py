@@ -38,7 +38,7 @@ def _trend(forces: np.ndarray) -> Trend:
     return Trend.rises if has_rise else Trend.falls if has_fall else Trend.constant
 
 
-def monotony_lines(view: ResultView) -> list[str]:
+def monotonicity_lines(view: ResultView) -> list[str]:
     """Lines on whether the first thresholds rise or fall with each parameter that has more than two values
     (for gamma3: with 1/gamma3); empty for a list of points."""
     lines = []

@@ -14,7 +14,7 @@ from .arm.arm import crossings_of_arm
 from .number_texts import error_text, number_and_error, rounded_text, span_text
 from .stability import FORCE_THRESHOLD_WORDS
 from .summary_lines import SummaryLines, TextTable, in_brackets, point_text, proof_clause
-from .threshold_trends import monotony_lines
+from .threshold_trends import monotonicity_lines
 
 FIRST_THRESHOLD_RATES = {
     "hopf": ("hopf_frequency", "frequency", ANGULAR_UNIT),
@@ -59,7 +59,7 @@ def thresholds_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
     ends = view.variables["F_end"][computed]
     if np.isfinite(ends).any():
         reliability.append(f"searched up to F = {span_text(ends)}")
-    return SummaryLines(answer, reliability, [*monotony_lines(view), *cost_lines(view, computed)])
+    return SummaryLines(answer, reliability, [*monotonicity_lines(view), *cost_lines(view, computed)])
 
 
 def first_threshold_line(view: ResultView, computed: np.ndarray, event: str) -> str:
@@ -149,7 +149,9 @@ def completeness_lines(view: ResultView) -> list[str]:
     )
     proof_text = proof_text if variables["certified"] else f"not {proof_text}"
     search_text = f"searched up to F = {variables['F_end']:.15g}; " if np.isfinite(variables["F_end"]) else ""
-    lines = [f"{search_text}the list of crossings is {proof_text}{unstored_clause(max(unlisted, 0))}"]
+    lines = [
+        f"{search_text}the list of crossings is {proof_text}{unstored_crossings_clause(max(unlisted, 0))}"
+    ]
     if np.isfinite(variables["open_from"]):
         lines.append(
             f"undecided from F = {variables['open_from']:.9g} to {variables['open_to']:.9g}: this range may "
@@ -163,7 +165,7 @@ def unknown_clause(rod_count: int) -> str:
     return f", not known at {counted(rod_count, 'rod')}" if rod_count else ""
 
 
-def unstored_clause(crossing_count: int) -> str:
+def unstored_crossings_clause(crossing_count: int) -> str:
     """Clause on the number `crossing_count` of crossings that are not stored because the list was full; empty
     for 0."""
     verb_form = "is" if crossing_count == 1 else "are"
@@ -196,7 +198,7 @@ def search_lines(view: ResultView, computed: np.ndarray, noun: str) -> list[str]
     if stored_counts.any() or unlisted:
         lines.append(
             f"crossings stored: {int(stored_counts.sum())}, at most {int(stored_counts.max())} on a "
-            f"{noun}{error_bound_clause}{unstored_clause(unlisted)}"
+            f"{noun}{error_bound_clause}{unstored_crossings_clause(unlisted)}"
         )
     return lines
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ...results.layouts.variables import NOT_KNOWN_SUFFIX, SECONDS, Variable
+from ...results.layouts.variables import NOT_KNOWN_SUFFIX, SECONDS_VARIABLE, Variable
 
 UNUSED_WORDS = ("none", "missing")
 """Words of a flag variable that mark unused items of a list."""
@@ -53,7 +53,7 @@ class Column:
     @property
     def is_estimate(self) -> bool:
         """Whether the values are estimates: errors, or computing times."""
-        return "error" in self.name or self.name == SECONDS.name
+        return "error" in self.name or self.name == SECONDS_VARIABLE.name
 
     def rows(self, indices: NDArray[np.int64] | slice) -> "Column":
         """Column with the rows `indices`: indices, in the order of the new column, or a slice. The index -1

@@ -12,7 +12,7 @@ from ...model.arm.drag import DRAG_NAMES
 from ...model.arm.quantities import ALL_QUANTITIES
 from ...results.file.view import ResultView
 from ...results.layouts.si_variables import si_name_of, si_unit_of, si_variable
-from ...results.layouts.variables import DIMENSIONS, MISSING_STATUS, STATUS, Variable
+from ...results.layouts.variables import DIMENSIONS, MISSING_STATUS, STATUS_VARIABLE, Variable
 from .column import Column, column_of, coordinate_column, marks_missing_items, missing_values_mask
 
 Rows = tuple[NDArray[np.int64], ...]
@@ -20,7 +20,7 @@ Rows = tuple[NDArray[np.int64], ...]
 list."""
 
 
-def item_rows(view: ResultView, variables: Sequence[Variable], is_sweep_wide: bool) -> Rows:
+def indices_of_items(view: ResultView, variables: Sequence[Variable], is_sweep_wide: bool) -> Rows:
     """Indices of all items of a list that are not missing. is_sweep_wide: whether the list belongs to the
     whole file, not to single points."""
     point_count = 1 if is_sweep_wide else view.variables["status"].size
@@ -41,12 +41,12 @@ def point_columns(
     index of the point of each row, (rows,)."""
     for name, values in view.point_columns.items():
         yield coordinate_column(name, *DIMENSIONS[name], values[points])
-    for name, values in quantities_at_points(view).items():
+    for name, values in quantities_of_view(view).items():
         yield quantity_column(name, values[points])
-    is_missing = view.variables[STATUS.name].reshape(-1)[points] == MISSING_STATUS
+    is_missing = view.variables[STATUS_VARIABLE.name].reshape(-1)[points] == MISSING_STATUS
     for variable in variables:
         values = view.variables[variable.name].reshape(-1)[points]
-        if variable.name == STATUS.name:
+        if variable.name == STATUS_VARIABLE.name:
             yield replace(column_of(variable, values, view.flags), absent=np.zeros(len(points), bool))
         else:
             column = column_of(variable, values)
@@ -89,7 +89,7 @@ def si_columns(
     """
     if not view.quantities:
         return
-    quantities = quantities_at_points(view)
+    quantities = quantities_of_view(view)
     if points is not None:
         quantities = {name: values[points] for name, values in quantities.items()}
     else:
@@ -133,7 +133,7 @@ def _axis_indices(view: ResultView, parameter_name: str) -> NDArray[np.int64]:
     return np.searchsorted(view.parameter_values[parameter_name], view.point_columns[parameter_name])
 
 
-def quantities_at_points(view: ResultView) -> dict[str, NDArray]:
+def quantities_of_view(view: ResultView) -> dict[str, NDArray]:
     """Quantities of an arm at all points, (points,) each, by name, except quantities that vary along a row of
     a diagram."""
     point_count = view.variables["status"].size

@@ -15,11 +15,11 @@ from ...results.layouts.variables import Variable
 
 LIST_INTRO = "there are"
 """Phrase before the list of known names in an error message."""
-POINTS = "points"
+POINTS_TABLE = "points"
 """Name of the table with one row for each point of the file."""
-GRID = "grid"
+GRID_TABLE = "grid"
 """Name of the table of grid points of a phase diagram."""
-BRANCHES = "branches"
+BRANCHES_TABLE = "branches"
 """Name of the table of cycles and special points in their order on the branches."""
 BRANCHES_TABLE_PARTS = {"cycles", "special_points"}
 """Names of the two tables that the table `branches` merges."""
@@ -49,11 +49,11 @@ TABLE_NAMES = {
 DEFAULT_TABLE = {
     "spectrum": "modes",
     "modes": "modes",
-    "thresholds": POINTS,
+    "thresholds": POINTS_TABLE,
     "criticality": "crossings",
-    "phase_diagram": GRID,
-    "limit_cycle": POINTS,
-    "branch": BRANCHES,
+    "phase_diagram": GRID_TABLE,
+    "limit_cycle": POINTS_TABLE,
+    "branch": BRANCHES_TABLE,
 }
 """Name of the default table, by task."""
 
@@ -73,8 +73,8 @@ class TableContents:
     @property
     def tables(self) -> tuple[str, ...]:
         """Names of all tables of the result."""
-        branches = (BRANCHES,) if self.lists.keys() >= BRANCHES_TABLE_PARTS else ()
-        return (POINTS, *branches, *self.lists)
+        branches = (BRANCHES_TABLE,) if self.lists.keys() >= BRANCHES_TABLE_PARTS else ()
+        return (POINTS_TABLE, *branches, *self.lists)
 
     def dimensions(self, table: str) -> tuple[str, ...]:
         """Dimensions of the list `table`, without the dimensions of the points; empty for other tables."""
@@ -109,15 +109,15 @@ def table_contents_of(view: ResultView) -> TableContents:
 
 def table_name_of(dimensions: tuple[str, ...]) -> str:
     """Name of the table with the given dimensions, without the dimensions of the points."""
-    return GRID if dimensions[0] in PARAMETERS else TABLE_NAMES[dimensions]
+    return GRID_TABLE if dimensions[0] in PARAMETERS else TABLE_NAMES[dimensions]
 
 
 def chosen_table(
     view: ResultView, contents: TableContents, table: str | None, columns: tuple[str, ...]
 ) -> str:
     """Name of the table that the user requests: `table` if given, else the list that has the columns
-    `columns`, else POINTS if only columns of points are named, else the default table of the task. Raises
-    InputError for an unknown name, and for columns of two tables."""
+    `columns`, else POINTS_TABLE if only columns of points are named, else the default table of the task.
+    Raises InputError for an unknown name, and for columns of two tables."""
     if table is not None:
         if table not in contents.tables:
             raise InputError(
@@ -128,7 +128,7 @@ def chosen_table(
     holding |= {name: list_name for list_name in contents.lists for name in contents.dimensions(list_name)}
     lists = list(dict.fromkeys(holding[name] for name in columns if name in holding))
     if set(lists) == BRANCHES_TABLE_PARTS:
-        return BRANCHES
+        return BRANCHES_TABLE
     if len(lists) > 1:
         columns_of_two_lists = [
             next(name for name in columns if holding.get(name) == list_name) for list_name in lists[:2]
@@ -146,7 +146,7 @@ def chosen_table(
     refuse_unknown_columns(view.path, columns, all_names, "")
     if lists:
         return lists[0]
-    return POINTS if columns else DEFAULT_TABLE[view.task]
+    return POINTS_TABLE if columns else DEFAULT_TABLE[view.task]
 
 
 def refuse_unknown_columns(

@@ -13,7 +13,7 @@ from ...results.file.view import ResultView
 from ..branch_curves import followed_parameter
 from . import table_names
 from .column import Column
-from .rows_and_columns import Rows, item_rows, line_columns, list_columns, point_columns, si_columns
+from .rows_and_columns import Rows, indices_of_items, line_columns, list_columns, point_columns, si_columns
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +59,7 @@ class Tables:
         points, listed = self._rows(name)
         variables = self.contents.point_variables
         columns_beside = [] if points is None else list(point_columns(self.view, variables, points))
-        if name == table_names.GRID:
+        if name == table_names.GRID_TABLE:
             # Move the first column, a parameter, to its place among the other parameters.
             earlier = list(PARAMETERS)[: list(PARAMETERS).index(listed[0].name)]
             columns_beside.insert(sum(column.name in earlier for column in columns_beside), listed.pop(0))
@@ -70,7 +70,7 @@ class Tables:
             columns = [
                 column_name
                 for column_name in by_name
-                if name == table_names.POINTS or column_name not in hidden
+                if name == table_names.POINTS_TABLE or column_name not in hidden
             ]
         empty = 0 if points is None else self.view.variables["status"].size - len(np.unique(points))
         other_names = tuple(choice for choice in self.contents.tables if choice != name)
@@ -83,9 +83,9 @@ class Tables:
     def _rows(self, name: str) -> tuple[NDArray[np.int64] | None, list[Column]]:
         """Returns (point_indices, columns) for the table `name`. point_indices: index of the point of each
         row, (rows,); None if the rows belong to no point. columns: columns of the items."""
-        if name == table_names.POINTS:
+        if name == table_names.POINTS_TABLE:
             return np.arange(self.view.variables["status"].size), []
-        if name == table_names.BRANCHES:
+        if name == table_names.BRANCHES_TABLE:
             return self._branches()
         rows, columns = self._list(name)
         return None if name in self.contents.sweep_wide_lists else rows[0], columns
@@ -95,9 +95,9 @@ class Tables:
         columns in SI units."""
         is_sweep_wide = name in self.contents.sweep_wide_lists
         variables = self.contents.lists[name]
-        rows = item_rows(self.view, variables, is_sweep_wide)
+        rows = indices_of_items(self.view, variables, is_sweep_wide)
         columns = list(list_columns(self.view, variables, rows, is_sweep_wide))
-        columns += line_columns(self.view, rows) if name == table_names.GRID else ()
+        columns += line_columns(self.view, rows) if name == table_names.GRID_TABLE else ()
         points = None if is_sweep_wide else rows[0]
         return rows, [*columns, *si_columns(self.view, variables, columns, points)]
 

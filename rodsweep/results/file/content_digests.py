@@ -97,7 +97,10 @@ def refuse_changed(file: h5py.File) -> None:
                     "--fresh"
                 )
             if current_digests[name] != digest:
-                raise ValueError(f"its {noun} {name} was changed after rodsweep wrote it")
+                raise ValueError(
+                    f"its {noun} {name} was changed after rodsweep wrote it; restore a copy of the file, or "
+                    "compute it again with --fresh"
+                )
         for name in current_digests.keys() - sealed_digests.keys():
             raise ValueError(
                 f"its {noun} {printable_name(name, 40)} was not written by rodsweep; names of your own "

@@ -87,12 +87,15 @@ def create_file(path: Path, plan: FilePlan) -> None:
     with h5py.File(path, "w") as file:
         _write_parameters(file, plan)
         for name, length in plan.layout.extents.items():
-            _write_scale(file, name, plan.coordinates.get(name, np.arange(1, length + 1)))
+            _write_dimension_scale(file, name, plan.coordinates.get(name, np.arange(1, length + 1)))
         for variable in plan.layout.variables:
             dataset = _new_dataset(file, variable, plan.points.shape + plan.layout.point_shape(variable))
             _write_attributes(file, dataset, variable, (*plan.dimensions, *variable.extra))
         add_variables(file, constants)
-        add_variables(file, [quantity for quantity in plan.quantity_variables if not is_axis(quantity[0])])
+        add_variables(
+            file,
+            [quantity for quantity in plan.quantity_variables if not is_dimension_coordinate(quantity[0])],
+        )
         file["status"].attrs.update(flag_attributes(((MISSING_STATUS, "missing"), *plan.flags)))
         file.attrs["program"] = PROGRAM
         file.attrs["format"] = FORMAT
@@ -107,7 +110,7 @@ def add_variables(file: h5py.File, variables: Sequence[FilledVariable]) -> None:
     for variable, values in variables:
         for name, length in zip(variable.extra, values.shape, strict=True):
             if name not in file:
-                _write_scale(file, name, np.arange(1, length + 1))
+                _write_dimension_scale(file, name, np.arange(1, length + 1))
         dataset = file.create_dataset(variable.name, data=values.astype(variable.dtype))
         _write_attributes(file, dataset, variable, variable.extra)
 
@@ -117,30 +120,34 @@ def _write_parameters(file: h5py.File, plan: FilePlan) -> None:
     names = plan.layout.parameters
     points = plan.points
     for variable, values in plan.quantity_variables:
-        if is_axis(variable):
-            _write_scale(file, variable.name, values, variable)
-    dependent_names = [variable.name for variable, _ in plan.quantity_variables if not is_axis(variable)]
+        if is_dimension_coordinate(variable):
+            _write_dimension_scale(file, variable.name, values, variable)
+    dependent_names = [
+        variable.name for variable, _ in plan.quantity_variables if not is_dimension_coordinate(variable)
+    ]
     if dependent_names or not points.axes:
         file.attrs["coordinates"] = " ".join([*(() if points.axes else names), *dependent_names])
     if points.arm_axes:
         return
     if not points.is_grid:
-        _write_scale(file, "point", np.arange(1, points.count + 1, dtype="<i4"))
+        _write_dimension_scale(file, "point", np.arange(1, points.count + 1, dtype="<i4"))
     for name, column in zip(names, points.columns, strict=True):
         if points.is_grid:
-            _write_scale(file, name, column)
+            _write_dimension_scale(file, name, column)
         else:
             dataset = file.create_dataset(name, data=column)
             dataset.attrs.update(dimension_attributes(name))
             dataset.dims[0].attach_scale(file["point"])
 
 
-def is_axis(variable: Variable) -> bool:
+def is_dimension_coordinate(variable: Variable) -> bool:
     """Whether a variable is the coordinate of a dimension with the same name."""
     return variable.extra == (variable.name,)
 
 
-def _write_scale(file: h5py.File, name: str, values: NDArray[Any], variable: Variable | None = None) -> None:
+def _write_dimension_scale(
+    file: h5py.File, name: str, values: NDArray[Any], variable: Variable | None = None
+) -> None:
     """Writes the coordinate `values`, (n,), of the dimension `name`. variable: description of a dimension
     that is not in DIMENSIONS."""
     dataset = file.create_dataset(name, data=values)

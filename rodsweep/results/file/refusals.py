@@ -61,5 +61,5 @@ def require_same_config(header: ResultHeader, plan: FilePlan, journals: Path) ->
 def _remedies_clause(plan: FilePlan, journals: Path) -> str:
     """Clause that tells the user what to do with a file that is in the way of the result file."""
     if journals_with_fingerprint(journals, plan.fingerprint):
-        return f"move it away, and the same command will use the points in {journals}"
+        return f"move this file away, and the same command will use the points in {journals}"
     return "choose another file with -o, or replace it with --fresh"

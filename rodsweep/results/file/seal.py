@@ -36,7 +36,7 @@ ByteRange = tuple[int, int]
 """Byte range of a file: (offset, size), in bytes."""
 
 
-OPEN_FOR_WRITING = "another process has it open for writing; close it there and try again"
+OPEN_FOR_WRITING_CLAUSE = "another process has it open for writing; close it there and try again"
 """Clause about a file on which HDF5 holds its lock for writing."""
 
 
@@ -70,7 +70,7 @@ def has_valid_structure_checksum(path: Path) -> bool:
         end = _hdf5_end(stream)
         size = os.fstat(stream.fileno()).st_size
         if size < end:
-            raise ChecksumMismatch(f"it ends after {size} of {end} bytes")
+            raise ChecksumMismatch(f"it ends after {size} of {end} bytes; copy the complete file again")
         stream.seek(end)
         data = stream.read(MAX_CHECKSUM_TEXT_BYTES)
         if not data or data.startswith(FORMER_CHECKSUM_HEAD):
@@ -88,9 +88,12 @@ def has_valid_structure_checksum(path: Path) -> bool:
         except (LookupError, TypeError, ValueError, OverflowError, RecursionError, OSError):
             raise ChecksumMismatch("its checksum cannot be read") from None
     if not is_valid and is_locked:
-        raise ChecksumMismatch(OPEN_FOR_WRITING)
+        raise ChecksumMismatch(OPEN_FOR_WRITING_CLAUSE)
     if not is_valid:
-        raise ChecksumMismatch("its content differs from its checksum")
+        raise ChecksumMismatch(
+            "its content differs from its checksum; restore a copy of the file, or compute it again with "
+            "--fresh"
+        )
     return True
 
 

@@ -80,7 +80,7 @@ class ResultFileWriter:
             else:
                 require_same_config(header, self.plan, self.journal_directory)
         foreign_journals = journals_without_fingerprint(self.journal_directory, self.plan.fingerprint)
-        self._set_aside(foreign_journals, "journals that do not match the config and its points")
+        self._move_aside(foreign_journals, "journals that do not match the config and its points")
         delete_matching_files(self.journal_directory, JOURNAL_GLOB)  # the remaining journals have no points
 
     def _create(self, replaces: bool) -> None:
@@ -91,8 +91,8 @@ class ResultFileWriter:
         own_journals = journals_with_fingerprint(self.journal_directory, self.plan.fingerprint)
         if replaces:
             delete_matching_files(self.journal_directory, CHECKPOINT_GLOB)
-            self._set_aside(own_journals, "journals that --fresh does not use")
-        self._set_aside(sorted(self.journal_directory.glob(BACKUP_GLOB)), "points from before an extension")
+            self._move_aside(own_journals, "journals that --fresh does not use")
+        self._move_aside(sorted(self.journal_directory.glob(BACKUP_GLOB)), "points from before an extension")
         with self.replacement.replacing(None) as copy:
             create_file(copy, self.plan)
         if own_journals and not replaces:
@@ -133,7 +133,7 @@ class ResultFileWriter:
         shutil.copyfile(self.path, copy)
         return copy
 
-    def _set_aside(self, paths: Sequence[Path], noun: str) -> None:
+    def _move_aside(self, paths: Sequence[Path], noun: str) -> None:
         """Moves `paths` out of the journal directory, and notes the new place."""
         if paths:
             self.notes.append(f"{noun} are kept in {move_journals_aside(self.journal_directory, paths)}")

@@ -18,7 +18,7 @@ from ..layouts.variables import Layout
 from .combination.identity import fingerprint_of
 from .content_digests import refuse_changed
 from .points import points_of_open_file
-from .seal import HDF5_SIGNATURE, OPEN_FOR_WRITING, has_valid_structure_checksum
+from .seal import HDF5_SIGNATURE, OPEN_FOR_WRITING_CLAUSE, has_valid_structure_checksum
 
 PROGRAM = "rodsweep"
 """Value of the attribute `program` of result files."""
@@ -29,7 +29,7 @@ introduced frequencies in Hz, counts from 1, the Hopf points of the lines of lim
 arm's quantities; in 9 `tip_theta_max` is the largest |theta|, not the largest theta."""
 CONFIG_SUFFIXES = (".yaml", ".yml")
 """Suffixes of the names of config files."""
-LONGEST_REASON = 150
+MAX_REASON_LENGTH = 150
 """Maximum number of characters of a library's error message that a message of rodsweep quotes; longer
 messages are cut."""
 DAMAGE_EXCEPTIONS = (OSError, LookupError, ValueError, TypeError, RuntimeError, OverflowError, MemoryError)
@@ -51,15 +51,15 @@ def damage_refusals(path: Path) -> Iterator[None]:
     try:
         yield
     except DAMAGE_EXCEPTIONS as error:
-        reason = OPEN_FOR_WRITING if HDF5_LOCK_MESSAGE in str(error) else one_line_message(error)
+        reason = OPEN_FOR_WRITING_CLAUSE if HDF5_LOCK_MESSAGE in str(error) else one_line_message(error)
         raise InvalidResultFile(f"{path} cannot be read as a result of rodsweep: {reason}") from None
 
 
 def one_line_message(error: Exception) -> str:
-    """Message of a library's exception about a file, on a single line, cut to LONGEST_REASON characters."""
+    """Message of a library's exception about a file, on one line, cut to MAX_REASON_LENGTH characters."""
     text = getattr(error, "strerror", None) or str(error) or type(error).__name__
     text = "".join(character if character.isprintable() else " " for character in text)
-    return text if len(text) <= LONGEST_REASON else text[: LONGEST_REASON - 3] + "..."
+    return text if len(text) <= MAX_REASON_LENGTH else text[: MAX_REASON_LENGTH - 3] + "..."
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,7 +177,7 @@ def require_variables_of_layout(file: h5py.File, layout: Layout) -> None:
     for name, (extents, kind) in expected.items():
         dataset = file[name]
         if not isinstance(dataset, h5py.Dataset) or dataset.shape != extents or dataset.dtype != kind:
-            raise ValueError(f"its variable {name} does not fit its config")
+            raise ValueError(f"its variable {name} does not have the type and shape of its config")
         # Points are read without HDF5 at computed offsets, which only contiguous data have.
         if dataset.id.get_offset() is None or dataset.chunks or not dataset.id.get_storage_size():
             raise ValueError(

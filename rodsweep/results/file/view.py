@@ -116,11 +116,11 @@ class ResultView:
         if not self.arm_axes:
             return self
         shape = self.variables["status"].shape
-        variables = {name: self._listed(name, shape) for name in self.variables}
+        variables = {name: self._flattened_to_list(name, shape) for name in self.variables}
         variables["point"] = np.arange(1, self.variables["status"].size + 1)
         return replace(self, variables=variables, arm_axes=())
 
-    def _listed(self, name: str, shape: tuple[int, ...]) -> np.ndarray:
+    def _flattened_to_list(self, name: str, shape: tuple[int, ...]) -> np.ndarray:
         """Variable `name` with the axes of a grid, of the shape `shape`, flattened to the list of points.
         Variables without these axes are unchanged."""
         values = self.variables[name]

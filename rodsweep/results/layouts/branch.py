@@ -3,12 +3,12 @@
 from typing import Any
 
 from ...model.parameters import NONLINEAR_PARAMETERS, PARAMETERS, parameter_names_except
-from .limit_cycle import LEAST_STRETCH
+from .limit_cycle import LEAST_STRETCH_VARIABLE
 from .rods import with_certified_meaning
 from .variables import (
     NEEDS_NEW_SOLVE,
-    SECONDS,
-    STATUS,
+    SECONDS_VARIABLE,
+    STATUS_VARIABLE,
     ExtensionRule,
     Layout,
     Variable,
@@ -67,7 +67,7 @@ def followed_variables(parameter_name: str) -> tuple[Variable, ...]:
         real("tip_x_min", "L", "smallest x of the tip"),
         real("tip_x_max", "L", "largest x of the tip"),
         real("tip_theta_max", "rad", "largest |theta|, theta: the angle of the tip, over a period"),
-        LEAST_STRETCH,
+        LEAST_STRETCH_VARIABLE,
         real("multiplier", "1", "modulus of the largest nontrivial Floquet multiplier"),
         integer(
             "unstable_multipliers",
@@ -160,8 +160,8 @@ def layout(config: dict[str, Any]) -> Layout:
         *followed_range_variables(parameter),
         *followed_variables(parameter),
         *special_variables(parameter),
-        SECONDS,
-        STATUS,
+        SECONDS_VARIABLE,
+        STATUS_VARIABLE,
     )
     parameters = parameter_names_except(parameter, NONLINEAR_PARAMETERS)
     variables = with_certified_meaning(variables, config, "Hopf points")

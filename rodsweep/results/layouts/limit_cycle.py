@@ -14,8 +14,8 @@ from .variables import (
     MESH_VARIABLES,
     NEEDS_NEW_SOLVE,
     NOT_KNOWN_SUFFIX,
-    SECONDS,
-    STATUS,
+    SECONDS_VARIABLE,
+    STATUS_VARIABLE,
     ExtensionRule,
     Layout,
     Variable,
@@ -25,7 +25,7 @@ from .variables import (
     word,
 )
 
-LEAST_STRETCH = real(
+LEAST_STRETCH_VARIABLE = real(
     "least_stretch",
     "1",
     "smallest stretch h1 over a period at the nodes and times of the solution, and where it is 0.2 or "
@@ -84,13 +84,15 @@ CYCLE_VARIABLES = (
         "frequency of the modulation of a motion on a torus, divided by the frequency of its oscillation; "
         "from the integrated motion, to about three digits",
     ),
-    LEAST_STRETCH,
+    LEAST_STRETCH_VARIABLE,
     integer("periods", "number of returns to the Poincare section during the time integration"),
     *MESH_VARIABLES,
-    SECONDS,
-    STATUS,
+    SECONDS_VARIABLE,
+    STATUS_VARIABLE,
 )
-PERIOD_TAU1 = real("period_tau1", "tau1", "period of the limit cycle in units of tau1: period k2/gamma3")
+PERIOD_TAU1_VARIABLE = real(
+    "period_tau1", "tau1", "period of the limit cycle in units of tau1: period k2/gamma3"
+)
 TIP_UNITS = {"x": "L", "y": "L", "theta": "rad"}
 """Units of the position and the angle of the tip."""
 TIP_VARIABLES = tuple(real(f"tip_{n}", unit, f"{n} of the tip", "sample") for n, unit in TIP_UNITS.items())
@@ -175,7 +177,7 @@ def layout(config: dict[str, Any]) -> Layout:
     variables: tuple[Variable, ...] = CYCLE_VARIABLES
     extents = {"harmonic": options["harmonics"], "multiplier_number": STORED_MULTIPLIERS}
     if options["time"] == "tau1":
-        variables += (PERIOD_TAU1,)
+        variables += (PERIOD_TAU1_VARIABLE,)
     if options["samples"]:
         variables += TIP_VARIABLES + ENERGY_VARIABLES
         extents |= {"sample": options["samples"]}

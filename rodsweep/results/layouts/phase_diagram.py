@@ -7,9 +7,9 @@ from ...model.parameters import PARAMETERS, TRANSVERSE_PARAMETERS, parameter_nam
 from .branch import SPECIAL_KINDS, followed_range_variables
 from .criticality import LANDAU_UNIT, SLOPE_UNIT, criticality_variable
 from .curve_extrema import EXTREMA_UNLOCATED, curve_extremum_variables
-from .detached_branches import CURVES_LOST_BEYOND, DETACHED_BRANCH_VARIABLES, DETACHED_ROW
+from .detached_branches import CURVES_LOST_BEYOND, DETACHED_BRANCH_VARIABLES, DETACHED_ROW_NAME
 from .rods import with_certified_meaning
-from .spectrum import UNSTABLE_COUNT
+from .spectrum import UNSTABLE_COUNT_VARIABLE
 from .thresholds import CROSSING_LIST_EXTENSION_RULE, search_variables
 from .variables import (
     ANGULAR_UNIT,
@@ -98,7 +98,7 @@ def layout(config: dict[str, Any]) -> Layout:
     (line, _), sizes = plane_of(config)
     variables: tuple[Variable, ...] = (
         word("class", "behaviour of the rod", STABILITY_CLASSES, line),
-        integer("unstable_count", UNSTABLE_COUNT.long_name, line),
+        integer("unstable_count", UNSTABLE_COUNT_VARIABLE.long_name, line),
         *search_variables(line, "crossing_at"),
     )
     extents = {line: sizes[line], "crossing": options["crossings"]}
@@ -106,7 +106,7 @@ def layout(config: dict[str, Any]) -> Layout:
         variables += cycle_variables(line)
         extents[CYCLE_SPECIAL_DIMENSION] = MAX_CYCLE_SPECIAL_POINTS
     variables = with_certified_meaning(variables, config, "crossings")
-    changed = DETACHED_ROW if options["cycles"] else ""
+    changed = DETACHED_ROW_NAME if options["cycles"] else ""
     return Layout(variables, extents, parameter_names_except(line), (), options["curves"], changed)
 
 

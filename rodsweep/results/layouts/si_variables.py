@@ -33,7 +33,9 @@ HERTZ_SUFFIX = "_hz"
 """Suffix of the name of a frequency in Hz."""
 LOAD_OF_UNIT = {each.unit: load for load, each in FORCE_UNITS.items()}
 """Name of the load, "pressure" or "force", by its SI unit."""
-EVENT_FREQUENCIES = {f"{event}_frequency": f"frequency_{event}_hz" for event in ("hopf", "restabilization")}
+HERTZ_NAMES_OF_THRESHOLDS = {
+    f"{event}_frequency": f"frequency_{event}_hz" for event in ("hopf", "restabilization")
+}
 """Name of the variable in Hz, by name of the variable for the angular frequency at a threshold."""
 FORCE_VARIABLES_OF_BRANCHES = ("special_at", "special_error")
 """Names of variables of the task branch that are forces for an arm, whose branches are followed in F only."""
@@ -97,8 +99,8 @@ def si_variables_of(layout: Layout, config: Mapping[str, Any]) -> dict[str, Vari
 
 def si_name_of(name: str, unit: str) -> str:
     """Name of the variable in the SI unit `unit` for the variable `name`; F becomes "pressure" or "force"."""
-    if name in EVENT_FREQUENCIES:
-        return EVENT_FREQUENCIES[name]
+    if name in HERTZ_NAMES_OF_THRESHOLDS:
+        return HERTZ_NAMES_OF_THRESHOLDS[name]
     parts = name.split("_")
     if unit in LOAD_OF_UNIT and "F" in parts:
         return "_".join(LOAD_OF_UNIT[unit] if word == "F" else word for word in parts)

@@ -14,8 +14,8 @@ from .variables import (
     MESH_VARIABLES,
     NEEDS_NEW_SOLVE,
     NEEDS_NO_SOLVE,
-    SECONDS,
-    STATUS,
+    SECONDS_VARIABLE,
+    STATUS_VARIABLE,
     Layout,
     Variable,
     boolean,
@@ -34,7 +34,9 @@ def complex_pair(name: str, units: str, long_name: str) -> tuple[Variable, Varia
     )
 
 
-UNSTABLE_COUNT = integer("unstable_count", "number of modes with positive growth rate; -1: not known")
+UNSTABLE_COUNT_VARIABLE = integer(
+    "unstable_count", "number of modes with positive growth rate; -1: not known"
+)
 MODE_VARIABLES = (
     real("growth_rate", "1/tau2", "real part of the transverse eigenvalue", "mode"),
     real(
@@ -47,18 +49,32 @@ MODE_VARIABLES = (
         "mode",
     ),
 )
-CERTIFIED = boolean("certified", "whether the winding number of D proves the list of leading modes complete")
+CERTIFIED_VARIABLE = boolean(
+    "certified", "whether the winding number of D proves the list of leading modes complete"
+)
 ESTIMATED_MEANING = (
     "whether D right of the spectrum, or the winding number of D, proves the list of leading modes "
     "complete; for arms that vary along their length the proof is partly an estimate"
 )
 """Long name of the variable `certified` in a file of arms that vary along their length."""
-POINT_VARIABLES = (UNSTABLE_COUNT, CERTIFIED, *MESH_VARIABLES, SECONDS, STATUS)
-SHARED_TIME = "time spent on the point; for points solved together, an equal share of their time"
+POINT_VARIABLES = (
+    UNSTABLE_COUNT_VARIABLE,
+    CERTIFIED_VARIABLE,
+    *MESH_VARIABLES,
+    SECONDS_VARIABLE,
+    STATUS_VARIABLE,
+)
+SHARED_TIME_MEANING = "time spent on the point; for points solved together, an equal share of their time"
 NO_MESH_SUFFIX = "; 0: eigenvalues continued from a neighbouring point"
 FOLLOWED_MESH_VARIABLES = (replace(v, long_name=v.long_name + NO_MESH_SUFFIX) for v in MESH_VARIABLES)
-FOLLOWED_SECONDS = replace(SECONDS, long_name=SHARED_TIME)
-FOLLOWED_POINT_VARIABLES = (UNSTABLE_COUNT, CERTIFIED, *FOLLOWED_MESH_VARIABLES, FOLLOWED_SECONDS, STATUS)
+FOLLOWED_SECONDS_VARIABLE = replace(SECONDS_VARIABLE, long_name=SHARED_TIME_MEANING)
+FOLLOWED_POINT_VARIABLES = (
+    UNSTABLE_COUNT_VARIABLE,
+    CERTIFIED_VARIABLE,
+    *FOLLOWED_MESH_VARIABLES,
+    FOLLOWED_SECONDS_VARIABLE,
+    STATUS_VARIABLE,
+)
 """Variables of a point of the task spectrum, whose eigenvalues may be followed from a neighbouring point."""
 EIGENVECTOR_VARIABLES = (
     *complex_pair("Y", "1", "the eigenmode's deflection, scaled to Y(1) = 1"),
@@ -140,7 +156,7 @@ def layout(config: dict[str, Any]) -> Layout:
     each_point: tuple[Variable, ...] = FOLLOWED_POINT_VARIABLES
     extents = {"mode": options["modes"]}
     if estimates_counts(config):
-        each_point = with_meaning(each_point, CERTIFIED.name, ESTIMATED_MEANING)
+        each_point = with_meaning(each_point, CERTIFIED_VARIABLE.name, ESTIMATED_MEANING)
     if not options["vectors"]:
         return Layout(MODE_VARIABLES + each_point, extents)
     return Layout(MODE_VARIABLES + EIGENVECTOR_VARIABLES + each_point, extents | {"u": options["nodes"]})

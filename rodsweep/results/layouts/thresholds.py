@@ -8,8 +8,8 @@ from .rods import with_certified_meaning
 from .variables import (
     ANGULAR_UNIT,
     NEEDS_NEW_SOLVE,
-    SECONDS,
-    STATUS,
+    SECONDS_VARIABLE,
+    STATUS_VARIABLE,
     ExtensionRule,
     Layout,
     Variable,
@@ -82,8 +82,8 @@ def search_variables(line_parameter: str, position_name: str) -> tuple[Variable,
         boolean("certified", "whether the list of crossings is proved complete in the searched range"),
         integer("boxes", "number of evaluations of D over a box"),
         integer("solves", "number of eigenproblems solved"),
-        SECONDS,
-        STATUS,
+        SECONDS_VARIABLE,
+        STATUS_VARIABLE,
     )
 
 

@@ -72,7 +72,7 @@ class Variable:
     @property
     def is_boolean(self) -> bool:
         """Whether the variable is 1 for yes and 0 for no."""
-        return self.dtype == "|i1" and not self.flags and self.name != STATUS.name
+        return self.dtype == "|i1" and not self.flags and self.name != STATUS_VARIABLE.name
 
     @property
     def attributes(self) -> dict[str, Any]:
@@ -134,8 +134,8 @@ def along_dimension(dimension: str, *variables: Variable) -> tuple[Variable, ...
     return tuple(replace(v, extra=(dimension,)) for v in variables)
 
 
-SECONDS = Variable("seconds", "<f4", np.nan, "s", "time spent on the point")
-STATUS = Variable("status", "|i1", MISSING_STATUS, "1", "outcome of the point")
+SECONDS_VARIABLE = Variable("seconds", "<f4", np.nan, "s", "time spent on the point")
+STATUS_VARIABLE = Variable("status", "|i1", MISSING_STATUS, "1", "outcome of the point")
 MESH_VARIABLES = (
     Variable("elements", "<i2", 0, "1", "number of spectral elements"),
     Variable("order", "<i2", 0, "1", "largest polynomial order of the elements"),

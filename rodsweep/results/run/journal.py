@@ -29,7 +29,7 @@ CHECKSUM_BYTES = 4
 """Length of the checksum after a record, in bytes."""
 INDEX_BYTES = 8
 """Length of the index, the first field of a record, in bytes."""
-LONGEST_HEAD = 200
+MAX_HEAD_BYTES = 200
 """Maximum length of each of the first two lines of a journal, in bytes."""
 
 
@@ -96,7 +96,7 @@ class Journal:
         empty = os.fstat(self.handle).st_size == self.header_size
         # A user may have moved or deleted the directory during the run; the open file still has all points.
         if not empty and not self._is_in_place():
-            self._write_anew()
+            self._copy_to_new_journal()
         # Only here: a synchronous write for each point would take longer than many solves.
         os.fsync(self.handle)
         os.close(self.handle)
@@ -116,7 +116,7 @@ class Journal:
         self.path = self.directory / f"{self.name}-{os.urandom(4).hex()}"
         self.handle = os.open(self.path, os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_APPEND, 0o644)
 
-    def _write_anew(self) -> None:
+    def _copy_to_new_journal(self) -> None:
         """Copies the open journal, which may have lost its name, to a new file in the journal directory."""
         old_handle = self.handle
         position = 0
@@ -180,7 +180,7 @@ def _header_if_points(path: Path) -> bytes:
     if not path.is_file():
         return b""
     with path.open("rb") as file:
-        header = b"".join(file.readline(LONGEST_HEAD) for _ in range(2))
+        header = b"".join(file.readline(MAX_HEAD_BYTES) for _ in range(2))
         return header if file.read(1) else b""
 
 

@@ -14,10 +14,10 @@ from pathlib import Path
 
 from ...errors import EnvironmentIncomplete, InputError, import_failure_error
 
-LIBRARIES = Path("/usr/lib")
+SYSTEM_LIBRARY_FOLDER = Path("/usr/lib")
 
 
-def add_debian_modules(libraries: Path = LIBRARIES) -> None:
+def add_debian_modules(libraries: Path = SYSTEM_LIBRARY_FOLDER) -> None:
     """Appends to `sys.path` the directories of Debian's newest petsc4py and slepc4py built for real numbers.
     Nothing is appended for a module that Python already finds, or whose environment variable, PETSC_DIR or
     SLEPC_DIR, is set."""

@@ -17,7 +17,7 @@ from .symmetry_breaking import SymmetryBreaking
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class BranchPoint:
+class StoredBranchCycle:
     """Stored quantities of one cycle of a branch."""
 
     parameter_value: float
@@ -35,7 +35,7 @@ class BranchPoint:
     multipliers is 1 within its error."""
 
     @classmethod
-    def from_cycle(cls, point: BranchCycle, accuracy: float) -> "BranchPoint":
+    def from_cycle(cls, point: BranchCycle, accuracy: float) -> "StoredBranchCycle":
         """The stored quantities of the cycle `point`. accuracy: relative accuracy to which the cycle was
         solved."""
         cycle = point.cycle
@@ -145,7 +145,7 @@ class BranchCurve:
 
     start_hopf: int
     """Index in `BranchLimits.hopfs` of the Hopf point where the branch starts, -1 if it starts elsewhere."""
-    points: list[BranchPoint] = field(default_factory=list)
+    points: list[StoredBranchCycle] = field(default_factory=list)
     special_points: list[SpecialPoint] = field(default_factory=list)
     end_hopf: int = -1
     """Index in `BranchLimits.hopfs` of the Hopf point where the branch ends; -1 if the branch has another
@@ -161,7 +161,7 @@ class BranchCurve:
     """Whether the continuation stopped at the maximum number of cycles."""
     closed: bool = False
     """Whether the branch is closed: its last special point is its first special point, located again."""
-    unit_circle_crossings_explained: bool = True
+    are_crossings_explained: bool = True
     """Whether special points explain every multiplier that crosses the unit circle along the branch."""
     start_passage: RangePassage | None = None
     """Place at an end of the range where the branch starts; None if it starts elsewhere."""
@@ -179,9 +179,9 @@ class BranchCurve:
         there."""
         for special in special_points:
             self.add_special_point(special)
-        self.unit_circle_crossings_explained &= are_complete
+        self.are_crossings_explained &= are_complete
 
-    def replace_last_cycles(self, points: Sequence[BranchPoint]) -> None:
+    def replace_last_cycles(self, points: Sequence[StoredBranchCycle]) -> None:
         """Replaces the last len(points) cycles by `points`, the same cycles with measured or interpolated
         errors."""
         self.points[-len(points) :] = points
@@ -240,6 +240,5 @@ class BranchCurve:
             end_passage=forward.end_passage,
             complete=self.complete and forward.complete,
             list_full=self.list_full or forward.list_full,
-            unit_circle_crossings_explained=self.unit_circle_crossings_explained
-            and forward.unit_circle_crossings_explained,
+            are_crossings_explained=self.are_crossings_explained and forward.are_crossings_explained,
         )

@@ -8,7 +8,7 @@ import numpy as np
 from ...arrays import Array, Complex
 from ...determinant.exponents import EXPONENT_SETTINGS
 from ..cycle.accuracy.calibration import Calibration, calibration_of
-from ..cycle.accuracy.cycle_errors import MULTIPLIER_INDEX
+from ..cycle.accuracy.cycle_errors import MULTIPLIER_ERROR_INDEX
 from ..cycle.accuracy.finer_meshes import FINER_MESH_SETTINGS, finer_meshes
 from ..cycle.cycles_along_parameter import interpolated_change
 from ..orbit.measures import CycleMotion
@@ -44,7 +44,7 @@ def measured_branch_calibration(
     condition = BorderCondition.at_arc_length(derivatives.scale, border, orbit)
     rough = CycleMotion(orbit)
     multipliers = multipliers_and_trivial_error(solved)[0]
-    differences = np.empty((2, MULTIPLIER_INDEX + 2))
+    differences = np.empty((2, MULTIPLIER_ERROR_INDEX + 2))
     for difference, target in zip(differences, target_meshes, strict=True):
         fine_orbit = condition.solve_on_mesh(
             target,

@@ -13,7 +13,7 @@ from ..cycle.accuracy.refinement import (
     allowed_matrix_distance,
     cycle_with_calibrated_errors,
 )
-from ..orbit.mesh_choice import finer_mesh, regraded
+from ..orbit.mesh_choice import finer_orbit_mesh, regraded
 from ..orbit.newton import ConvergedOrbit, multipliers_and_trivial_error
 from ..orbit.orbit_mesh import OrbitMesh, mesh_limit_error, mesh_of
 from ..unsolvable import MeshLimitReached
@@ -116,7 +116,7 @@ def solve_on_sufficient_mesh(
         if calibration.largest_weighted_error(accuracy) <= accuracy:
             return point
         cheapest = calibration.cheapest_mesh(BRANCH_MESH_SETTINGS.planned_error_ratio * accuracy)
-        target = finer_mesh(calibration.mesh, regraded(cheapest, point.orbit))
+        target = finer_orbit_mesh(calibration.mesh, regraded(cheapest, point.orbit))
         if not target.is_allowed:
             raise mesh_limit_error()
         point = solved_on_mesh(point, target, condition, accuracy)

@@ -9,7 +9,7 @@ import numpy as np
 from ..unsolvable import Unsolvable
 from .arc_length_step import BranchCycle
 from .bordered.condition import BorderCondition
-from .branch_curve import BranchCurve, BranchEnd, BranchPoint
+from .branch_curve import BranchCurve, BranchEnd, StoredBranchCycle
 from .branch_end_reason import BranchEndReason, reason_of_failure
 from .branch_mesh_choice import with_errors_within_accuracy
 from .special.special_point import SpecialKind, SpecialPoint
@@ -42,12 +42,12 @@ class BranchRecord:
         self.accuracy = accuracy
         self._last_measured = first_cycle
         self._unmeasured: list[BranchCycle] = []
-        curve.points.append(BranchPoint.from_cycle(first_cycle, accuracy))
+        curve.points.append(StoredBranchCycle.from_cycle(first_cycle, accuracy))
 
     def append(self, point: BranchCycle) -> None:
         """Appends the cycle `point`, whose errors are not measured."""
         self._unmeasured.append(point)
-        self.curve.points.append(BranchPoint.from_cycle(point, self.accuracy))
+        self.curve.points.append(StoredBranchCycle.from_cycle(point, self.accuracy))
 
     def assign_errors(self, condition: BorderCondition | None = None) -> BranchCycle:
         """Measures or interpolates the errors of all cycles appended since the last measurement, and solves
@@ -61,7 +61,9 @@ class BranchRecord:
             points = with_errors_within_accuracy(
                 self._last_measured, self._unmeasured, self.accuracy, condition
             )
-            self.curve.replace_last_cycles([BranchPoint.from_cycle(point, self.accuracy) for point in points])
+            self.curve.replace_last_cycles(
+                [StoredBranchCycle.from_cycle(point, self.accuracy) for point in points]
+            )
             self._last_measured = points[-1]
             self._unmeasured = []
         return self._last_measured

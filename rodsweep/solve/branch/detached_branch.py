@@ -89,7 +89,7 @@ def branch_through(
         else:
             if is_known(curve):
                 return None
-            if not must_pass_start or lies_on_any(start, [curve]):
+            if not must_pass_start or lies_on_branch(start, [curve]):
                 if curve.complete or curve.list_full:
                     return curve
                 incomplete = incomplete or curve
@@ -107,13 +107,13 @@ def follow_in_both_directions(first_cycle: BranchCycle, limits: BranchLimits) ->
         # The first cycle is part of both directions but counts once.
         remaining_limits = replace(limits, max_cycles=limits.max_cycles - len(curve.points) + 1)
         backward_curve = follow_from_cycle(
-            BranchCurve(start_hopf=-1), turned_back(first_cycle), remaining_limits
+            BranchCurve(start_hopf=-1), reversed_cycle(first_cycle), remaining_limits
         )
         curve = backward_curve.joined_with(curve)
     return curve
 
 
-def lies_on_any(special: SpecialPoint, curves: Iterable[BranchCurve]) -> bool:
+def lies_on_branch(special: SpecialPoint, curves: Iterable[BranchCurve]) -> bool:
     """Whether one of the branches `curves` has the special point `special`."""
     return any(special.is_same_as(other) for curve in curves for other in curve.special_points)
 
@@ -180,7 +180,7 @@ def _cycle_on_other_side(tangent: _Tangent, distance: float, limits: BranchLimit
     return first_measured_cycle(solved_orbit, tangent.scale, tangent.side, distance, accuracy)
 
 
-def turned_back(cycle: BranchCycle) -> BranchCycle:
+def reversed_cycle(cycle: BranchCycle) -> BranchCycle:
     """The cycle of a branch, for the continuation in the opposite direction."""
     derivatives = cycle.derivatives
     turned_derivatives = replace(

@@ -21,7 +21,7 @@ from .branch_continuation import follow_asymmetric_branch, follow_from_cycle, in
 from .branch_curve import BranchCurve, RangePassage, unstable_count_bounds
 from .branch_limits import BranchLimits
 from .branch_request import WORK_UNIT
-from .detached_branch import branch_through, lies_on_any, turned_back
+from .detached_branch import branch_through, lies_on_branch, reversed_cycle
 from .special.special_point import SpecialKind, SpecialPoint
 from .start.first_cycle import first_cycle
 from .start.hopf_point import HopfBranchStart, accuracy_near_hopf_points
@@ -159,11 +159,11 @@ class RegionBeyond:
             return self._entry(BranchCurve(start_hopf=index), first, accuracy)
         # The first cycle already lies within the range.
         limits = replace(self.range_limits, accuracy=accuracy, locates_special_points=False)
-        passage = follow_from_cycle(BranchCurve(start_hopf=-1), turned_back(first), limits).end_passage
+        passage = follow_from_cycle(BranchCurve(start_hopf=-1), reversed_cycle(first), limits).end_passage
         if passage is None or passage.index != self.index:
             self.stop_at(hopf.parameter_coordinate)
             return None
-        return replace(passage, cycle=turned_back(passage.cycle) if passage.hopf is None else first)
+        return replace(passage, cycle=reversed_cycle(passage.cycle) if passage.hopf is None else first)
 
     def _entry(self, curve: BranchCurve, first_cycle: BranchCycle, accuracy: float) -> RangePassage | None:
         """Follows the branch `curve` from its first cycle `first_cycle` in the region; returns the place
@@ -216,7 +216,7 @@ class RegionBeyond:
 
     def _is_known(self, curve: BranchCurve) -> bool:
         """Whether a branch has a fold of a branch that was followed before in the region."""
-        return any(lies_on_any(fold, [curve]) for fold in self.folds)
+        return any(lies_on_branch(fold, [curve]) for fold in self.folds)
 
     def has(self, start: SpecialPoint) -> bool:
         """Whether the special point `start` lies in the region, beyond the end of the range."""

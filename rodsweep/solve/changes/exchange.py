@@ -9,12 +9,12 @@ from .spectrum_samples import SpectrumSample
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ExchangeSettings:
+class ExchangeNewtonSettings:
     """Settings of Newton's method for an exchange between two samples."""
 
     max_overtaking_steps: int = 60
     """Maximum number of Newton steps to an overtaking."""
-    following_steps: int = 8
+    following_step_count: int = 8
     """Number of steps in which an eigenvalue is followed from a sample to the middle of the interval."""
     converged_step_in_errors: float = 4.0
     """Newton's method for an overtaking stops when the step is smaller than this multiple of the error."""
@@ -25,7 +25,7 @@ class ExchangeSettings:
     not converged, for example near a double eigenvalue."""
 
 
-EXCHANGE_SETTINGS = ExchangeSettings()
+EXCHANGE_NEWTON_SETTINGS = ExchangeNewtonSettings()
 
 
 class LeaderExchange(NamedTuple):
@@ -69,23 +69,23 @@ def overtaking_between(
     # Start each eigenvalue from the sample where it leads and carry it to the middle.
     w_real = _follow_eigenvalue(problem, complex(real.w[0]), real.p, p)
     w_pair = _follow_eigenvalue(problem, complex(pair.w[0]), pair.p, p)
-    for _ in range(EXCHANGE_SETTINGS.max_overtaking_steps):
+    for _ in range(EXCHANGE_NEWTON_SETTINGS.max_overtaking_steps):
         w_real, slope_real, error_real = problem.eigenvalue(w_real, p)
         w_pair, slope_pair, error_pair = problem.eigenvalue(w_pair, p)
         slope = slope_real.real - slope_pair.real
         # Near a double eigenvalue Newton's method for D may stop before it converges.
-        accuracy = EXCHANGE_SETTINGS.accuracy
+        accuracy = EXCHANGE_NEWTON_SETTINGS.accuracy
         if not (error_real <= accuracy * abs(w_real) and error_pair <= accuracy * abs(w_pair)):
             return None
         # An eigenvalue that changed between real and complex is not the one that was followed.
         if w_real.imag != 0 or abs(w_pair.imag) <= error_pair or slope == 0 or not math.isfinite(slope):
             return None
         step = -(w_real.real - w_pair.real) / slope
-        error = (error_real + error_pair) / abs(slope) + EXCHANGE_SETTINGS.rounding_error * abs(p)
+        error = (error_real + error_pair) / abs(slope) + EXCHANGE_NEWTON_SETTINGS.rounding_error * abs(p)
         p += step
         if not ends[0] <= p <= ends[1]:
             return None
-        if abs(step) <= EXCHANGE_SETTINGS.converged_step_in_errors * error:
+        if abs(step) <= EXCHANGE_NEWTON_SETTINGS.converged_step_in_errors * error:
             return LeaderExchange(p, max(error, abs(step)), w_pair.real, abs(w_pair.imag))
         w_real = w_real + step * slope_real
         w_pair = w_pair + step * slope_pair
@@ -97,9 +97,9 @@ def overtaking_between(
 def _follow_eigenvalue(problem: PathProblem, w: complex, start: float, stop: float) -> complex:
     """The eigenvalue at p = `stop` that continues w at p = `start`, by small steps of Newton's method."""
     p = start
-    for i in range(1, EXCHANGE_SETTINGS.following_steps + 1):
+    for i in range(1, EXCHANGE_NEWTON_SETTINGS.following_step_count + 1):
         w, slope, _ = problem.eigenvalue(w, p)
-        next_p = start + (stop - start) * i / EXCHANGE_SETTINGS.following_steps
+        next_p = start + (stop - start) * i / EXCHANGE_NEWTON_SETTINGS.following_step_count
         predicted_w = w + slope * (next_p - p)
         w = complex(predicted_w.real, 0.0) if w.imag == 0 else predicted_w
         p = next_p

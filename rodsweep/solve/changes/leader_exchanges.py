@@ -37,7 +37,7 @@ number is a constant, because with fewer eigenvalues it would be unknown which e
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class LeadingEigenvalueSettings:
+class LeaderExchangeSettings:
     """Settings of the search for exchanges of the leading eigenvalue between samples."""
 
     accuracy: float = 1e-6
@@ -71,7 +71,7 @@ class LeadingEigenvalueSettings:
     this (some thousand rounding errors), if its exchange is not found."""
 
 
-LEADING_EIGENVALUE_SETTINGS = LeadingEigenvalueSettings()
+LEADER_EXCHANGE_SETTINGS = LeaderExchangeSettings()
 
 
 class LeaderExchangeSearch:
@@ -93,7 +93,7 @@ class LeaderExchangeSearch:
         return self.samples[p]
 
     def _solve_sample(self, p: float) -> SpectrumSample:
-        request = SpectrumRequest(SAMPLED_MODE_COUNT, LEADING_EIGENVALUE_SETTINGS.accuracy, self.certify)
+        request = SpectrumRequest(SAMPLED_MODE_COUNT, LEADER_EXCHANGE_SETTINGS.accuracy, self.certify)
         spectrum = self.problem.spectrum(p, request)
         # With a mode on the imaginary axis the status is undecided, but no mode is missing.
         self.leading_eigenvalues_proved &= spectrum.certified or spectrum.status == SpectrumStatus.undecided
@@ -107,8 +107,8 @@ class LeaderExchangeSearch:
         for i, guess in enumerate(spectrum.eigenvalues):
             # Newton's method may jump to another eigenvalue, as in a cluster; the first value then stays.
             refined_w, slope[i], _ = self.problem.eigenvalue(complex(guess), p)
-            error = LEADING_EIGENVALUE_SETTINGS.max_distance_in_errors * spectrum.error_estimate[i]
-            max_distance = max(error, LEADING_EIGENVALUE_SETTINGS.max_relative_distance * abs(guess))
+            error = LEADER_EXCHANGE_SETTINGS.max_distance_in_errors * spectrum.error_estimate[i]
+            max_distance = max(error, LEADER_EXCHANGE_SETTINGS.max_relative_distance * abs(guess))
             distances = np.abs(spectrum.eigenvalues - refined_w)
             if distances[i] <= min(max_distance, distances.min()):
                 w[i] = refined_w
@@ -136,7 +136,7 @@ class LeaderExchangeSearch:
         fraction = 0.5
         if left_sample.oscillates == right_sample.oscillates:
             fraction, may_hold_two = next_sample_between(left_sample, right_sample)
-            settings = LEADING_EIGENVALUE_SETTINGS
+            settings = LEADER_EXCHANGE_SETTINGS
             min_interval = (
                 settings.min_interval_fraction_with_two_exchanges
                 if may_hold_two
@@ -155,12 +155,12 @@ class LeaderExchangeSearch:
             exchange = self._exchange_between(left_sample, right_sample)
             if exchange is not None:
                 return self._exchange_if_alone(exchange, left_sample, right_sample, intervals)
-            if b - a <= LEADING_EIGENVALUE_SETTINGS.min_interval_length_ratio * max(abs(a), abs(b)):
+            if b - a <= LEADER_EXCHANGE_SETTINGS.min_interval_length_ratio * max(abs(a), abs(b)):
                 raise Unsolvable(
                     f"no point was found near {self.path.text_at(a)} at which the leading eigenvalue turns "
                     "from real to complex or back"
                 )
-        min_part_ratio = LEADING_EIGENVALUE_SETTINGS.min_part_ratio
+        min_part_ratio = LEADER_EXCHANGE_SETTINGS.min_part_ratio
         middle = a + min(max(fraction, min_part_ratio), 1 - min_part_ratio) * (b - a)
         intervals.add_subintervals((a, middle), (middle, b))
         return []
@@ -175,11 +175,11 @@ class LeaderExchangeSearch:
         if excludes_others(left, right):
             return [exchange]
         length = right.p - left.p
-        if length <= LEADING_EIGENVALUE_SETTINGS.min_interval_fraction_with_two_exchanges * intervals.length:
+        if length <= LEADER_EXCHANGE_SETTINGS.min_interval_fraction_with_two_exchanges * intervals.length:
             self.leading_eigenvalues_proved = False
             return [exchange]
         p = self.path.coordinate(exchange.value)
-        distance = LEADING_EIGENVALUE_SETTINGS.distance_to_exchange_fraction * length
+        distance = LEADER_EXCHANGE_SETTINGS.distance_to_exchange_fraction * length
         sample_p = sorted({left.p, max(left.p, p - distance), min(right.p, p + distance), right.p})
         intervals.add_subintervals(*pairwise(sample_p))
         return []

@@ -5,7 +5,7 @@ from abc import ABC, abstractmethod
 from ...determinant.certificate.first_boxes import path_intervals
 from ...determinant.certificate.winding_number import EigenvalueCount, count_right_of
 from ...determinant.parameter_path import ParameterPath, coefficients_at
-from ...determinant.roots.newton import LocatedEigenvalue, double_eigenvalue_newton, eigenvalue_newton
+from ...determinant.roots.newton import LocatedEigenvalue, double_eigenvalue_by_newton, eigenvalue_by_newton
 from ..spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 
 
@@ -63,10 +63,10 @@ class UniformPath(PathProblem):
 
     def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
         coefficients = coefficients_at(p, self.path.origin, self.path.direction)
-        return eigenvalue_newton(guess, coefficients, self.path.direction)
+        return eigenvalue_by_newton(guess, coefficients, self.path.direction)
 
     def double_eigenvalue(self, x: float, p: float, expected_distance: float) -> LocatedEigenvalue:
-        return double_eigenvalue_newton(x, p, self.path.origin, self.path.direction, expected_distance)
+        return double_eigenvalue_by_newton(x, p, self.path.origin, self.path.direction, expected_distance)
 
     def count_right_of(self, line: float, p: float) -> EigenvalueCount:
         return count_right_of(line, self.path.rod_at(p))

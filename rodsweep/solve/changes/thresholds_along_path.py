@@ -19,7 +19,7 @@ from .leader_exchanges import LeaderExchangeSearch
 from .path_problem import PathProblem
 from .search_range import SearchEnd
 from .threshold_kinds import Threshold, crossing_kind
-from .unstable_modes import ModeCounter
+from .unstable_modes import UnstableModeCounter
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -116,7 +116,7 @@ def find_thresholds(
         )
         crossings = crossings.restricted_to(end) if end.reason else crossings
         ends = crossings.searched_interval(start, stop)
-        counter = ModeCounter(problem, crossings.gaps, certify)
+        counter = UnstableModeCounter(problem, crossings.gaps, certify)
         # Without load the operator is self-adjoint and negative: no mode is unstable, no count is needed.
         start_count = (
             0 if path.name == "F" and start == 0 else counter.count_at_start(*ends, crossings.crossings)
@@ -149,7 +149,7 @@ def find_axis_crossings(
     low, high = sorted((path.coordinate(start), path.coordinate(stop)))
     problem = path_problem(path)
     path_crossings = _crossings(problem, (low, high), certify, max_crossings)
-    counter = ModeCounter(problem, path_crossings.gaps, certify)
+    counter = UnstableModeCounter(problem, path_crossings.gaps, certify)
     ends = path_crossings.searched_interval(start, stop)
     ordered = sorted(path_crossings.crossings, key=lambda c: c.value)
     count = 0 if path.name == "F" and start == 0 else counter.count_at_start(*ends, ordered)
@@ -160,7 +160,7 @@ def find_axis_crossings(
 def _search_result(
     crossings: PathCrossings,
     interval: tuple[float, float],
-    counter: ModeCounter,
+    counter: UnstableModeCounter,
     thresholds: tuple[Threshold, ...],
     end_counts: tuple[int, int],
 ) -> ThresholdSearchResult:

@@ -28,7 +28,7 @@ class UnstableModeCountSettings:
 UNSTABLE_MODE_COUNT_SETTINGS = UnstableModeCountSettings()
 
 
-class ModeCounter:
+class UnstableModeCounter:
     """Number of unstable modes along a path, from the directions of the crossings, confirmed by winding
     numbers. gaps: intervals of the parameter that may contain crossings missing from the list. doubts:
     sentences on counts that are undecided or contradict the crossings."""

@@ -48,7 +48,7 @@ class TracedCurves(Generic[AnyCurve]):
 
 
 @dataclass(slots=True)
-class CurveTracing(Generic[AnyCurve]):
+class CurveTracingState(Generic[AnyCurve]):
     """State of the search for curves through seed points.
 
     tolerance: a seed point lies on a curve if its distance is at most this number. distances: distance of
@@ -77,11 +77,11 @@ class CurveTracing(Generic[AnyCurve]):
 
 def trace_all_curves(
     problem: CurveTracingProblem[AnyCurve], seeds: Iterable[int], tolerance: float
-) -> CurveTracing[AnyCurve]:
+) -> CurveTracingState[AnyCurve]:
     """State of a search after curves were traced until every seed point lies on a curve or was tried, or
     until the result of a work item is missing. seeds: indices of the seed points. tolerance: a seed point
     lies on a curve if its distance, divided by the length of a row, is at most this number."""
-    search: CurveTracing[AnyCurve] = CurveTracing(tolerance, dict.fromkeys(seeds, math.inf))
+    search: CurveTracingState[AnyCurve] = CurveTracingState(tolerance, dict.fromkeys(seeds, math.inf))
     tried_seeds: set[int] = set()
     while untraced := [
         i for i, distance in search.distances.items() if distance > tolerance and i not in tried_seeds

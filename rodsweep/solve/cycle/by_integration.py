@@ -37,7 +37,7 @@ from .transient.orbit_from_motion import collocation_states
 from .transient.returns import (
     RETURN_SETTINGS,
     not_settled_text,
-    repetition,
+    recurrence,
     return_limit,
     run_failure,
     section_crossings,
@@ -139,11 +139,11 @@ class _IntegrationUntilSettled:
             self.return_times.record_run(times, float(run.times[-1]))
             past_moments.extend(self.system.layout.stress_field(states, "m3"))
             self.return_count += max(len(states), 1)
-            if self.leading_mode.w.real < 0 and np.linalg.norm(z) < RETURN_SETTINGS.straight_norm:
+            if self.leading_mode.w.real < 0 and np.linalg.norm(z) < RETURN_SETTINGS.max_straight_norm:
                 raise NoCycleFound(IntegrationStatus.straight, "the motion has decayed to rounding error")
             if len(past_moments) <= TRANSIENT_SETTINGS.returns_per_run:
                 continue
-            returns_per_repetition, distance = repetition(list(past_moments))
+            returns_per_repetition, distance = recurrence(list(past_moments))
             distances.record_test(distance, returns_per_repetition / TRANSIENT_SETTINGS.returns_per_run)
             # For distances in a geometric sequence the distance from the cycle is distance/(1 - rate).
             tolerance = max_settled_distance(self.request.accuracy)
@@ -198,7 +198,7 @@ class _IntegrationUntilSettled:
             )
         period = float(times[settled.returns_per_period] - times[0])
         spline = CubicSpline(run.times, run.states)
-        stages = INTEGRATION_SETTINGS.measurement_stages
+        stages = INTEGRATION_SETTINGS.measurement_stage_count
         states = spline(
             times[0] + period * node_times(self.intervals_per_return * settled.returns_per_period, stages)
         )

@@ -237,7 +237,7 @@ def orbit_by_normal_form(normal: NormalForm, form: StressForm) -> Orbit:
 def orbit_of_amplitude(normal: NormalForm, form: StressForm, amplitude: float, frequency: float) -> Orbit:
     """The orbit of the rod in `form` with the motion of a normal form. amplitude: largest tip y, in L.
     frequency: in 1/tau2."""
-    times = node_times(HOPF_START_SETTINGS.coarse_intervals, HOPF_START_SETTINGS.coarse_stages)
+    times = node_times(HOPF_START_SETTINGS.coarse_interval_count, HOPF_START_SETTINGS.coarse_stage_count)
     X = normal.cycle_states(amplitude, np.pi * times)
     S, V = normal.form.stresses_and_velocities(X)
     source = normal.form.mesh
@@ -246,5 +246,5 @@ def orbit_of_amplitude(normal: NormalForm, form: StressForm, amplitude: float, f
         interpolate_stress(form.rod, S, source, target), V @ interpolation_matrix(source, target).T
     )
     return Orbit.from_states(
-        form, REFLECTION, 2 * np.pi / frequency, states, HOPF_START_SETTINGS.coarse_stages
+        form, REFLECTION, 2 * np.pi / frequency, states, HOPF_START_SETTINGS.coarse_stage_count
     )

@@ -55,9 +55,9 @@ class HopfStartSettings:
     max_direct_y: float = 0.7
     """If the largest y of the normal form's orbit at the given force, in L, is larger, Newton's method does
     not start there: the largest y of cycles of rods of small axial drag is then below half of it."""
-    coarse_intervals: int = 8
+    coarse_interval_count: int = 8
     """Number of time intervals of the coarse mesh, over half a period."""
-    coarse_stages: int = 3
+    coarse_stage_count: int = 3
     """Number of collocation stages per interval of the coarse mesh."""
     intermediate_orbit_tolerance: float = 3e-3
     """Relative tolerance of Newton's method for the intermediate orbits on the branch."""

@@ -23,7 +23,7 @@ class IntegrationSettings:
     return_error_over_tolerance: float = 10.0
     """Relative distance between two returns that integration errors alone may cause, divided by the local
     tolerance."""
-    tests_below_error: int = 3
+    min_tests_below_error: int = 3
     """Number of successive distances below the distance that integration errors may cause, which show that
     the integration errors are smaller."""
     difference_safety_factor: float = 2.0
@@ -40,7 +40,7 @@ class IntegrationSettings:
     """Largest local tolerance of the integration from which the cycle is measured. With a larger tolerance,
     the time steps (20 per period at an accuracy of 1e-3) are too long for cubic interpolation: time
     derivatives had errors of 1 to 5 % (`test_marched.py`)."""
-    measurement_stages: int = 3
+    measurement_stage_count: int = 3
     """Number of collocation stages per interval of the orbit from which the cycle is measured."""
     measurement_intervals_per_return: int = 48
     """Number of time intervals, per return of the tip, of the orbit from which the first cycle is

@@ -78,8 +78,10 @@ class ReturnDistances:
             self._below_error = []
         else:
             self._below_error.append(distance)
-        last_distances = self._below_error[-INTEGRATION_SETTINGS.tests_below_error :]
-        if len(last_distances) == INTEGRATION_SETTINGS.tests_below_error and isfinite(self._last_above_error):
+        last_distances = self._below_error[-INTEGRATION_SETTINGS.min_tests_below_error :]
+        if len(last_distances) == INTEGRATION_SETTINGS.min_tests_below_error and isfinite(
+            self._last_above_error
+        ):
             # Distances that stay small are no coincidence, so the integration_error is smaller than assumed.
             reduction = max(last_distances) / self._last_above_error
             rate = reduction ** (period_ratio / len(self._below_error))

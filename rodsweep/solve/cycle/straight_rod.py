@@ -145,7 +145,7 @@ def _leading_eigenvalues(rod: Rod, number: int) -> tuple[Complex, Array]:
     return w[is_kept], spectrum.error_estimate[is_kept]
 
 
-def integrated_growth_rate(rod: Rod, system_rod: Rod, straight: StraightRodStability, rate: float) -> float:
+def system_growth_rate(rod: Rod, system_rod: Rod, straight: StraightRodStability, rate: float) -> float:
     """Linear growth rate of the integrated rod `system_rod`, in 1/tau2, from its exact spectrum; `rate`, of
     the rod `rod` with the stability `straight`, if both are equal or the spectrum is unknown. A stiff matrix
     would give errors of 1e-4."""

@@ -20,7 +20,7 @@ from ...solve_progress import SolvePosition, report
 from ..continuation.curve import StepResult, StopReason, follow_curve
 from ..point_outcome import FAILURES
 from ..unsolvable import Unsolvable
-from .bautin_points import BAUTIN_POINT_SETTINGS, BautinPoint, HopfCurve
+from .bautin_points import BAUTIN_POINT_SETTINGS, BautinPoint, HopfNormalForms
 from .bautin_settings import BAUTIN_SETTINGS, BAUTIN_STEP_CONTROL
 
 
@@ -98,7 +98,7 @@ class BautinProblem:
         plane = ParameterPlane(self.rod.with_values(**values), (self.axes[free[0]], self.axes[free[1]]))
         boundary = StabilityBoundary(plane, 0.0)
         accuracy = min(self.accuracy, BAUTIN_POINT_SETTINGS.coarsest_accuracy)
-        curve = HopfCurve(boundary, np.empty((0, 3)), accuracy)  # finds Hopf points only near a guess
+        curve = HopfNormalForms(boundary, np.empty((0, 3)), accuracy)  # finds Hopf points only near a guess
         start = guess[[*free, 3]]
         point = self._zero_by_secants(curve, start, boundary.tangent(start))
         point_values = np.empty(3)
@@ -162,7 +162,7 @@ class BautinProblem:
         return len(previous) > BAUTIN_SETTINGS.min_loop_points and bool(is_near)
 
     @staticmethod
-    def _zero_by_secants(curve: HopfCurve, start: Array, direction: Array) -> BautinPoint:
+    def _zero_by_secants(curve: HopfNormalForms, start: Array, direction: Array) -> BautinPoint:
         """The point with Re c = 0 near start + s direction, (3,), by secant steps of s; raises Unsolvable."""
         # Secants, because the normal form does not give the derivatives of Re c.
         previous_s = 0.0

@@ -75,7 +75,7 @@ class CurveCriticality:
 
 
 @dataclass(frozen=True, slots=True)
-class _HopfNormalForm:
+class _NormalFormOnCurve:
     """A Hopf point in the plane of two parameters, with its normal form coefficients."""
 
     boundary_point: BoundarySolution
@@ -93,7 +93,7 @@ def curve_criticality(plane: ParameterPlane, curve: BoundaryCurve, accuracy: flo
 
     accuracy: relative accuracy of c, reduced to `BAUTIN_POINT_SETTINGS.coarsest_accuracy` if larger. If
     the normal form fails at a point, the sign is NaN at this point only."""
-    hopf_curve = HopfCurve(
+    hopf_curve = HopfNormalForms(
         StabilityBoundary(plane, curve.eigenvalue_sign),
         curve.scaled_points,
         min(accuracy, BAUTIN_POINT_SETTINGS.coarsest_accuracy),
@@ -111,7 +111,7 @@ def curve_criticality(plane: ParameterPlane, curve: BoundaryCurve, accuracy: flo
 
 
 @dataclass(frozen=True, slots=True)
-class HopfCurve:
+class HopfNormalForms:
     """Normal forms along a Hopf curve. boundary: equation D = 0 of the curve in the plane of two parameters.
     scaled: points (x, y, h) of the curve, (points, 3); x, y: scaled parameters, h = log frequency. accuracy:
     relative accuracy of the Landau coefficient c."""
@@ -139,7 +139,7 @@ class HopfCurve:
         except FAILURES:
             return math.nan
 
-    def hopf_point_on_plane(self, guess: Array, normal: Array, accuracy: float) -> _HopfNormalForm:
+    def hopf_point_on_plane(self, guess: Array, normal: Array, accuracy: float) -> _NormalFormOnCurve:
         """The Hopf point at which the Hopf curve crosses the plane through `guess`, (3,), with normal vector
         `normal`, (3,), and its normal form; raises Unsolvable. accuracy: relative accuracy of c."""
         solution = self.boundary.point_near(guess, normal)
@@ -155,7 +155,7 @@ class HopfCurve:
         hopf = Threshold(
             rod.F, ThresholdKind.hopf, w.imag, 0.0, force_error, frequency_error=solution.error * w.imag
         )
-        return _HopfNormalForm(solution, hopf_coefficients(rod, hopf, accuracy))
+        return _NormalFormOnCurve(solution, hopf_coefficients(rod, hopf, accuracy))
 
     def bautin_point_between(self, first_index: int, last_index: int) -> BautinPoint | None:
         """The generalised Hopf point between the stored points with the indices `first_index` and
@@ -168,7 +168,7 @@ class HopfCurve:
         chord = self.scaled[last_index] - self.scaled[first_index]
         normal = chord / np.linalg.norm(chord)
 
-        def on_chord(s: float) -> _HopfNormalForm:
+        def on_chord(s: float) -> _NormalFormOnCurve:
             return self.hopf_point_on_plane(start + s * chord, normal, self.accuracy)
 
         try:
@@ -189,7 +189,7 @@ class HopfCurve:
         return self.as_bautin_point(hopf_point, first_index + int(is_passed.sum()), chord * position_error)
 
     def as_bautin_point(
-        self, hopf_point: _HopfNormalForm, index_before: int, position_error: Array
+        self, hopf_point: _NormalFormOnCurve, index_before: int, position_error: Array
     ) -> BautinPoint:
         """The generalised Hopf point at `hopf_point`, with errors of both parameters. index_before: index of
         the last stored point before it. position_error: error of the position along the chord, (3,)."""

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 from ...determinant.parameter_path import ParameterPath
 from ...discretization.elements.elements import Elements
-from ...discretization.straight.elements import TRANSVERSE
+from ...discretization.straight.elements import TRANSVERSE_COMPONENTS
 from ...discretization.straight.whole_matrices import straight_matrices
 from ...model.rod import Rod
 from ..changes.arm.path import path_problem
@@ -117,7 +117,7 @@ def hopf_coefficients(rod: Rod, hopf: Threshold, accuracy: float) -> HopfCoeffic
         fine_form = normal_form_on(finer_elements, rod, w, accuracy)
         landau_change = abs(fine_form.landau - coarse_form.landau) / abs(fine_form.landau)
         # The rounding error of c follows from the condition number of the eigenvalue.
-        product_sizes = straight_matrices(fine_form.form, TRANSVERSE).product_magnitude(
+        product_sizes = straight_matrices(fine_form.form, TRANSVERSE_COMPONENTS).product_magnitude(
             fine_form.p, fine_form.q
         )
         rounding_error = settings.landau_rounding_per_condition_number * product_sizes / abs(fine_form.w)

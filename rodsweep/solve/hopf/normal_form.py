@@ -26,7 +26,11 @@ from ...discretization.elements.elements import Elements, equal_edges, halve_ele
 from ...discretization.elements.mesh import mesh_with_edges
 from ...discretization.elements.resolution import RESOLUTION_SETTINGS, resolution_for
 from ...discretization.straight.arm_resolution import arm_elements
-from ...discretization.straight.elements import LONGITUDINAL, TRANSVERSE, StraightElements
+from ...discretization.straight.elements import (
+    LONGITUDINAL_COMPONENTS,
+    TRANSVERSE_COMPONENTS,
+    StraightElements,
+)
 from ...discretization.straight.mixed_form import MixedForm
 from ...discretization.straight.whole_matrices import WholeRodMatrices, straight_matrices
 from ...model.rod import Rod
@@ -126,7 +130,9 @@ class NormalForm:
 def normal_form(form: MixedForm, guess: complex) -> NormalForm:
     """Normal form of the eigenvalue of (A, M) nearest to `guess`. Raises Unsolvable if the eigenvalue is real
     or the inverse iteration does not converge."""
-    transverse, longitudinal = (straight_matrices(form, part) for part in (TRANSVERSE, LONGITUDINAL))
+    transverse, longitudinal = (
+        straight_matrices(form, part) for part in (TRANSVERSE_COMPONENTS, LONGITUDINAL_COMPONENTS)
+    )
     w, q, p = _eigenvalue_and_modes(transverse, guess)
     # The mode is transverse, so its quadratic fields are longitudinal: the opposite blocks are not needed.
     h20 = -longitudinal.lu_factors(2j * w.imag).solve(form.bilinear(q, q))

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import COMPLEX_NAN, Array, Complex
-from ...determinant.exponents import ROUND_OFF
+from ...determinant.exponents import MACHINE_EPSILON
 from ...discretization.elements.resolution import Resolution
 from ...discretization.straight.dense_eigenproblem import AnyPencil, DenseEigenproblem, dense_eigenproblem
 from ...discretization.straight.pencil import factors_to_unit_tip
@@ -120,7 +120,7 @@ def _eigenvectors(form: DenseEigenproblem, eigenvalues: Complex) -> tuple[Comple
             X[:, i], Z[:, i] = null_vectors(A, B, complex(w))
     # Random rounding errors of the entries of A add up in squares: an rms estimate, not a bound.
     squared_rounding = (np.abs(Z) ** 2 * (np.abs(A) ** 2 @ np.abs(X) ** 2)).sum(axis=0)
-    rounding = ROUND_OFF * np.sqrt(squared_rounding) / np.abs((B[:, None] * Z * X).sum(axis=0))
+    rounding = MACHINE_EPSILON * np.sqrt(squared_rounding) / np.abs((B[:, None] * Z * X).sum(axis=0))
     right_vectors, left_vectors = (V * factors_to_unit_tip(*form.displacements(V)) for V in (X, Z))
     return right_vectors, left_vectors, rounding
 

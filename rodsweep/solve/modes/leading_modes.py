@@ -26,7 +26,7 @@ from ..spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 from ..spectrum.status import SpectrumStatus
 from .convergence import MODE_MESH_SETTINGS, converged_modes
 from .inverse_iteration import ModeVectors, nan_mode_vectors
-from .transient_growth import TransientGrowth, growth_of
+from .transient_growth import TransientGrowth, converged_transient_growth
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -147,7 +147,7 @@ def _with_modes(rod: Rod, request: ModesRequest, outcome: Modes) -> Modes:
         is_stable = True if is_proved else None
         if is_growing or spectrum.unstable_count > 0:
             is_stable = False
-        growth = growth_of(rod, mesh, request.accuracy, is_stable, abs_w)
+        growth = converged_transient_growth(rod, mesh, request.accuracy, is_stable, abs_w)
         errors |= growth.errors_by_name(abs_w)
         # With the stability undecided, the growth may be infinite, so its error is unknown.
         result = replace(

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
-from ...determinant.exponents import ROUND_OFF
+from ...determinant.exponents import MACHINE_EPSILON
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -23,14 +23,16 @@ class PropagatorSettings:
     zero_inverse_eigenvalue_ratio: float = 1e-12
     """An eigenvalue of G = L^-1 whose modulus is at most this fraction of the largest modulus is treated as
     0: the operator L then has an infinite eigenvalue."""
-    taylor_terms: int = 16
+    taylor_term_count: int = 16
     """Number of Taylor terms of exp for a matrix of norm 1/2; a multiple of 4."""
 
     def __post_init__(self) -> None:
-        if self.taylor_terms % 4 or 0.5**self.taylor_terms > ROUND_OFF * factorial(self.taylor_terms):
+        if self.taylor_term_count % 4 or 0.5**self.taylor_term_count > MACHINE_EPSILON * factorial(
+            self.taylor_term_count
+        ):
             raise ValueError(
-                f"taylor_terms = {self.taylor_terms} is not allowed: it must be a multiple of 4, and so "
-                "large that the remainder of exp is below rounding error"
+                f"taylor_term_count = {self.taylor_term_count} is not allowed: it must be a multiple "
+                "of 4, and so large that the remainder of exp is below rounding error"
             )
 
 
@@ -149,7 +151,7 @@ def matrix_exponential(matrices: Array) -> Array:
     powers += [powers[2] @ scaled_matrices, powers[2] @ powers[2]]
     # exp(x) - 1 is squared, not exp(x): small norms keep their digits, since (1 + r)^2 - 1 = 2 r + r^2.
     result = np.zeros_like(scaled_matrices)
-    for order in range(PROPAGATOR_SETTINGS.taylor_terms - 4, -1, -4):  # four terms a product
+    for order in range(PROPAGATOR_SETTINGS.taylor_term_count - 4, -1, -4):  # four terms a product
         terms = sum(powers[i] / float(factorial(order + i)) for i in range(4) if order + i > 0)
         result = terms + powers[4] @ result
     for _ in range(squaring_count):

@@ -86,7 +86,7 @@ UNKNOWN_GROWTH = TransientGrowth(growth_error=inf)
 """Growth after a failed computation: NaN with infinite error."""
 
 
-def growth_of(
+def converged_transient_growth(
     rod: Rod, mesh: AnyMesh, accuracy: float, is_stable: bool | None, abs_w: float
 ) -> TransientGrowth:
     """Numerical abscissa and transient growth of a rod, from `mesh` and finer meshes. accuracy: requested

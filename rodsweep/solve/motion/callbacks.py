@@ -42,13 +42,13 @@ from .context import (
     sqrt_compliance_of,
 )
 from .petsc_calls import (
-    get_dense,
+    get_array_for_reading,
+    get_array_for_writing,
+    get_dense_array,
     object_state_of,
-    read_array,
-    release_read,
-    release_write,
-    restore_dense,
-    write_array,
+    restore_array_after_reading,
+    restore_array_after_writing,
+    restore_dense_array,
 )
 from .predictor import STAGE_PREDICTOR_SETTINGS, begin_step, extrapolation_points_of
 from .stage_newton import solve_stage, test_newton_convergence
@@ -63,9 +63,9 @@ def residual(ts: int, t: float, U: int, Udot: int, R: int, context: int) -> int:
     n = c.unknowns
     scratch = context + OUTPUTS_OFFSET
     outputs = integers_at(scratch, 3)
-    read_array(U, scratch)
-    read_array(Udot, scratch + 8)
-    write_array(R, scratch + 16)
+    get_array_for_reading(U, scratch)
+    get_array_for_reading(Udot, scratch + 8)
+    get_array_for_writing(R, scratch + 16)
     out = doubles_at(outputs[2], n)
     dot = doubles_at(outputs[1], n)
     c.time = t
@@ -75,21 +75,21 @@ def residual(ts: int, t: float, U: int, Udot: int, R: int, context: int) -> int:
         write_rate(doubles_at(outputs[0], n), out, sqrt_compliance_of(c), rod_of(c), matrices_of(c))
         for i in range(n):
             out[i] = dot[i] - out[i]
-    release_read(U, scratch)
-    release_read(Udot, scratch + 8)
-    release_write(R, scratch + 16)
+    restore_array_after_reading(U, scratch)
+    restore_array_after_reading(Udot, scratch + 8)
+    restore_array_after_writing(R, scratch + 16)
     return 0
 
 
 @c_function(POINTER, types.float64, POINTER, POINTER, POINTER)
-def no_explicit_part(ts: int, t: float, U: int, F: int, context: int) -> int:
+def zero_explicit_part(ts: int, t: float, U: int, F: int, context: int) -> int:
     """PETSc's explicit right-hand side F = 0: all of f is implicit. Without it, PETSc from 3.20 on treats the
     rod as a differential-algebraic system, with an additional Newton solve in each step."""
     c = record_at(context, CONTEXT_DTYPE)
     scratch = context + OUTPUTS_OFFSET
-    write_array(F, scratch)
+    get_array_for_writing(F, scratch)
     doubles_at(integers_at(scratch, 1)[0], c.unknowns)[:] = 0.0
-    release_write(F, scratch)
+    restore_array_after_writing(F, scratch)
     return 0
 
 
@@ -111,17 +111,17 @@ def residual_jacobian(  # noqa: PLR0913, PLR0917 - PETSc's signature
     J = doubles_at(c.jacobian, n * n).reshape(n, n)
     # The Jacobian is the expensive part; if only the shift is new, the Jacobian is reused.
     if c.matrix_due == AT_ITERATE:
-        read_array(U, scratch)
+        get_array_for_reading(U, scratch)
         write_rate_jacobian(doubles_at(outputs[0], n), J, sqrt_compliance_of(c), rod_of(c), matrices_of(c))
-        release_read(U, scratch)
+        restore_array_after_reading(U, scratch)
     elif c.matrix_due == AT_BASE:
         write_rate_jacobian(doubles_at(c.base, n), J, sqrt_compliance_of(c), rod_of(c), matrices_of(c))
-    get_dense(B, scratch)
+    get_dense_array(B, scratch)
     M = doubles_at(outputs[0], n * n).reshape(n, n)
     M[:, :] = -J
     for i in range(n):
         M[i, i] += shift
-    restore_dense(B, scratch)
+    restore_dense_array(B, scratch)
     c.last_matrix = B
     object_state_of(B, context + MATRIX_STATE_OFFSET)
     c.matrix_due = UP_TO_DATE
@@ -197,7 +197,7 @@ class CallbackWorkspace:
         if ts.getType() == "arkimex":
             # Without an explicit part PETSc 3.20 and newer would treat the problem as a DAE, with a separate
             # computation of the first slope.
-            call_petsc("TSSetRHSFunction", ts.handle, 0, no_explicit_part.address, context)
+            call_petsc("TSSetRHSFunction", ts.handle, 0, zero_explicit_part.address, context)
             self.set_extrapolation_points(ts.getARKIMEXType())
             self.context["middle"] = STAGE_PREDICTOR_SETTINGS.matrix_time_fraction
         call_petsc("TSSetIFunction", ts.handle, 0, residual.address, context)

@@ -27,13 +27,13 @@ def _compiled_symbol(name: str, signature: Any) -> Any:
     return types.ExternalFunction(name, signature)
 
 
-get_dense = _int_function("MatDenseGetArray", POINTER, POINTER)
-restore_dense = _int_function("MatDenseRestoreArray", POINTER, POINTER)
+get_dense_array = _int_function("MatDenseGetArray", POINTER, POINTER)
+restore_dense_array = _int_function("MatDenseRestoreArray", POINTER, POINTER)
 object_state_of = _int_function("PetscObjectStateGet", POINTER, POINTER)
-read_array = _int_function("VecGetArrayRead", POINTER, POINTER)
-release_read = _int_function("VecRestoreArrayRead", POINTER, POINTER)
-write_array = _int_function("VecGetArray", POINTER, POINTER)
-release_write = _int_function("VecRestoreArray", POINTER, POINTER)
+get_array_for_reading = _int_function("VecGetArrayRead", POINTER, POINTER)
+restore_array_after_reading = _int_function("VecRestoreArrayRead", POINTER, POINTER)
+get_array_for_writing = _int_function("VecGetArray", POINTER, POINTER)
+restore_array_after_writing = _int_function("VecRestoreArray", POINTER, POINTER)
 
 time_of = _int_function("TSGetTime", POINTER, POINTER)
 time_step_of = _int_function("TSGetTimeStep", POINTER, POINTER)
@@ -46,8 +46,8 @@ context_of_snes = _int_function("SNESShellGetContext", POINTER, POINTER)
 stage_residual = _int_function("SNESTSFormFunction", POINTER, POINTER, POINTER, POINTER)
 stage_jacobian = _int_function("SNESTSFormJacobian", POINTER, POINTER, POINTER, POINTER, POINTER)
 right_side_of = _int_function("SNESGetRhs", POINTER, POINTER)
-set_reason = _int_function("SNESSetConvergedReason", POINTER, PETSC_ENUM)
-set_iterations = _int_function("SNESSetIterationNumber", POINTER, INT)
+set_snes_reason = _int_function("SNESSetConvergedReason", POINTER, PETSC_ENUM)
+set_iteration_number = _int_function("SNESSetIterationNumber", POINTER, INT)
 
 solve_linear = _int_function("KSPSolve", POINTER, POINTER, POINTER)
 

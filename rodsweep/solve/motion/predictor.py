@@ -17,7 +17,14 @@ from ...model.compiled.compilation import compiled
 from ...model.compiled.kernel_constants import KernelConstants
 from ..backend.c_functions import POINTER, c_function, doubles_at, integers_at, record_at
 from .context import AT_BASE, CONTEXT_DTYPE, MAX_STAGE_POINTS, MAX_STAGES, OUTPUTS_OFFSET, states_of, times_of
-from .petsc_calls import context_of_ts, read_array, release_read, solution_of, time_of, time_step_of
+from .petsc_calls import (
+    context_of_ts,
+    get_array_for_reading,
+    restore_array_after_reading,
+    solution_of,
+    time_of,
+    time_step_of,
+)
 from .time_scheme import EXTRAPOLATION_POINTS
 
 
@@ -73,9 +80,9 @@ def begin_step(ts: int) -> int:
     times[current] = real[0]
     solution_of(ts, scratch)
     solution = outputs[0]
-    read_array(solution, scratch)
+    get_array_for_reading(solution, scratch)
     states[current] = doubles_at(outputs[0], c.unknowns)
-    release_read(solution, scratch)
+    restore_array_after_reading(solution, scratch)
     time_step_of(ts, scratch)
     c.length = real[0]
     base_state[:] = states[current]

@@ -32,17 +32,17 @@ from .context import (
 )
 from .petsc_calls import (
     context_of_snes,
-    read_array,
-    release_read,
-    release_write,
+    get_array_for_reading,
+    get_array_for_writing,
+    restore_array_after_reading,
+    restore_array_after_writing,
     right_side_of,
-    set_iterations,
-    set_reason,
+    set_iteration_number,
+    set_snes_reason,
     solve_linear,
     stage_jacobian,
     stage_residual,
     time_step_of,
-    write_array,
 )
 from .predictor import predict_stage, store_stage
 
@@ -76,7 +76,7 @@ ITERATING, STEP_SMALL, NOT_FINITE, NOT_CONTRACTING = 0, 4, -4, -5
 
 
 @compiled
-def linearise_at_start(c: Any) -> None:
+def request_matrix_at_start(c: Any) -> None:
     """After a failed stage, requests that the matrix of the repeated, shorter step be evaluated at the start
     of the step. c: context record (`CONTEXT_DTYPE`). The last matrix may belong to a diverged iterate and
     have entries that are not finite; with such a matrix all shorter steps would fail."""
@@ -96,7 +96,7 @@ def convergence_reason(c: Any, iteration: int, dx: float) -> int:
     reuse a small old contraction, with errors a hundred times too large.
     """
     if not np.isfinite(dx):
-        linearise_at_start(c)
+        request_matrix_at_start(c)
         return NOT_FINITE
     # The first iteration of a stage has no previous step.
     theta = dx / c.last_step if iteration > 1 and c.last_step > 0 else 0.0
@@ -115,7 +115,7 @@ def convergence_reason(c: Any, iteration: int, dx: float) -> int:
         return STEP_SMALL
     may_give_up = iteration > STAGE_NEWTON_SETTINGS.iterations_before_giving_up
     if may_give_up and c.growing >= STAGE_NEWTON_SETTINGS.max_growing_steps:
-        linearise_at_start(c)
+        request_matrix_at_start(c)
         return NOT_CONTRACTING
     if theta > STAGE_NEWTON_SETTINGS.new_matrix_contraction:
         c.matrix_due = AT_ITERATE
@@ -133,7 +133,7 @@ def test_newton_convergence(  # noqa: PLR0913, PLR0917 - PETSc's signature
     reason_array = numba.carray(pointer(reason), (1,), np.int32)
     reason_array[0] = ITERATING
     if not np.isfinite(size):
-        linearise_at_start(c)
+        request_matrix_at_start(c)
         reason_array[0] = NOT_FINITE
     elif iteration > 0:
         reason_array[0] = convergence_reason(c, iteration, dx)
@@ -157,21 +157,21 @@ def read_stage_equation(c: Any, scratch: int, snes: int, X: int) -> None:
     c.error = stage_residual(snes, X, c.residual, c.ts)
     c.without_rate = 0
     c.error |= stage_jacobian(snes, X, c.matrix, c.matrix, c.ts)
-    read_array(X, scratch)
-    read_array(c.residual, scratch + 8)
+    get_array_for_reading(X, scratch)
+    get_array_for_reading(c.residual, scratch + 8)
     x = doubles_at(outputs[0], n)
     residual = doubles_at(outputs[1], n)
     constant = doubles_at(c.constant, n)
     for i in range(n):
         constant[i] = residual[i] - c.shift * x[i]
-    release_read(X, scratch)
-    release_read(c.residual, scratch + 8)
+    restore_array_after_reading(X, scratch)
+    restore_array_after_reading(c.residual, scratch + 8)
     right_side_of(snes, scratch)
     right_side = outputs[0]
     if right_side:
-        read_array(right_side, scratch)
+        get_array_for_reading(right_side, scratch)
         constant -= doubles_at(outputs[0], n)
-        release_read(right_side, scratch)
+        restore_array_after_reading(right_side, scratch)
 
 
 @compiled
@@ -192,21 +192,21 @@ def newton_step(c: Any, scratch: int, X: int) -> float:
     outputs = integers_at(scratch, 3)
     constant = doubles_at(c.constant, n)
     f = doubles_at(c.rates, n)
-    write_array(X, scratch)
-    write_array(c.residual, scratch + 8)
+    get_array_for_writing(X, scratch)
+    get_array_for_writing(c.residual, scratch + 8)
     x = doubles_at(outputs[0], n)
     residual = doubles_at(outputs[1], n)
     write_rate(x, f, sqrt_compliance_of(c), rod_of(c), matrices_of(c))
     for i in range(n):
         residual[i] = c.shift * x[i] + constant[i] - f[i]
-    release_write(c.residual, scratch + 8)
+    restore_array_after_writing(c.residual, scratch + 8)
     c.error |= solve_linear(c.ksp, c.residual, c.correction)
-    read_array(c.correction, scratch + 16)
+    get_array_for_reading(c.correction, scratch + 16)
     step = doubles_at(outputs[2], n)
     x -= step
     size = euclidean_norm(step)
-    release_read(c.correction, scratch + 16)
-    release_write(X, scratch)
+    restore_array_after_reading(c.correction, scratch + 16)
+    restore_array_after_writing(X, scratch)
     return size
 
 
@@ -223,9 +223,9 @@ def solve_stage(snes: int, X: int) -> int:
         c.length = doubles_at(scratch, 1)[0]
         c.stages = 1
     read_stage_equation(c, scratch, snes, X)
-    write_array(X, scratch)
+    get_array_for_writing(X, scratch)
     predict_stage(c, doubles_at(integers_at(scratch, 1)[0], c.unknowns))
-    release_write(X, scratch)
+    restore_array_after_writing(X, scratch)
     reason = ITERATING
     iteration = 0
     while reason == ITERATING and not c.error:
@@ -234,11 +234,11 @@ def solve_stage(snes: int, X: int) -> int:
         iteration += 1
         reason = convergence_reason(c, iteration, newton_step(c, scratch, X))
         if reason == ITERATING and iteration >= c.most_iterations:
-            linearise_at_start(c)
+            request_matrix_at_start(c)
             reason = NOT_CONTRACTING
-    read_array(X, scratch)
+    get_array_for_reading(X, scratch)
     store_stage(c, doubles_at(integers_at(scratch, 1)[0], c.unknowns))
-    release_read(X, scratch)
-    set_iterations(snes, iteration)
-    set_reason(snes, reason)
+    restore_array_after_reading(X, scratch)
+    set_iteration_number(snes, iteration)
+    set_snes_reason(snes, reason)
     return c.error

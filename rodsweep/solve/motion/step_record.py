@@ -14,9 +14,9 @@ from .context import CONTEXT_DTYPE, OUTPUTS_OFFSET
 from .petsc_calls import (
     context_of_ts,
     free_memory,
-    read_array,
+    get_array_for_reading,
     reallocate_memory,
-    release_read,
+    restore_array_after_reading,
     set_ts_reason,
     solution_of,
     time_of,
@@ -55,12 +55,12 @@ def store_step(c: Any, scratch: int, ts: int) -> int:
         c.rows = rows
     time_of(ts, scratch)
     solution_of(ts, scratch + 8)
-    read_array(outputs[1], scratch + 16)
+    get_array_for_reading(outputs[1], scratch + 16)
     row = doubles_at(c.rows + 8 * c.stored * (n + 1), n + 1)
     z = doubles_at(outputs[2], n)
     row[0] = doubles_at(scratch, 1)[0]
     row[1:] = z
-    release_read(outputs[1], scratch + 16)
+    restore_array_after_reading(outputs[1], scratch + 16)
     # A state that has left the model is stored too: the message states its h1.
     c.stored += 1
     # z1 is the first of three fields; h1 = 0 where z1 equals `crushed`.

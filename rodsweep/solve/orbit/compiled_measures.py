@@ -80,7 +80,7 @@ def tip_path(states: Array, time_scales: Array, p: OrbitEquations, m: TipMatrice
     S = np.empty((3, len(states), size))
     rates = np.empty((3, len(states), size))
     write_node_stresses(states, S)
-    write_strain_rates(states, rates, p)
+    write_node_strain_rates(states, rates, p)
     # The series is in the mesh time in periods, so dE/dt is multiplied by dt/dtau.
     for a in range(len(rates)):
         for k in range(len(states)):
@@ -148,7 +148,7 @@ def _stretch_at_jump(state: Array, node: int, sides: Array, rod: NodalRod) -> fl
 
 
 @compiled_for_vectors
-def write_strain_rates(states: Array, out: Array, p: OrbitEquations) -> None:
+def write_node_strain_rates(states: Array, out: Array, p: OrbitEquations) -> None:
     """Writes the strain rates dE/dt at all nodes of `states`, (m, n), into `out`, (3, m, nodes + 1); at the
     tip 0 is written. p: equations of the orbit."""
     size = len(p.node_matrices.weights)

@@ -95,9 +95,9 @@ def regraded(mesh: OrbitMesh, orbit: Orbit) -> OrbitMesh:
     return replace(mesh, interval_count=interval_count, grading=grading)
 
 
-def finer_mesh(mesh: OrbitMesh, target: OrbitMesh) -> OrbitMesh:
+def finer_orbit_mesh(mesh: OrbitMesh, target: OrbitMesh) -> OrbitMesh:
     """A mesh that is at least as fine as `target` and finer than the current mesh `mesh`."""
-    order = max(target.order, mesh.order) if target.has_elements_of(mesh) else target.order
+    order = max(target.order, mesh.order) if target.has_same_edges_and_ratios(mesh) else target.order
     # With another grading the target may be finer in time with fewer intervals.
     min_interval_count = mesh.interval_count if target.grading == mesh.grading else 0
     interval_count = max(target.interval_count, min_interval_count)

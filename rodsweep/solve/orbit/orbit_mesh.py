@@ -102,8 +102,9 @@ class OrbitMesh:
         """Number of elements."""
         return len(self.edges) - 1
 
-    def has_elements_of(self, other: "OrbitMesh") -> bool:
-        """Whether the elements of both meshes are equal but for their `order`."""
+    def has_same_edges_and_ratios(self, other: "OrbitMesh") -> bool:
+        """Whether both meshes have elements with the same edges and order ratios; largest orders and time
+        intervals may differ."""
         return (self.edges, self.order_ratios) == (other.edges, other.order_ratios)
 
     @property

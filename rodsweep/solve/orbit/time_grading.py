@@ -34,7 +34,7 @@ class TimeGradingSettings:
     bisections: int = 8
     """Number of bisections that invert the map with an error of 0.002, from where Newton's method
     converges."""
-    newton_steps: int = 4
+    newton_step_count: int = 4
     """Number of Newton steps that invert the map after the bisections; the third reaches rounding error."""
 
 
@@ -90,7 +90,7 @@ class TimeGrading:
             lower = np.where(is_below, middle, lower)
             upper = np.where(is_below, upper, middle)
         middles: Array = (lower + upper) / 2
-        for _ in range(TIME_GRADING_SETTINGS.newton_steps):
+        for _ in range(TIME_GRADING_SETTINGS.newton_step_count):
             middles = middles - (self.times(middles) - times) / self.rates(middles)
         return middles
 

@@ -30,7 +30,7 @@ class CandidateSettings(KernelConstants):
     wide_gap_ratio: float = 0.2
     """Gaps between successive real parts, in which a line for a count may lie, are treated as equally wide if
     their width, divided by |Re w| of the left eigenvalue, exceeds this (stable rods)."""
-    wide_gap_if_unstable: float = 0.05
+    wide_gap_ratio_if_unstable: float = 0.05
     """Like `wide_gap_ratio`, for an unstable rod; less than `wide_gap_ratio`, because eigenvalues far to the
     left converge last and need a finer mesh."""
     last_line_distance_ratio: float = 0.05
@@ -59,7 +59,7 @@ CANDIDATE_SETTINGS = CandidateSettings()
 
 @dataclass(frozen=True, slots=True)
 class Candidates:
-    """Outcome of one attempt on `mesh`: k roots of D, sorted as defined in `rodsweep.model`. vectors:
+    """Outcome of one solve on `mesh`: k roots of D, sorted as defined in `rodsweep.model`. vectors:
     eigenvectors on the mesh, (unknowns, k), or None. failure: error message of SLEPc or LAPACK, or empty."""
 
     mesh: AnyMesh
@@ -175,11 +175,11 @@ def lines_for_count(w: list[complex], mode_count: int) -> list[float]:
     all unstable eigenvalues.
 
     w: eigenvalues found, by descending real part. Gaps wider than `wide_gap_ratio` (unstable rod:
-    `wide_gap_if_unstable`) are equally good; the rightmost comes first. The last line lies to the left of all
-    eigenvalues found.
+    `wide_gap_ratio_if_unstable`) are equally good; the rightmost comes first. The last line lies to the left
+    of all eigenvalues found.
     """
     wide_gap_ratio = (
-        CANDIDATE_SETTINGS.wide_gap_if_unstable if w[0].real > 0 else CANDIDATE_SETTINGS.wide_gap_ratio
+        CANDIDATE_SETTINGS.wide_gap_ratio_if_unstable if w[0].real > 0 else CANDIDATE_SETTINGS.wide_gap_ratio
     )
     # Left of the imaginary axis too, so that one count also gives the number of unstable modes.
     rightmost_end = min(w[mode_count - 1].real, 0.0)

@@ -139,7 +139,7 @@ class ArmProblem(TransverseProblem):
         self._determinant = arm_determinant(rod)
         self.has_bound = isfinite(self._hull.a)
         self.additional_eigenvalue_count = (
-            COMPLETENESS_SETTINGS.additional_eigenvalues if modes_to_prove and self.has_bound else 0
+            COMPLETENESS_SETTINGS.further_eigenvalue_count if modes_to_prove and self.has_bound else 0
         )
         growth, _ = most_amplified_local_waves(rod)
         # So far right that the eigenvalues nearest to it are mostly the rightmost.

@@ -107,8 +107,7 @@ class SpectrumSearch:
         return self.best_spectrum()
 
     def check_candidates(self, candidates: Candidates) -> CheckedCandidates | None:
-        """The candidates with their count and error; None if eigenvalues are missing, after a finer mesh or
-        more eigenvalues were chosen for the next attempt."""
+        """The candidates with their count and error; None after a request for more eigenvalues or a mesh."""
         if self.disagreement is not None:
             candidates = candidates.united_with(self.disagreement.candidates)
         if len(candidates.roots.w) < self.modes:
@@ -154,10 +153,10 @@ class SpectrumSearch:
         if counted <= found_count:  # spurious eigenvalues, or a line within the errors
             self.mesh = self.problem.finer_mesh(self.mesh)
             return
-        requested_count = counted + SEARCH_SETTINGS.spare_modes
+        requested_count = counted + SEARCH_SETTINGS.spare_mode_count
         if requested_count <= self.requested_count:
             # The missing eigenvalues are far from the shift or unresolved.
-            requested_count = self.requested_count + counted - found_count + SEARCH_SETTINGS.spare_modes
+            requested_count = self.requested_count + counted - found_count + SEARCH_SETTINGS.spare_mode_count
             self.problem.move_shift_right()
             self.mesh = self.problem.finer_mesh(self.mesh)
         self.request_eigenvalues(requested_count)
@@ -175,7 +174,8 @@ class SpectrumSearch:
         self.is_leader_unresolved = True
         if found_count < self.requested_count:
             self.mesh = self.problem.finer_mesh(self.mesh)
-        self.request_eigenvalues(max(self.requested_count, 2 * found_count + SEARCH_SETTINGS.spare_modes))
+        min_count = 2 * found_count + SEARCH_SETTINGS.spare_mode_count
+        self.request_eigenvalues(max(self.requested_count, min_count))
 
     def request_eigenvalues(self, requested_count: int) -> None:
         """Requests eigenvalues, and refines the mesh until it has enough unknowns for their number."""
@@ -189,7 +189,7 @@ class SpectrumSearch:
     def update_best(self, checked: CheckedCandidates) -> None:
         """Stores the candidates if they are the best so far; counts successive attempts without progress."""
         best = self.best
-        progress_limit = SEARCH_SETTINGS.progress_ratio * best.error_over_limit if best else 0.0
+        progress_limit = SEARCH_SETTINGS.max_progress_error_ratio * best.error_over_limit if best else 0.0
         is_better = best is None or checked.sort_key < (best.sort_key[0], progress_limit)
         self.stalled_refinements = 0 if is_better else self.stalled_refinements + 1
         if (

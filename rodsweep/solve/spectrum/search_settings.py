@@ -1,13 +1,13 @@
-"""Settings of the search for the leading eigenvalues of one rod: meshes, attempts and accepted errors."""
+"""Settings of the search for the leading eigenvalues of one rod: meshes and accepted errors."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SearchSettings:
-    """Settings of the search for the leading eigenvalues of one rod: meshes, attempts and accepted errors."""
+    """Settings of the search for the leading eigenvalues of one rod: meshes and accepted errors."""
 
-    spare_modes: int = 1
+    spare_mode_count: int = 1
     """A repeated request asks for this number of eigenvalues more than the winding number counts."""
     min_unknowns_per_mode: int = 6
     """Minimum number of unknowns of a mesh per requested eigenvalue."""
@@ -16,15 +16,16 @@ class SearchSettings:
     number are found: each doubling takes several times as long, and nothing is proved in the end."""
     min_resolved_fraction: float = 0.5
     """If a mesh gives too few roots of D, but at least this fraction of the number of requested modes, the
-    next attempt requests more eigenvalues and refines the mesh; otherwise it only refines the mesh."""
+    search requests more eigenvalues on a finer mesh; otherwise the search only refines the mesh."""
     max_meshes: int = 16
-    """Maximum number of attempts, each on one mesh. Only pulled rods of little rotational drag need most."""
+    """Maximum number of meshes, counting a mesh again for each further solve. Only pulled rods of little
+    rotational drag need most."""
     max_failures: int = 3
-    """Maximum number of attempts that end with an error inside PETSc, SLEPc or LAPACK."""
+    """Maximum number of solves that end with an error inside PETSc, SLEPc or LAPACK."""
     max_stalled_refinements: int = 2
     """After this number of successive refinements without progress, the error is taken to be rounding."""
-    progress_ratio: float = 0.5
-    """An attempt is progress if its error is smaller than this fraction of the smallest earlier error."""
+    max_progress_error_ratio: float = 0.5
+    """A solve is progress if its error is smaller than this fraction of the smallest earlier error."""
     max_error_over_limit: float = 0.5
     """A spectrum is accepted if error estimate <= `max_error_over_limit` * requested accuracy. The factor is
     below 1 because an estimate may be too small."""

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import COMPLEX_NAN, Array, Complex
-from ...determinant.exponents import ROUND_OFF
+from ...determinant.exponents import MACHINE_EPSILON
 from ...discretization.elements.quadrature import lobatto_points
 from ...discretization.straight.pencil import factors_to_unit_tip
 from ...discretization.straight.transverse_mesh import AnyMesh
@@ -122,7 +122,7 @@ def errors_with_rounding(w: Complex, error: Array, rod: Rod) -> Array:
     rounding_in_ulps = (
         settings.rounding_in_ulps if rod.is_uniform_and_linear else settings.rounding_of_arms_in_ulps
     )
-    return error + rounding_in_ulps * ROUND_OFF * np.abs(w)
+    return error + rounding_in_ulps * MACHINE_EPSILON * np.abs(w)
 
 
 def spectrum_or_failure(solve: Callable[[], Spectrum], request: SpectrumRequest) -> Spectrum:

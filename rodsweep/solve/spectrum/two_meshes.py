@@ -29,7 +29,7 @@ class TwoMeshSettings:
 
     max_finer_meshes: int = 8
     """Maximum number of meshes after the first; each has a third more unknowns than its predecessor."""
-    spare_eigenvalues: int = 2
+    spare_eigenvalue_count: int = 2
     """Number of eigenvalues requested first on a mesh, in addition to the wanted modes."""
     unchanged_tolerance: float = 1e-9
     """The number of requested eigenvalues is doubled until the leading ones change relatively by less."""
@@ -124,7 +124,7 @@ def _leading_eigenvalues(problem: TransverseProblem, mesh: AnyMesh, mode_count: 
     """Sorted eigenvalues of a mesh. The requested number is doubled until the `mode_count` leading
     eigenvalues no longer change. The result is empty if the mesh is too coarse for a doubled request."""
     solver = problem.solver(mesh)
-    requested_count = mode_count + TWO_MESH_SETTINGS.spare_eigenvalues
+    requested_count = mode_count + TWO_MESH_SETTINGS.spare_eigenvalue_count
     # The solver finds the eigenvalues nearest to the shift, which need not lead: more are requested until
     # the leading eigenvalues stay the same.
     previous_w = np.empty(0, complex)

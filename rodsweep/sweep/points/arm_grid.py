@@ -54,15 +54,15 @@ def grid_of_arms(
     forces = _unit_load_forces(arm_config, arms, grid.get("taper"), find_force)
     unit_load_F = np.vectorize(attrgetter("F"), otypes=[float])(forces)
     # A copy, because a broadcast array cannot be written.
-    codes = np.broadcast_to(_along_dimension(0, statuses), shape).copy()
+    codes = np.broadcast_to(_array_along(0, statuses), shape).copy()
     if arm_config.load_key in LOAD_OF_RATIO:
         codes = _with_flutter_codes(codes, unit_load_F)
     if arm_config.load:
         # An arm that does not flutter has no load relative to flutter.
-        table["F"] = np.where(np.isinf(unit_load_F), np.nan, unit_load_F) * _along_dimension(1, loads)
+        table["F"] = np.where(np.isinf(unit_load_F), np.nan, unit_load_F) * _array_along(1, loads)
         if arm_config.load_key in LOAD_OF_RATIO:
             units[arm_config.load] = table["F"] * units[SCALE_NAME[arm_config.load]]
-    table |= {name: _along_dimension(2, column.ravel()) for name, column in grid.items()}
+    table |= {name: _array_along(2, column.ravel()) for name, column in grid.items()}
     materials = _materials_of(arms) if arm_config.is_nonuniform else ()
     if "F" in table:
         ratios = material.relative_crushing_forces(table.get("taper", np.ones(1)))
@@ -89,7 +89,7 @@ def _materials_of(arms: Sequence[SlenderArm | None]) -> tuple[RodMaterial, ...]:
 
 def _quantity_of_arms(arms: Sequence[SlenderArm | None], quantity: Callable[[SlenderArm], float]) -> Array:
     """Values of `quantity` for all arms, (arms, 1, 1); nan for None, an arm outside the rod model."""
-    return _along_dimension(0, [quantity(arm) if arm else np.nan for arm in arms])
+    return _array_along(0, [quantity(arm) if arm else np.nan for arm in arms])
 
 
 def _arm_or_status(arm_config: ArmConfig, values: Mapping[str, float]) -> tuple[SlenderArm | None, int]:
@@ -177,6 +177,6 @@ def _refuse_grid_without_rods(
     )
 
 
-def _along_dimension(dimension: int, values: Any) -> Array:
+def _array_along(dimension: int, values: Any) -> Array:
     """`values`, (n,), as a 3-D array, along dimension 0 (arms), 1 (loads) or 2 (replaced parameters)."""
     return np.asarray(values).reshape([-1 if i == dimension else 1 for i in range(3)])

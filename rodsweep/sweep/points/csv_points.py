@@ -17,7 +17,7 @@ from ...model.rod import Rod
 from ...wording import enumeration
 from .points import NEUTRAL_VALUES
 
-LONGEST_LINE = 10_000
+MAX_LINE_LENGTH = 10_000
 """A CSV file with a line of this many characters or more is refused; a long line could fill the memory."""
 
 
@@ -49,7 +49,7 @@ def read_points(
     except (UnicodeDecodeError, csv.Error) as error:
         raise InputError(f"parameters.points: {path} is not CSV text ({error})") from error
     if not columns[0]:
-        raise InputError(f"{path}: there is no point after the header")
+        raise InputError(f"{path}: there is no point after the header; write one point in each line below it")
     return tuple(np.array(columns[header.index(name)]) for name in names)
 
 
@@ -66,12 +66,12 @@ def _header_fault(header: list[str]) -> str:
 
 
 def _lines(file: TextIO, path: Path) -> Iterator[str]:
-    """Yields the lines of a text file; raises InputError for a line of LONGEST_LINE characters or more."""
+    """Yields the lines of a text file; raises InputError for a line of MAX_LINE_LENGTH characters or more."""
     # A file without line breaks must not be read into memory as one line.
-    while line := file.readline(LONGEST_LINE):
-        if len(line) == LONGEST_LINE:
+    while line := file.readline(MAX_LINE_LENGTH):
+        if len(line) == MAX_LINE_LENGTH:
             raise InputError(
-                f"{path}: a line has {LONGEST_LINE} characters or more; write one point in each line"
+                f"{path}: a line has {MAX_LINE_LENGTH} characters or more; write one point in each line"
             )
         yield line
 
@@ -80,7 +80,10 @@ def _row_numbers(row: list[str], header: list[str], row_text: str, material: Rod
     """Numbers in a row of the file; InputError for a cell that is not a number, or for values outside the
     model. header: names of the columns. row_text: file and line, for the message."""
     if len(row) != len(header):
-        raise InputError(f"{row_text} has {len(row)} values, but the header names {len(header)}")
+        raise InputError(
+            f"{row_text} has {len(row)} values, but the header names {len(header)}; give a value for each "
+            "name of the header"
+        )
     numbers = []
     for cell, name in zip(row, header, strict=True):
         try:

@@ -13,7 +13,7 @@ from ...config.arm.status import CRUSHED, FLUTTER_UNKNOWN, NO_FLUTTER, NO_WALL, 
 from ...model.arm.drag import MIN_FORMULA_SLENDERNESS
 from ...model.arm.neglected import Validity
 from ...results.layouts.si_variables import VALIDITY_VARIABLES
-from ...results.layouts.variables import SECONDS, STATUS, Layout
+from ...results.layouts.variables import SECONDS_VARIABLE, STATUS_VARIABLE, Layout
 from ...solve.status import PointStatus
 from ...sweep.points.chains import State
 from ...sweep.points.groups import GroupResult
@@ -122,7 +122,7 @@ def solver_with_outcome_cache(solver: Solver, points: Points, layout: Layout) ->
 
     def record(index: int, outcome: Any) -> dict[str, Any]:
         if isinstance(outcome, RepeatedOutcome):
-            return solver.record(index, outcome.outcome) | {SECONDS.name: 0.0}
+            return solver.record(index, outcome.outcome) | {SECONDS_VARIABLE.name: 0.0}
         return solver.record(index, outcome)
 
     return solver.with_wrapper(once, record=record)
@@ -178,12 +178,15 @@ class SkippingSolver:
     def _record(self, index: int, outcome: Any) -> dict[str, Any]:
         if not isinstance(outcome, OutcomeOutsideModel):
             return self.rod_solver.record(index, outcome)
-        return self._empty_values | {STATUS.name: int(outcome.status)}
+        return self._empty_values | {STATUS_VARIABLE.name: int(outcome.status)}
 
     @property
     def _empty_values(self) -> dict[str, Any]:
         """Every variable of a point to which the rod model does not apply, except its status."""
-        return self.layout.empty_point | {SECONDS.name: 0.0, MODEL_APPLIES_NAME: Validity.does_not_apply}
+        return self.layout.empty_point | {
+            SECONDS_VARIABLE.name: 0.0,
+            MODEL_APPLIES_NAME: Validity.does_not_apply,
+        }
 
     def _solve_group(self, indices: NDArray[np.int64]) -> GroupResult:
         """Results for the points of a group at flat indices, (n,); only points to which the rod model
@@ -192,7 +195,7 @@ class SkippingSolver:
         arm_statuses = self.arm_statuses[indices]
         rod_indices = np.flatnonzero(arm_statuses == SLENDER)
         values = {name: np.stack([value] * len(indices)) for name, value in self._empty_values.items()}
-        values[STATUS.name][...] = arm_statuses
+        values[STATUS_VARIABLE.name][...] = arm_statuses
         result = self.rod_solver.grouped[1](indices[rod_indices]) if len(rod_indices) else None
         for name, column in result.values.items() if result else ():
             values[name][rod_indices] = column

@@ -27,7 +27,7 @@ from ...model.material.laws import LINEAR
 from ...results.layouts.phase_diagram import STABILITY_CLASSES
 from ...results.layouts.si_variables import NEGLECTED_EFFECTS, VALIDITY_NOT_KNOWN
 from ...results.layouts.thresholds import HOPF_CROSSING_CODES
-from ...results.layouts.variables import STATUS
+from ...results.layouts.variables import STATUS_VARIABLE
 from ...solve.cycle.status import CycleStatus
 from ...solve.status import PointStatus
 from ...sweep.points.points import Points
@@ -107,7 +107,7 @@ def _motion_at_flutter(record: Record) -> ArmMotion:
 def _motion_of_cycle(record: Record) -> ArmMotion:
     """Motion on the limit cycle, or of the leading mode of an arm that becomes straight, with amplitude 0."""
     frequency, amplitude = (np.asarray(record[name], float) for name in ("frequency", "tip_y_max"))
-    decays = (record[STATUS.name] == int(CycleStatus.straight)) & (record["linear_frequency"] > 0)
+    decays = (record[STATUS_VARIABLE.name] == int(CycleStatus.straight)) & (record["linear_frequency"] > 0)
     frequency = np.where(decays, record["linear_frequency"], frequency)
     return ArmMotion(frequency, None, np.where(np.isfinite(amplitude), amplitude, 0.0), is_cycle=True)
 
@@ -156,7 +156,7 @@ class ArmValidity:
         record: variables of the points, (n, ...). index: index of the point, or indices, (n,).
         """
         motion = MOTION_OF_TASK[self.task](record)
-        may_be_missed = motion.may_be_missed | ~np.isin(record[STATUS.name], self.searched_statuses)
+        may_be_missed = motion.may_be_missed | ~np.isin(record[STATUS_VARIABLE.name], self.searched_statuses)
         arm = self._arm_of(int(np.ravel(index)[0]))
         return self._validity_variables(arm, replace(motion, may_be_missed=may_be_missed), index)
 

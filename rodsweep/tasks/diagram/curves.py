@@ -143,7 +143,7 @@ class DiagramCurves:
             return items.solve(item, partial(self._special_points, items), self.workspace)
         row_index = items.row_of(item)
         starts = items.starts_of_row(row_index)
-        row = self.task.coexistence_row(row_index, self.workspace, starts)
+        row = self.task.solve_coexistence_row(row_index, self.workspace, starts)
         self.special_points_by_row[row_index, len(starts)] = row.special_points + row.folds_beyond
         return row_result(row, self.task.coexistence_record(row))
 

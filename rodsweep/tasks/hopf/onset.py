@@ -19,7 +19,7 @@ from ...solve.modes.propagator import shifted_inverse
 MAX_HALVINGS = 8
 """Maximum number of halvings of the interval. Without an onset in the interval, because a complex pair
 overtakes the leading real eigenvalue, no number of halvings is sufficient."""
-LEADING_TOLERANCE = 0.01
+LEADING_EIGENVALUE_TOLERANCE = 0.01
 """A double eigenvalue is the leading eigenvalue if its relative distance from the mean of the two leading
 eigenvalues on the mesh is at most this number."""
 MESH_ACCURACY = 1e-6
@@ -44,7 +44,7 @@ def locate_onset(
     for _ in range(1 + MAX_HALVINGS):
         if not lower_eigenvalues[:2].imag.any():
             change = onset_between(rods, (low, high), lower_eigenvalues, upper_eigenvalues)
-            if change is not None and _leads(rod, change):
+            if change is not None and _is_leading(rod, change):
                 return change
         middle = (low + high) / 2
         eigenvalues = leading_pair_on_mesh(rod.with_coordinate("F", middle))
@@ -55,11 +55,13 @@ def locate_onset(
     return None
 
 
-def _leads(rod: Rod, change: StabilityChange) -> bool:
+def _is_leading(rod: Rod, change: StabilityChange) -> bool:
     """Whether the double eigenvalue `change` is the leading eigenvalue of the rod at this force. Between two
     forces far from each other, other eigenvalues can merge too."""
     pair = leading_pair_on_mesh(rod.with_coordinate("F", change.F))
-    return bool(abs(pair.mean() - change.growth_rate) <= LEADING_TOLERANCE * abs(change.growth_rate))
+    return bool(
+        abs(pair.mean() - change.growth_rate) <= LEADING_EIGENVALUE_TOLERANCE * abs(change.growth_rate)
+    )
 
 
 def leading_pair_on_mesh(rod: Rod) -> Complex:

@@ -6,9 +6,9 @@ from types import SimpleNamespace
 from typing import Any
 
 from ...results.file.provenance import MAX_FAILURE_REASONS, failure_kind
-from ...results.layouts.variables import STATUS
+from ...results.layouts.variables import STATUS_VARIABLE
 from ...solve.status import PointStatus
-from ...sweep.loop import Indices
+from ...sweep.loop import PointIndices
 from ...sweep.points.groups import GroupResult
 from ..protocol import SweepWideResult
 
@@ -30,7 +30,7 @@ class FailureReasons:
     point_text: Callable[[int], str]
     examples: dict[str, str] = field(default_factory=dict)
 
-    def add(self, index: Indices, result: Any) -> list[str]:
+    def add(self, index: PointIndices, result: Any) -> list[str]:
         """Adds the reason why a point failed; returns a list with this example, or an empty list if the
         reason is known, the list of reasons is full, or no point failed.
 
@@ -57,6 +57,6 @@ def reasons_of_changed_points(
     status_by_value = {int(status): status for status in statuses}
     reasons = FailureReasons(point_text)
     for index, values in result.changed_points.items():
-        status = status_by_value[int(values[STATUS.name])]
+        status = status_by_value[int(values[STATUS_VARIABLE.name])]
         reasons.add(index, SimpleNamespace(status=status, message=result.messages[index]))
     return [*reasons.examples.values()]

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from ... import __version__
 from ...errors import UserError
 from ...results.file.provenance import utc_time
-from ...results.layouts.variables import SECONDS, STATUS, Layout
+from ...results.layouts.variables import SECONDS_VARIABLE, STATUS_VARIABLE, Layout
 from ...solve.backend.solver_pools import destroy_pooled_solvers
 from ...solve.status import PointStatus
 from ...sweep.points.chains import State
@@ -89,7 +89,7 @@ class _GuardedSolver:
     def _failed(self, error: Exception, seconds: float) -> RecordedOutcome:
         """Outcome of a failed point, with the fill value of every variable."""
         status = next(status for status in self.guarded.statuses if status.name == FAILED_STATUS)
-        values = {SECONDS.name: seconds, STATUS.name: int(status)}
+        values = {SECONDS_VARIABLE.name: seconds, STATUS_VARIABLE.name: int(status)}
         return RecordedOutcome(status, describe_exception(error), self.layout.empty_point | values)
 
     def solve_group(self, indices: NDArray[np.int64]) -> GroupResult:

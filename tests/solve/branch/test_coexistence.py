@@ -23,7 +23,7 @@ from rodsweep.solve.branch.bordered.condition import BorderCondition
 from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
 from rodsweep.solve.branch.bordered.scale import ArcLengthScale
 from rodsweep.solve.branch.coexistence import StableStates, solve_coexistence
-from rodsweep.solve.branch.special.augmented.fold_and_torus_functions import FoldFunction
+from rodsweep.solve.branch.special.augmented.fold_and_torus_functions import FoldTestFunction
 from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem
 from rodsweep.solve.branch.special.special_curves import (
     CurveEndReason,
@@ -165,13 +165,15 @@ def test_rise_along_a_branch_is_known_with_the_factors_of_a_cycle_near_by():
     own = BorderedMatrix(fold.orbit, scale, NewtonWorkspace())
     ahead = scale.directional_derivative(fold.orbit, own.branch_tangent(np.array([1.0, 0.0, 0.0])))
     border = ahead / np.linalg.norm(ahead)
-    truth = FoldFunction(own, border, has_small_cycles=False).value(fold.orbit)
+    truth = FoldTestFunction(own, border, has_small_cycles=False).value(fold.orbit)
     other = (
         BorderCondition.at_arc_length(scale, border, fold.orbit, 1e-4)
         .solve_cycle(fold.orbit, 1e-10, NewtonWorkspace())
         .orbit
     )
-    function = FoldFunction(BorderedMatrix(other, scale, NewtonWorkspace()), border, has_small_cycles=False)
+    function = FoldTestFunction(
+        BorderedMatrix(other, scale, NewtonWorkspace()), border, has_small_cycles=False
+    )
     before = abs(function.value(fold.orbit) - truth)
     for _ in range(8):
         function.correct_vectors(fold.orbit)

@@ -155,7 +155,7 @@ def test_no_row_of_an_integrated_arm_has_less_rotational_drag_than_can_be_integr
         ]
         for drag, profile in ((integrated.gamma3, integrated.material.profile), (gamma3, material.profile))
     )
-    least = MOTION_MESH_SETTINGS.min_drag
+    least = MOTION_MESH_SETTINGS.min_rotational_drag
     assert drags == pytest.approx([max(drag, least) for drag in given], rel=1e-12)
 
 

@@ -11,7 +11,7 @@ import pytest
 from mixed_motion import mixed_form
 from rods import rod_of
 
-from rodsweep.determinant.roots.newton import eigenvalue_newton
+from rodsweep.determinant.roots.newton import eigenvalue_by_newton
 from rodsweep.determinant.value import newton_correction_and_scales
 from rodsweep.model.rod import Coefficients, Rod
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
@@ -77,7 +77,7 @@ def test_right_mode_deflects_the_tip_by_a_half(rod, w):
 @EACH
 def test_slope_is_that_of_the_root_of_the_determinant(rod, w):
     direction = Coefficients(1.0, -rod.c1, 0.0, 0.0)
-    root, slope, _ = eigenvalue_newton(w, rod.coefficients, direction)
+    root, slope, _ = eigenvalue_by_newton(w, rod.coefficients, direction)
     assert root == pytest.approx(w, rel=1e-13)
     assert normal_of(rod, w).eigenvalue_slope == pytest.approx(slope, rel=1e-9)
 

@@ -835,7 +835,7 @@ def test_growth_on_a_coarse_mesh_is_refined_until_meshes_agree():
     coarse, fine = (growth_module.propagator_of(rod, assemble_pencil(1, order)) for order in (4, 6))
     first = growth_module.transient_growth(coarse, fine, 23.0, 1e-10)
     assert 1e-9 < abs(first.transient_growth / exact.growth.transient_growth - 1) < first.growth_error
-    growth = growth_module.growth_of(rod, Resolution(1, 4), 1e-10, True, 45.0)
+    growth = growth_module.converged_transient_growth(rod, Resolution(1, 4), 1e-10, True, 45.0)
     assert max(growth.errors_by_name(45.0).values()) < 1e-10
     assert growth.transient_growth == pytest.approx(exact.growth.transient_growth, rel=1e-10)
     assert growth.numerical_abscissa == pytest.approx(exact.growth.numerical_abscissa, rel=1e-9)

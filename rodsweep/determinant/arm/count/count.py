@@ -28,7 +28,7 @@ from ..completeness import has_conjugate
 from ..determinant import ArmDeterminant, PropagatorsUpToW
 from ..elements.settings import ARM_ELEMENT_SETTINGS
 from ..hull.region import EigenvalueHull
-from ..local_waves import ArmSamples, mean_wave_number_and_w_scale
+from ..local_waves import ExponentSamples, mean_wave_number_and_w_scale
 from .phase_node import PhaseNode, linearised_log_determinant, phase_node
 from .settings import CONTOUR_SETTINGS
 
@@ -155,7 +155,7 @@ def _continue_traversal(  # noqa: PLR0913, PLR0917 - state and constants of one 
     box: tuple[Complex, float],
     known_w: Complex,
     hull: EigenvalueHull,
-    samples: tuple[ArmSamples, ArmSamples],
+    samples: tuple[ExponentSamples, ExponentSamples],
     level: PropagatorsUpToW,
 ) -> ContourTraversal:
     """Continues a traversal of the box to the end, or until propagators for another |w| are needed. box:
@@ -234,7 +234,7 @@ def _shortened_distance(reach: float, growth: float, distance: float) -> float:
 
 
 @compiled
-def _phase_between(node: PhaseNode, next_node: PhaseNode, samples: ArmSamples) -> float:
+def _phase_between(node: PhaseNode, next_node: PhaseNode, samples: ExponentSamples) -> float:
     """The change of arg D between two nodes with overlapping discs, from their tangents and values of D."""
     fraction = node.valid_radius / (node.valid_radius + next_node.valid_radius)
     middle_w = node.w + fraction * (next_node.w - node.w)

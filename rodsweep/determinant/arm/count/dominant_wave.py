@@ -10,11 +10,11 @@ not require that Phi is close to log D: D is divided by exp(Phi), and Phi, a qua
 import cmath
 
 from ....model.compiled.compilation import compiled, compiled_for_vectors
-from ..local_waves import ArmSamples, sqrt_in_upper_half_plane
+from ..local_waves import ExponentSamples, sqrt_in_upper_half_plane
 
 
 @compiled_for_vectors
-def dominant_exponent(w: complex, samples: ArmSamples) -> complex:
+def dominant_exponent(w: complex, samples: ExponentSamples) -> complex:
     """Phi(w) = int sqrt(z+) du of an arm, by quadrature over its samples; Im w > 0."""
     # Each factor has its own root: w (rate + bend w) can leave the sheet of the principal root.
     root = cmath.sqrt(w)
@@ -34,7 +34,7 @@ def dominant_exponent(w: complex, samples: ArmSamples) -> complex:
 
 
 @compiled
-def dominant_exponent_slope(w: complex, samples: ArmSamples) -> complex:
+def dominant_exponent_slope(w: complex, samples: ExponentSamples) -> complex:
     """dPhi/dw of the dominant wave at w, Im w > 0."""
     root = cmath.sqrt(w)
     slope = 0j

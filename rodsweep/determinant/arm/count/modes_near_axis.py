@@ -15,7 +15,7 @@ from ....arrays import Array, Complex
 from ....model.compiled.compilation import compiled
 from ....model.compiled.kernel_constants import KernelConstants
 from ..determinant import ArmDeterminant, PropagatorsUpToW
-from ..local_waves import ArmSamples
+from ..local_waves import ExponentSamples
 from ..value import determinant_from_propagators
 from .dominant_wave import dominant_exponent_slope
 from .settings import CONTOUR_SETTINGS
@@ -67,7 +67,7 @@ def modes_near_axis(determinant: ArmDeterminant, max_frequency: float, known_w: 
 
 @compiled
 def _modes_from(
-    heights: Array, known_w: Complex, propagator_set: PropagatorsUpToW, samples: ArmSamples
+    heights: Array, known_w: Complex, propagator_set: PropagatorsUpToW, samples: ExponentSamples
 ) -> Complex:
     """The known eigenvalues, (n,), followed by the eigenvalues that Newton's method finds from w = i height,
     for each of `heights`, (k,). propagator_set: (W, propagators)."""
@@ -86,7 +86,7 @@ def _modes_from(
 
 @compiled
 def _mode_near(
-    guess: complex, known_w: Complex, propagator_set: PropagatorsUpToW, samples: ArmSamples
+    guess: complex, known_w: Complex, propagator_set: PropagatorsUpToW, samples: ExponentSamples
 ) -> complex:
     """The eigenvalue close to `guess` that is not in `known_w`, (n,); nan if no other eigenvalue is close."""
     w = guess

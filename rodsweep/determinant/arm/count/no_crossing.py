@@ -11,7 +11,7 @@ divided out,
 
 h as in `rodsweep.determinant.arm.count.phase_node`, but with Phi(v, p) of each arm, is compared with f(w0, q)
 of the middle arm q. If |f(v, p) - f(w0, q)| < |f(w0, q)| on the circle, f has no zero in the disc, by the
-maximum principle. This is an estimate: f is evaluated at `CONTOUR_SETTINGS.circle_points` points of the
+maximum principle. This is an estimate: f is evaluated at `CONTOUR_SETTINGS.circle_point_count` points of the
 circle and at a few arms, with one safety factor for values between the points and one for the arms between
 these arms."""
 
@@ -31,7 +31,7 @@ from ..determinant import ArmDeterminant, coefficient_samples, elements_for
 from ..elements.propagators import element_propagators
 from ..family_values import propagators_at
 from ..hull.region import EigenvalueHull, PathHulls
-from ..local_waves import ArmSamples, mean_wave_number_and_w_scale
+from ..local_waves import ExponentSamples, mean_wave_number_and_w_scale
 from ..value import determinant_from_propagators, scaled_determinant_from_propagators
 from .dominant_wave import dominant_exponent, dominant_exponent_slope
 from .settings import CONTOUR_SETTINGS, NO_CROSSING_SETTINGS
@@ -41,8 +41,8 @@ class ArmsOfInterval(NamedTuple):
     """Some arms of an interval: the middle arm, then the arms at both ends, then further arms.
 
     known_eigenvalues, known_errors: eigenvalues followed from arm to arm, and their errors, (n, m) each.
-    squares, weights: as in `ArmSamples`, (n, 4, points) and (points,). largest_w, propagators: W, and the
-    propagators of the arms for |w| <= W, (n, elements, terms, PADDED).
+    squares, weights: as in `ExponentSamples`, (n, 4, points) and (points,). largest_w, propagators: W, and
+    the propagators of the arms for |w| <= W, (n, elements, terms, PADDED).
     """
 
     known_eigenvalues: Complex
@@ -78,7 +78,7 @@ def sampled_point_indices(first_index: int, last_index: int) -> list[int]:
     return [middle, first_index, last_index, *further_indices]
 
 
-def proves_no_crossing(
+def proves_no_crossing_of_arms(
     line: float,
     rods: list[Rod],
     p: Array,
@@ -101,7 +101,7 @@ def proves_no_crossing(
     if not math.isfinite(top) or not all(has_conjugate(w_of_arm).all() for w_of_arm in w):
         return False
     samples = [ArmDeterminant(rod).gauss_samples for rod in rods]
-    squares = np.array([arm_samples.squares for arm_samples in samples])
+    squares = np.array([exponent_samples.squares for exponent_samples in samples])
     propagators = [propagators_at(family, p_of_arm)[1] for p_of_arm in p.tolist()]
     arms = ArmsOfInterval(w, error, squares, samples[0].weights, family.largest_w, np.array(propagators))
     scale = mean_wave_number_and_w_scale(complex(line, 0.0), samples[0])[1]
@@ -167,7 +167,7 @@ def _is_zero_free(w0: complex, radius: float, arms: ArmsOfInterval) -> bool:
         L -= 1 / (w0 - arms.known_eigenvalues[0, n])
     wave = (0j, 0j)
     if radius <= CONTOUR_SETTINGS.max_wave_radius * w0.imag:
-        samples = ArmSamples(arms.squares[0], arms.weights)
+        samples = ExponentSamples(arms.squares[0], arms.weights)
         wave = (dominant_exponent(w0, samples), dominant_exponent_slope(w0, samples))
     node = LineNode(w0, value.D, value.log_scale, L, divided_indices, wave)
     number = len(arms.known_eigenvalues)
@@ -190,12 +190,12 @@ def _is_too_close_to_divide(v: complex, w: complex, error: float) -> bool:
 def _has_small_change(node: LineNode, radius: float, arm: int, arms: ArmsOfInterval) -> bool:
     """Whether |f(v, p)/f(w0, q) - 1| <= `NO_CROSSING_SETTINGS.max_change` at the points v of the circle, for
     the arm number `arm`; False if a point is too close to a known eigenvalue."""
-    samples = ArmSamples(arms.squares[arm], arms.weights)
+    samples = ExponentSamples(arms.squares[arm], arms.weights)
     growth = 0.0
     if node.exponent_and_slope[0] == 0:
         # Phi has branch points on the real axis. Here only its change from arm to arm is used, off the axis.
         point_above = complex(node.w.real, radius / CONTOUR_SETTINGS.max_wave_radius)
-        middle_exponent = dominant_exponent(point_above, ArmSamples(arms.squares[0], arms.weights))
+        middle_exponent = dominant_exponent(point_above, ExponentSamples(arms.squares[0], arms.weights))
         growth = (dominant_exponent(point_above, samples) - middle_exponent).real
     for direction in CONTOUR_SETTINGS.directions:
         v = node.w + radius * direction

@@ -14,7 +14,7 @@ Inside the hull, f(v) = D(v) exp(-h(v)) has f'(w) = 0 with
     h(v) = L (v - w)   or   h(v) = Phi(v) - Phi(w) + (L - Phi'(w)) (v - w),
 
 Phi the dominant wave (`rodsweep.determinant.arm.count.dominant_wave`). Cauchy's estimate with the maximum of
-|f| on a circle bounds the change of f. The maximum is estimated from `CONTOUR_SETTINGS.circle_points`
+|f| on a circle bounds the change of f. The maximum is estimated from `CONTOUR_SETTINGS.circle_point_count`
 points and a safety factor. Inside the hull the count is therefore an estimate; the rounding errors of D and
 the errors of its elements are estimates everywhere."""
 
@@ -27,7 +27,7 @@ from ...exponents import EXPONENT_SETTINGS
 from ...value import DeterminantValue
 from ..determinant import PropagatorsUpToW
 from ..hull.region import EigenvalueHull, distance_and_normal
-from ..local_waves import ArmSamples
+from ..local_waves import ExponentSamples
 from ..value import determinant_from_propagators, log_modulus_from_propagators
 from .dominant_wave import dominant_exponent, dominant_exponent_slope
 from .settings import CONTOUR_SETTINGS
@@ -50,7 +50,7 @@ class PhaseNode(NamedTuple):
 
 
 @compiled
-def linearised_log_determinant(node: PhaseNode, v: complex, samples: ArmSamples) -> complex:
+def linearised_log_determinant(node: PhaseNode, v: complex, samples: ExponentSamples) -> complex:
     """The tangent h(v) of log D at a node, without the constant log D(w) (see the module docstring)."""
     Phi, slope = node.exponent_and_slope
     linear_change = (node.L - slope) * (v - node.w)
@@ -63,7 +63,7 @@ def phase_node(
     known_w: Complex,
     trial_radii: tuple[float, float],
     hull: EigenvalueHull,
-    arm: tuple[ArmSamples, PropagatorsUpToW],
+    arm: tuple[ExponentSamples, PropagatorsUpToW],
 ) -> PhaseNode:
     """The node at w, inside or outside the hull. known_w: eigenvalues to divide out of D, (n,). trial_radii:
     (length over which D changes, largest radius of a circle). arm: samples of the arm, and the propagators
@@ -97,7 +97,7 @@ def _node_inside(
     value: DeterminantValue,
     known_w: Complex,
     trial: tuple[float, float],
-    arm: tuple[ArmSamples, PropagatorsUpToW],
+    arm: tuple[ExponentSamples, PropagatorsUpToW],
 ) -> PhaseNode:
     """The node at w inside the hull, with the circle whose bound of |f| gives the largest valid radius.
     value: D at the node. known_w: known eigenvalues, divided out of D. trial: (length over which D changes,

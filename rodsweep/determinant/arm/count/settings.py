@@ -15,7 +15,7 @@ class ContourSettings(KernelConstants):
 
     max_tangent_error: float = 1.5
     """Largest allowed error of a tangent's phase, in radians; errors of two tangents sum to less than pi."""
-    circle_points: int = 8
+    circle_point_count: int = 8
     """Number of points of a circle at which |f| is evaluated; a multiple of 4."""
     circle_safety_factor: float = 1.5
     """Safety factor on the largest |f| at the points of a circle, for larger values between the points."""
@@ -73,8 +73,8 @@ class ContourSettings(KernelConstants):
     def directions(self) -> tuple[complex, ...]:
         """Unit vectors to the points of a circle, in the order of evaluation. Successive points differ much
         in (v - w)^2, so that circles with too large |f| are mostly rejected after one or two points."""
-        order = np.arange(self.circle_points).reshape(-1, 2, 2).swapaxes(1, 2).ravel()
-        return tuple(np.exp(2j * np.pi * (order + 0.5) / self.circle_points).tolist())
+        order = np.arange(self.circle_point_count).reshape(-1, 2, 2).swapaxes(1, 2).ravel()
+        return tuple(np.exp(2j * np.pi * (order + 0.5) / self.circle_point_count).tolist())
 
 
 CONTOUR_SETTINGS = ContourSettings()

@@ -30,7 +30,7 @@ class HullSettings(KernelConstants):
     """Number of constant weights alpha tried, from smallest to largest |g/nu| along the arm, besides 1."""
     min_weight: float = 1e-3
     """Smallest constant weight alpha tried, if |g/nu| is smaller somewhere."""
-    supporting_lines: int = 48
+    supporting_line_count: int = 48
     """Number of supporting lines of the hull tried for the distance of a point w from the hull."""
     max_cached_materials: int = 16
     """Maximum number of materials whose points are cached: it bounds the memory and changes no number."""
@@ -75,10 +75,10 @@ def distance_and_normal(w: complex, a: float, c: float) -> tuple[float, complex]
     b = 1 - c
     largest_distance = -inf
     normal = 1 + 0j
-    for k in range(HULL_SETTINGS.supporting_lines):
+    for k in range(HULL_SETTINGS.supporting_line_count):
         # Close to the imaginary axis the support function grows without bound.
         # Slopes of the normals from 0 to infinity, as many below 1 as above.
-        T = (k / (HULL_SETTINGS.supporting_lines - k)) ** 2
+        T = (k / (HULL_SETTINGS.supporting_line_count - k)) ** 2
         if not c * T < b:
             break
         size = sqrt(1 + T * T)

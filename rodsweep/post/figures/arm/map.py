@@ -82,7 +82,7 @@ def draw_arm_map(request: FigureRequest) -> str:
     handle_by_label = {
         str(handle.get_label()): handle for handle in reversed(handles)
     }  # first of equal entries
-    style.legend_below(figure, [*reversed(handle_by_label.values()), *covers[0]], column_count=3)
+    style.draw_legend_below(figure, [*reversed(handle_by_label.values()), *covers[0]], column_count=3)
     band_axes = (
         [DRAG_AXIS] if not y_name and DRAG_AXIS in indices and len(view.variables[DRAG_AXIS]) > 1 else []
     )

@@ -23,7 +23,7 @@ SCALES_WITH_SECOND_AXIS = ("linear", "log")
 """Scales of an axis for which matplotlib places the ticks of a second scale correctly."""
 MAX_TICK_INTERVALS = 5
 """Largest number of intervals between the ticks of the second scale."""
-ROUNDING = 1e-9
+AXIS_ROUNDING_TOLERANCE = 1e-9
 """Relative rounding error of k2 at a tick of Poisson's ratio."""
 LOAD_WORDS = {"pressure": "pressure on the tip", "force": "force at the tip"}
 """Label of the second scale, by kind of load."""
@@ -68,7 +68,9 @@ def _add_poisson_scales(figure: Figure, view: ResultView) -> None:
             ticks = ticks[(ticks >= ratios.min()) & (ticks <= ratios.max())]
             positions = np.array([shear_stiffness(view, float(ratio)) for ratio in ticks])
             # The ends of the range are drawn, whatever the rounding error.
-            is_visible = (positions >= limits[0] * (1 - ROUNDING)) & (positions <= limits[1] * (1 + ROUNDING))
+            is_visible = (positions >= limits[0] * (1 - AXIS_ROUNDING_TOLERANCE)) & (
+                positions <= limits[1] * (1 + AXIS_ROUNDING_TOLERANCE)
+            )
             poisson_axis = _opposite_axis(panel, letter)
             poisson_axis.set(**{f"{letter}label": "Poisson's ratio"})
             texts = [f"{ratio:.4g}" for ratio in ticks[is_visible]]

@@ -15,13 +15,13 @@ from ....results.file.view import ResultView
 from ..cycle.point_map import cell_edges
 from ..style import LABELS
 
-HATCHES = {Validity.does_not_apply: "////", Validity.doubtful: "..."}
+VALIDITY_HATCHES = {Validity.does_not_apply: "////", Validity.doubtful: "..."}
 """Hatches of points by validity of the model; other points have none."""
 COMPRESSION_HATCH = r"\\\\"
 """Hatch of loads along the rows of a phase diagram that compress an arm beyond the limit of the model."""
 HATCH_LOOK: dict[str, Any] = {"fc": "none", "ec": "0.6", "lw": 0}
 """Matplotlib style of all hatches."""
-NOTES = {
+VALIDITY_NOTES = {
     Validity.does_not_apply: ("hatched", "the model does not apply"),
     Validity.doubtful: ("dotted", "the model is doubtful"),
 }
@@ -33,7 +33,7 @@ def hatch_invalid_points(figure: Figure, views: Sequence[ResultView]) -> None:
     the axes are parameters of the file; adds notes to the title. Without such points, the figure is
     unchanged."""
     validities = [view.variables["model_applies"] for view in views if "model_applies" in view.variables]
-    notes = [_hatched_note(figure, views, validities, validity) for validity in HATCHES]
+    notes = [_hatched_note(figure, views, validities, validity) for validity in VALIDITY_HATCHES]
     figure.suptitle("\n".join(filter(None, (figure.get_suptitle(), *notes))))
 
 
@@ -49,8 +49,8 @@ def _hatched_note(
     is_alone = len(views) == 1 and views[0].is_grid  # not a list, nor the rows of a diagram
     values = views[0].parameter_values
     names = [name for name in views[0].parameters if is_alone and len(values[name]) > 1]
-    word, sentence = NOTES[validity]
-    if names and _hatch_points(figure, views[0], names, outside[0], HATCHES[validity]):
+    word, sentence = VALIDITY_NOTES[validity]
+    if names and _hatch_points(figure, views[0], names, outside[0], VALIDITY_HATCHES[validity]):
         judged_clause = ", judged at each row's first Hopf point or at rest"
         return f"{word}: {sentence}{judged_clause if 'crossing_at' in views[0].variables else ''}"
     return sentence if number == count else f"{sentence} at {number} of {count} points"

@@ -15,35 +15,35 @@ from ....results.file.view import ResultView
 from ...output_files import replaced_file
 from ..layout.fitting import fit_layout
 from ..style import BLUE, VERMILION
-from .portrait import draw_clamp, draw_tip_path, force_arrow, set_frame
-from .selection import SHAPE_VARIABLES, CycleSelection, StoredCycle, chosen_cycles
+from .portrait import draw_clamp, draw_force_arrow, draw_tip_path, set_frame
+from .selection import SHAPE_VARIABLE_NAMES, CycleSelection, StoredCycle, chosen_cycles
 
 FILM_SUFFIXES = (".gif", ".mp4")
 """Suffixes of animation files."""
-PERIOD_SECONDS = 2.4
+FILM_PERIOD_SECONDS = 2.4
 """Duration of one period of the cycle on the screen, in s."""
 MIN_SHAPES = 8
 """Smallest number of stored shapes per period; with fewer shapes the motion is not recognisable."""
-GHOST_COUNT = 6
+EARLIER_SHAPE_COUNT = 6
 """Number of earlier shapes drawn in fading colours behind the arm."""
 TIME_DIGITS = 3
 """Number of significant digits of the period. The running time is printed with as many decimals as the
 period."""
 TIME_TEXT_HEIGHT = 0.08
 """Height of the line with the running time, as a fraction of the panel's height."""
-MAX_GHOST_AGE = 0.2
+MAX_EARLIER_SHAPE_AGE = 0.2
 """Age of the oldest earlier shape that is drawn, in periods."""
 
 
 def write_animation(view: ResultView, points: Sequence[int], output: Path) -> str:
     """Writes an animation of one period of up to three cycles, side by side and with equal durations; returns
     a description. Raises InputError for too few shapes."""
-    selection = chosen_cycles(view, points, SHAPE_VARIABLES)
+    selection = chosen_cycles(view, points, SHAPE_VARIABLE_NAMES)
     frames = len(selection.cycles[0].values["shape_x"])
     if frames < MIN_SHAPES:
         remedy = "too few for an animation; run with limit_cycle.shapes: 48"
         raise InputError(f"{view.path} holds {frames} shapes of a cycle, {remedy}")
-    writer = _film_writer(output, max(1, round(frames / PERIOD_SECONDS)))
+    writer = _film_writer(output, max(1, round(frames / FILM_PERIOD_SECONDS)))
     figure, arms = prepared_animation(selection)
     with replaced_file(output) as partial, writer.saving(figure, str(partial), dpi=100):
         for frame_index in range(frames):
@@ -91,24 +91,26 @@ class MovingArm:
         self.frames = len(cycle.values["shape_x"])
         draw_tip_path(axes, cycle)
         draw_clamp(axes, cycle.units.length)
-        grey_levels = np.linspace(0.85, 0.45, GHOST_COUNT)
+        grey_levels = np.linspace(0.85, 0.45, EARLIER_SHAPE_COUNT)
         self.ghosts = [axes.plot([], [], color=str(grey), lw=1.2, zorder=1.5)[0] for grey in grey_levels]
         (self.rod,) = axes.plot([], [], color=BLUE, lw=3.0, solid_capstyle="round", zorder=3)
-        self.arrow = force_arrow(axes, np.zeros(1), np.zeros(1), np.zeros(1), VERMILION, cycle.units.length)
+        self.arrow = draw_force_arrow(
+            axes, np.zeros(1), np.zeros(1), np.zeros(1), VERMILION, cycle.units.length
+        )
         self.text = axes.text(0.02, 0.02, "", transform=axes.transAxes, size=9)
         axes.set_xlabel(cycle.units.axis_label("x"))
         axes.set_title(cycle.heading(cycle.period_text))
 
     def show_frame(self, frame_index: int) -> None:
         """Moves the arm to the shape with index `frame_index`."""
-        shapes = [self.cycle.values[name] for name in SHAPE_VARIABLES]
-        ages = np.linspace(MAX_GHOST_AGE * self.frames, 0, GHOST_COUNT, endpoint=False)
+        shapes = [self.cycle.values[name] for name in SHAPE_VARIABLE_NAMES]
+        ages = np.linspace(MAX_EARLIER_SHAPE_AGE * self.frames, 0, EARLIER_SHAPE_COUNT, endpoint=False)
         for ghost, steps in zip(self.ghosts, ages.round().astype(int), strict=True):
             ghost.set_data(shapes[0][frame_index - steps], shapes[1][frame_index - steps])
         x, y, theta = (values[frame_index] for values in shapes)
         self.rod.set_data(x, y)
         self.arrow.remove()
-        self.arrow = force_arrow(self.axes, x, y, theta, VERMILION, self.cycle.units.length)
+        self.arrow = draw_force_arrow(self.axes, x, y, theta, VERMILION, self.cycle.units.length)
         time = self.cycle.period * frame_index / self.frames
         decimals = max(0, TIME_DIGITS - 1 - floor(log10(self.cycle.period)))
         time_unit = self.cycle.units.names[1]

@@ -11,8 +11,8 @@ from ....results.file.view import ResultView
 from ...summary.errors import relative_power_error
 from ...summary.number_texts import rounded_text
 from ..arm.quantities import NO_BREAK
-from ..style import BLUE, GREEN, VERMILION, legend_below
-from .selection import ENERGY_BUDGET_VARIABLES, StoredCycle, chosen_cycles, power_in_tex
+from ..style import BLUE, GREEN, VERMILION, draw_legend_below
+from .selection import ENERGY_BUDGET_VARIABLE_NAMES, StoredCycle, chosen_cycles, power_in_tex
 
 RATE_MARK_COUNT = 24
 """Number of times at which marks of dU/dt are drawn over the curve of injection minus dissipation."""
@@ -25,7 +25,7 @@ def draw_energy(view: ResultView, points: Sequence[int], is_narrow: bool = False
     The marks are derivatives of the stored energy U, computed independently of the curve, and must lie on the
     curve.
     """
-    selection = chosen_cycles(view, points, ENERGY_BUDGET_VARIABLES)
+    selection = chosen_cycles(view, points, ENERGY_BUDGET_VARIABLE_NAMES)
     cycles = selection.cycles
     figure = Figure(figsize=(3.6 * len(cycles) + 1.0, 6.4), layout="constrained")
     heights = (1, 1.6, 1)
@@ -39,7 +39,7 @@ def draw_energy(view: ResultView, points: Sequence[int], is_narrow: bool = False
     for axes, label in zip(panel_rows[:, 0], cycles[0].units.energy_and_power_labels, strict=True):
         axes.set_ylabel(label)
     handles = [handle for axes in panel_rows[1:, 0] for handle in axes.get_legend_handles_labels()[0]]
-    legend_below(figure, handles, column_count=2 if is_narrow else min(3, 1 + len(cycles)))
+    draw_legend_below(figure, handles, column_count=2 if is_narrow else min(3, 1 + len(cycles)))
     figure.align_ylabels(panel_rows[:, 0])
     figure.suptitle(selection.title)
     return figure, "energy, injection and dissipation over a cycle" + selection.omissions
@@ -69,7 +69,7 @@ def _draw_budget(panels: Sequence[Axes], cycle: StoredCycle) -> None:
     top, middle, bottom = panels
     phase = np.linspace(0, 1, 401, dtype=np.float64)
     time = phase * cycle.period
-    budget_samples = (cycle.values[name] for name in ENERGY_BUDGET_VARIABLES)
+    budget_samples = (cycle.values[name] for name in ENERGY_BUDGET_VARIABLE_NAMES)
     energy, injection, dissipation = (interpolate_samples(values, phase) for values in budget_samples)
     top.plot(time, energy, color="k", lw=1.5)
     mean_power = float(cycle.values["injection_mean"])

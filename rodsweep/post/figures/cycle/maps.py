@@ -18,7 +18,7 @@ from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 
 from ....arrays import Array
-from ....config.arm.axes import CHANGED_PARAMETER
+from ....config.arm.axes import PARAMETER_CHANGED_ALONG
 from ....results.file.view import ResultView
 from ....results.layouts.limit_cycle import CYCLE_STATUSES
 from ....sweep.points.points import ParameterLine
@@ -78,7 +78,7 @@ def draw_maps(view: ResultView, is_narrow: bool = False) -> tuple[Figure, str]:
     label_maps(panels, points)
     if handles:
         legend_row_count = -(-len(handles) // MAX_LEGEND_ROW_ENTRIES)
-        style.legend_below(figure, handles, column_count=-(-len(handles) // legend_row_count))
+        style.draw_legend_below(figure, handles, column_count=-(-len(handles) // legend_row_count))
     figure.suptitle(style.heading_text(view, _common_parameters_text(view, points, units.in_si)))
     return figure, f"period and amplitude over {' and '.join(points.names)}{points.omissions}"
 
@@ -88,7 +88,7 @@ def _common_parameters_text(view: ResultView, points: PointMap, is_in_si: bool) 
     are equal at all points."""
     if not is_in_si:
         return style.parameter_text(points.common_parameters)
-    varied = (quantity for quantity, name in CHANGED_PARAMETER.items() if name in points.names)
+    varied = (quantity for quantity, name in PARAMETER_CHANGED_ALONG.items() if name in points.names)
     numbers = [int(points.point_indices[place]) + 1 for place in ((0, 0), (-1, -1))]
     return shared_and_own_of_arms(view, numbers, {*points.names, *varied})[0]
 

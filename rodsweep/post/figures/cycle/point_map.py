@@ -51,7 +51,10 @@ def point_map(view: ResultView) -> PointMap:
         )
     finite = np.isfinite(x), np.isfinite(y)
     if min(np.count_nonzero(is_finite) for is_finite in finite) < 2:
-        raise InputError(f"{view.path} has fewer than two finite values of {names[0]} or {names[1]} to map")
+        raise InputError(
+            f"{view.path} has fewer than two finite values of {names[0]} or {names[1]}; a map needs two of "
+            "each"
+        )
     omissions = left_out_clause(columns, names)
     constants = {name: float(values[0]) for name, values in columns.items() if name not in names}
     indices = indices[np.ix_(*finite[::-1])]

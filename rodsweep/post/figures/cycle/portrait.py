@@ -22,7 +22,7 @@ from matplotlib.ticker import FuncFormatter
 from ....arrays import Array
 from ....results.file.view import ResultView
 from ..style import BLUE, VERMILION
-from .selection import SHAPE_VARIABLES, StoredCycle, chosen_cycles
+from .selection import SHAPE_VARIABLE_NAMES, StoredCycle, chosen_cycles
 from .transient import draw_start_of_motion, label_time_axes, label_tip_axes
 
 MAX_SHAPES = 12
@@ -60,7 +60,7 @@ def draw_portrait(view: ResultView, points: Sequence[int], is_narrow: bool = Fal
 
     is_narrow: whether the page is too narrow for panels side by side.
     """
-    selection = chosen_cycles(view, points, SHAPE_VARIABLES)
+    selection = chosen_cycles(view, points, SHAPE_VARIABLE_NAMES)
     cycles = selection.cycles
     figure, shape_panels, tip_panels = _new_panels(cycles, is_narrow)
     has_transients = all(cycle.has_transient for cycle in cycles)
@@ -73,9 +73,9 @@ def draw_portrait(view: ResultView, points: Sequence[int], is_narrow: bool = Fal
         draw_tip_path(axes, cycle)
         draw_clamp(axes, cycle.units.length)
         for number, frame in enumerate(shape_indices):
-            x, y, theta = (cycle.values[name][frame] for name in SHAPE_VARIABLES)
+            x, y, theta = (cycle.values[name][frame] for name in SHAPE_VARIABLE_NAMES)
             axes.plot(x, y, color=colours(number), lw=1.8, solid_capstyle="round", zorder=2 + number / 100)
-            force_arrow(axes, x, y, theta, colours(number), cycle.units.length)
+            draw_force_arrow(axes, x, y, theta, colours(number), cycle.units.length)
         axes.set_xlabel(cycle.units.axis_label("x"))
         axes.set_title(cycle.heading(cycle.period_text, cycle.period_in_tau1))
         if has_transients:
@@ -147,7 +147,7 @@ def draw_tip_path(axes: Axes, cycle: StoredCycle) -> None:
     axes.plot(x, y, color="0.6", lw=0.8, ls=(0, (4, 2)), zorder=1)
 
 
-def force_arrow(axes: Axes, x: Array, y: Array, theta: Array, colour: Any, length: float) -> Quiver:
+def draw_force_arrow(axes: Axes, x: Array, y: Array, theta: Array, colour: Any, length: float) -> Quiver:
     """Draws the follower force as an arrow of the colour `colour` that ends at the tip, along -(cos theta,
     sin theta) with theta at the tip; returns the arrow. x, y, theta: shape of the arm, (nodes,) each. length:
     L, in the unit of the axes."""
@@ -185,7 +185,7 @@ def limits_of_shapes(cycles: Sequence[StoredCycle]) -> tuple[tuple[float, float]
     x_parts = [np.array([wall_x])]
     y_parts = []
     for cycle in cycles:
-        x, y, theta = (cycle.values[name] for name in SHAPE_VARIABLES)
+        x, y, theta = (cycle.values[name] for name in SHAPE_VARIABLE_NAMES)
         arrow = ARROW_LENGTH * cycle.units.length
         x_parts += [x.ravel(), x[:, -1] + arrow * np.cos(theta[:, -1])]
         y_parts += [y.ravel(), y[:, -1] + arrow * np.sin(theta[:, -1])]

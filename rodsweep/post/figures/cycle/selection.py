@@ -16,17 +16,17 @@ from ....results.file.view import ResultView
 from ...summary.number_texts import rounded_text
 from ..arm.quantities import given_quantities, quantity_at_point, quantity_text, replaced_parameters
 from ..style import heading_text, parameter_text
-from .units_and_labels import PLAIN_UNITS, REQUIRED_QUANTITIES, CycleUnits, units_at_points
+from .units_and_labels import DIMENSIONLESS_UNITS, REQUIRED_QUANTITIES, CycleUnits, units_at_points
 
 MAX_CYCLES = 3
 """Largest number of cycles that fit side by side into one figure."""
-SHAPE_VARIABLES = ("shape_x", "shape_y", "shape_theta")
+SHAPE_VARIABLE_NAMES = ("shape_x", "shape_y", "shape_theta")
 """Names of the variables with the shapes over a period."""
-ENERGY_BUDGET_VARIABLES = ("energy", "injection", "dissipation")
+ENERGY_BUDGET_VARIABLE_NAMES = ("energy", "injection", "dissipation")
 """Names of the variables with the energy budget over a period."""
 TRANSIENT_VARIABLE_NAMES = ("transient_time", "transient_x", "transient_y")
 """Names of the variables with the motion from the initial state."""
-STORING_OPTIONS = dict.fromkeys(SHAPE_VARIABLES, "shapes") | dict.fromkeys(
+STORING_OPTIONS = dict.fromkeys(SHAPE_VARIABLE_NAMES, "shapes") | dict.fromkeys(
     TRANSIENT_VARIABLE_NAMES, "transient"
 )
 """Option of the config with which the task stores a variable. Other variables over a period are stored with
@@ -47,7 +47,7 @@ class StoredCycle:
     values: dict[str, Array]
     status_name: str = "cycle"
     """Status of the point, as a word."""
-    units: CycleUnits = PLAIN_UNITS
+    units: CycleUnits = DIMENSIONLESS_UNITS
 
     @property
     def tau1(self) -> float:

@@ -10,18 +10,18 @@ from numpy.typing import NDArray
 from ....arrays import Array
 from ....model.units import value_in_unit, with_si_prefix
 from ....results.file.view import ResultView
-from ...tables.rows_and_columns import quantities_at_points
+from ...tables.rows_and_columns import quantities_of_view
 from ..arm.quantities import NO_BREAK
 
-LENGTH_VARIABLES = ("shape_x", "shape_y", "tip_x", "tip_y", "transient_x", "transient_y")
+LENGTH_VARIABLE_NAMES = ("shape_x", "shape_y", "tip_x", "tip_y", "transient_x", "transient_y")
 """Names of variables that are lengths, with values over a period, along a shape, or over a transient."""
-CYCLE_LENGTH_VARIABLES = ("tip_x_min", "tip_x_max", "tip_y_max")
+CYCLE_LENGTH_VARIABLE_NAMES = ("tip_x_min", "tip_x_max", "tip_y_max")
 """Names of variables that are lengths, with one value for each cycle."""
-TIME_VARIABLES = ("period", "transient_time")
+TIME_VARIABLE_NAMES = ("period", "transient_time")
 """Names of variables that are times."""
-ENERGY_VARIABLES = ("energy",)
+ENERGY_VARIABLE_NAMES = ("energy",)
 """Names of variables that are energies."""
-POWER_VARIABLES = ("injection", "dissipation", "injection_mean", "dissipation_mean")
+POWER_VARIABLE_NAMES = ("injection", "dissipation", "injection_mean", "dissipation_mean")
 """Names of variables that are powers."""
 PREFIXED_BELOW_SECONDS = 0.1
 """If the longest period is below this value, in s, times have a prefix such as ms."""
@@ -91,15 +91,15 @@ class CycleUnits:
     def converted(self, values: dict[str, Array]) -> dict[str, Array]:
         """The variables `values` of a point, of any shape, by name, converted to these units."""
         factors: dict[str, NumberOrArray] = (
-            dict.fromkeys((*LENGTH_VARIABLES, *CYCLE_LENGTH_VARIABLES), self.length)
-            | dict.fromkeys(TIME_VARIABLES, self.time)
-            | dict.fromkeys(ENERGY_VARIABLES, self.energy)
-            | dict.fromkeys(POWER_VARIABLES, self.power)
+            dict.fromkeys((*LENGTH_VARIABLE_NAMES, *CYCLE_LENGTH_VARIABLE_NAMES), self.length)
+            | dict.fromkeys(TIME_VARIABLE_NAMES, self.time)
+            | dict.fromkeys(ENERGY_VARIABLE_NAMES, self.energy)
+            | dict.fromkeys(POWER_VARIABLE_NAMES, self.power)
         )
         return {name: value * factors[name] if name in factors else value for name, value in values.items()}
 
 
-PLAIN_UNITS = CycleUnits()
+DIMENSIONLESS_UNITS = CycleUnits()
 """Dimensionless units of the paper."""
 
 
@@ -120,9 +120,9 @@ def units_of_files(views: Sequence[ResultView], indices: Sequence[NDArray[np.int
     """Units for the points of each file, with factors of shape (n,); dimensionless if a file has no arm.
     indices: indices of the points of each file, (n,)."""
     if not all(name in view.quantities for view in views for name in REQUIRED_QUANTITIES):
-        return [PLAIN_UNITS] * len(views)
+        return [DIMENSIONLESS_UNITS] * len(views)
     lengths, times, forces = (
-        [quantities_at_points(view)[name][chosen] for view, chosen in zip(views, indices, strict=True)]
+        [quantities_of_view(view)[name][chosen] for view, chosen in zip(views, indices, strict=True)]
         for name in REQUIRED_QUANTITIES
     )
     power_units = [force * length / time for force, length, time in zip(forces, lengths, times, strict=True)]

@@ -49,18 +49,18 @@ def _exchange_colours(artist: object, background: ColorType) -> None:
     if isinstance(artist, Line2D):
         # All are read before one is set: the colours of markers may follow the colour of the line.
         colours = artist.get_color(), artist.get_markeredgecolor(), artist.get_markerfacecolor()
-        line, edge_, face_ = (_exchanged(colour, background) for colour in colours)
+        line, edge_, face_ = (_exchanged_colour(colour, background) for colour in colours)
         artist.set(color=line, markeredgecolor=edge_, markerfacecolor=face_)
     elif isinstance(artist, Collection):
         artist.set_edgecolor(
-            [_exchanged(colour, background) for colour in to_rgba_array(artist.get_edgecolor())]
+            [_exchanged_colour(colour, background) for colour in to_rgba_array(artist.get_edgecolor())]
         )
         artist.set_facecolor(
-            [_exchanged(colour, background) for colour in to_rgba_array(artist.get_facecolor())]
+            [_exchanged_colour(colour, background) for colour in to_rgba_array(artist.get_facecolor())]
         )
 
 
-def _exchanged(colour: ColorType, background: ColorType) -> ColorType:
+def _exchanged_colour(colour: ColorType, background: ColorType) -> ColorType:
     """The colour of texts for a dark colour, `background` for white, and otherwise `colour`."""
     *rgb, alpha = to_rgba(colour)
     if alpha == 0:

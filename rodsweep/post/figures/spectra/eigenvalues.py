@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 from ....results.file.view import ResultView
 from ..arm.quantities import set_heading
 from ..point_lists import label_point_numbers, shared_parameters
-from ..style import BLUE, VERMILION, legend_below, parameter_text, require_content
+from ..style import BLUE, VERMILION, draw_legend_below, parameter_text, require_content
 
 SPREAD_RATIO = 100.0
 """An axis is symmetric logarithmic if the ratio of the largest to the smallest nonzero modulus exceeds
@@ -42,7 +42,7 @@ def draw_eigenvalues(view: ResultView) -> Figure:
     axes.axhline(0, color="0.8", lw=0.6, zorder=0)
     axes.margins(0.12)
     axes.set(xlabel=r"$\mathrm{Re}\,\omega\,\tau_2$", ylabel=r"$\mathrm{Im}\,\omega\,\tau_2$")
-    legend_below(figure, handles, column_count=2)
+    draw_legend_below(figure, handles, column_count=2)
     set_heading(figure, view, parameter_text(shared_parameters(view)))
     return figure
 
@@ -60,7 +60,7 @@ def draw_list_of_spectra(view: ResultView) -> Figure:
         axes.axhline(0, color="0.5", lw=0.6, zorder=0)
         axes.set_ylabel(rf"$\mathrm{{{part_name}}}\,\omega\,\tau_2$")
     label_point_numbers(panels[1], view, len(growth))
-    legend_below(figure, handles, column_count=2)
+    draw_legend_below(figure, handles, column_count=2)
     set_heading(figure, view, parameter_text(shared_parameters(view)))
     return figure
 

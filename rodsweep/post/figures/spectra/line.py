@@ -90,7 +90,7 @@ def roots_to_follow(views: Sequence[ResultView], typed_roots: str | None) -> str
         lines = (_followed_roots(view, roots) for view in views)
         return sum(len(with_gaps_between_roots(np.arange(len(w), dtype=float), w)[0]) - len(w) for w in lines)
 
-    def hides_growth(roots: str) -> bool:
+    def hides_growing_root(roots: str) -> bool:
         followed = (_followed_roots(view, roots).real.max(axis=1) for view in views)
         stored = (view.by_point("growth_rate").max(axis=1) for view in views)
         return any(
@@ -98,7 +98,7 @@ def roots_to_follow(views: Sequence[ResultView], typed_roots: str | None) -> str
             for followed_roots, stored_roots in zip(followed, stored, strict=True)
         )
 
-    return min(("smallest", "rightmost"), key=lambda roots: (hides_growth(roots), breaks(roots)))
+    return min(("smallest", "rightmost"), key=lambda roots: (hides_growing_root(roots), breaks(roots)))
 
 
 def _followed_roots(view: ResultView, roots: str) -> Complex:
@@ -128,7 +128,7 @@ def draw_line(view: ResultView, name: str, roots: str) -> Figure:
         _draw_all_roots(bottom, view.parameter_values[name], w, style.LABELS[name])
     bottom.axvline(0, color="0.5", lw=0.6)
     bottom.set(xlabel=r"$\mathrm{Re}\,\omega\,\tau_2$", ylabel=r"$\mathrm{Im}\,\omega\,\tau_2$")
-    style.legend_below(figure, top.get_legend_handles_labels()[0], 2)
+    style.draw_legend_below(figure, top.get_legend_handles_labels()[0], 2)
     set_heading(figure, view, style.constant_parameters_text(view, name), ROOT_CHOICE_TEXTS[roots])
     return figure
 

@@ -56,7 +56,7 @@ def draw_class_bars(view: ResultView) -> Figure:
     else:
         axes.set(ylim=(0, largest_force), ylabel=style.LABELS["F"])
         label_point_numbers(axes, view, rod_count)
-    style.legend_below(figure, handles, column_count=2)
+    style.draw_legend_below(figure, handles, column_count=2)
     set_heading(figure, view, style.parameter_text(shared_parameters(view)))
     return figure
 

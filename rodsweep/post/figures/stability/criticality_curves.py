@@ -44,11 +44,15 @@ def draw_hopf_curves_by_criticality(
         label = rf"generalised Hopf point: ${symbols[0]}$ = {x:.6g}, ${symbols[1]}$ = {y:.6g}"
         handles += axes.plot(x, y, "kD", mfc="white", ls="", ms=5, label=label)
     return handles + (
-        _bautin_curves(axes, view, line_parameter, row_parameter) if "bautin_along_curve" in variables else []
+        _draw_bautin_curves(axes, view, line_parameter, row_parameter)
+        if "bautin_along_curve" in variables
+        else []
     )
 
 
-def _bautin_curves(axes: Axes, view: ResultView, line_parameter: str, row_parameter: str) -> list[Line2D]:
+def _draw_bautin_curves(
+    axes: Axes, view: ResultView, line_parameter: str, row_parameter: str
+) -> list[Line2D]:
     """Draws curves of generalised Hopf points; returns legend entries. line_parameter, row_parameter: see the
     module."""
     variables = view.variables

@@ -19,7 +19,7 @@ LABEL_MARGIN = 1.5
 """Factor by which the boxes of two symbols are enlarged before they are compared."""
 
 
-def lowest_parts(paths: list[Array], force: int) -> list[Array]:
+def parts_at_lowest_force(paths: list[Array], force: int) -> list[Array]:
     """Parts of the curves `paths`, (n, 2) each, that have the smallest F of all curves. force: index of the
     column with F."""
     starts = np.concatenate([path[:-1] for path in paths])
@@ -56,13 +56,13 @@ def label_longest_curve(axes: Axes, paths: list[Array], name: str, length_fracti
         vertex_index = int(np.searchsorted(lengths[longest_index], fraction * lengths[longest_index][-1]))
         place: dict[str, Any] = {"xytext": (4, -2), "textcoords": "offset points"}
         label = axes.annotate(name, seen[longest_index][vertex_index], size=LABEL_FONTSIZE, va="top", **place)
-        if not any(_overlap(label, other) for other in other_labels):
+        if not any(_do_overlap(label, other) for other in other_labels):
             return
         label.remove()
     axes.annotate(name, seen[longest_index][0], size=LABEL_FONTSIZE, va="top", **place)
 
 
-def _overlap(label: Annotation, other: Annotation) -> bool:
+def _do_overlap(label: Annotation, other: Annotation) -> bool:
     """Whether two labels overlap, with a margin of half of their size, because panels shrink later."""
     first_box, second_box = (
         annotation.get_window_extent().expanded(LABEL_MARGIN, LABEL_MARGIN) for annotation in (label, other)

@@ -12,7 +12,7 @@ from ....results.layouts.branch import SPECIAL_KINDS
 from ...stability_curves import curves_bounding_stability
 from ..style import GREEN, SYMBOLS
 from .criticality_curves import draw_hopf_curves_by_criticality
-from .curve_labels import label_longest_curve, lowest_parts
+from .curve_labels import label_longest_curve, parts_at_lowest_force
 from .regions import DrawnPlane
 
 CURVE_LOOKS = {1: ("Hopf points", 1.4, "-"), 0: ("double eigenvalue", 1.0, "--")}
@@ -70,7 +70,7 @@ def draw_boundary_curves(
                 for curve in named
             ]
             if paths and "F" in (line_parameter, row_parameter):
-                paths = lowest_parts(paths, 0 if line_parameter == "F" else 1)
+                paths = parts_at_lowest_force(paths, 0 if line_parameter == "F" else 1)
             symbol, position = CURVE_SYMBOLS[number]
             if paths:
                 label_longest_curve(

@@ -15,7 +15,7 @@ from ..style import is_logarithmic
 PIXEL_COUNT = 900
 """Number of pixels along each axis. In a figure of 183 mm width a pixel measures 0.2 mm, half the width of
 the line that is drawn over a boundary."""
-LINE_WIDTH = 2
+CURVE_PIXEL_WIDTH = 2
 """Width, in pixels, of the line that is drawn over a boundary."""
 CURVE_STEP = 0.4
 """Distance, in pixels, between points of a boundary; with a distance below 1 the boundary has no gap."""
@@ -93,7 +93,7 @@ def pixel_classes(
     distance_to_wall = scipy.ndimage.distance_transform_edt(~walls) if walls.any() else None
     for region in range(1, count + 1):
         pixels = np.nonzero(regions == region)
-        is_visible = distance_to_wall is None or distance_to_wall[pixels].max() > LINE_WIDTH
+        is_visible = distance_to_wall is None or distance_to_wall[pixels].max() > CURVE_PIXEL_WIDTH
         for source, of_region in sources:
             if of_region is None and is_visible:
                 break

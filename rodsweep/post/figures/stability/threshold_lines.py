@@ -60,7 +60,7 @@ def draw_lines_of_grid(view: ResultView, names: list[str], search: str) -> tuple
             handles.append(Line2D([], [], color=shade, lw=2, label=label))
     _label_axes(axes, view, x_name, table)
     axes.set_ylabel(style.CRITICAL_FORCE_LABEL)
-    style.legend_below(figure, handles, column_count=3)
+    style.draw_legend_below(figure, handles, column_count=3)
     set_heading(figure, view, style.constant_parameters_text(view, *names), search)
     caption = f"critical forces against {x_name}" + (f" for every {second_name}" if second_name else "")
     return figure, caption + _infinite_values_clause(view, [x_name])
@@ -83,7 +83,7 @@ def draw_lines_of_files(views: Sequence[ResultView], x_name: str, search: str) -
         style.scale_axis(axes, "y", forces)
         axes.set_ylim(forces[0] / FORCE_AXIS_RATIO, forces[-1] * FORCE_AXIS_RATIO)
     axes.set_ylabel(style.CRITICAL_FORCE_LABEL)
-    style.legend_below(figure, handles, column_count=2)
+    style.draw_legend_below(figure, handles, column_count=2)
     figure.suptitle("\n".join(filter(None, (style.constant_parameters_text(longest, x_name), search))))
     clause = _infinite_values_clause(longest, [x_name])
     return figure, f"critical forces against {x_name} of {len(views)} files{clause}"
@@ -101,7 +101,9 @@ def draw_selected_lines(
     texts = []
     for panel, x_name, second_name in zip(panels, names, reversed(names), strict=True):
         count = len(view.parameter_values[second_name])
-        texts.append(f"{_some_lines(panel, view, x_name, second_name)} of {count} values of {second_name}")
+        texts.append(
+            f"{_draw_some_lines(panel, view, x_name, second_name)} of {count} values of {second_name}"
+        )
         if is_narrow or panel is panels[0]:
             panel.set_ylabel(style.CRITICAL_FORCE_LABEL)
     handles = [
@@ -109,14 +111,14 @@ def draw_selected_lines(
         for name, word, colour, marker, _ in CRITICAL_FORCES
         if np.isfinite(view.variables[name]).any()
     ]
-    style.legend_below(figure, handles, column_count=3)
+    style.draw_legend_below(figure, handles, column_count=3)
     set_heading(figure, view, style.constant_parameters_text(view, *names), search)
     lines = f"lines for {' and '.join(texts)} (--what map: all)"
     omissions_clause = _infinite_values_clause(view, names)
     return figure, f"critical forces against {' and '.join(names)}, {lines}{omissions_clause}"
 
 
-def _some_lines(panel: Axes, view: ResultView, x_name: str, second_name: str) -> int:
+def _draw_some_lines(panel: Axes, view: ResultView, x_name: str, second_name: str) -> int:
     """Draws thresholds against the parameter `x_name` for up to three different values of the parameter
     `second_name`, see `_label_line_indices`; returns the number of values."""
     table = _first_force_table(view, x_name, second_name)

@@ -15,7 +15,7 @@ from ....wording import count_of_total, counted
 from .arm import errors_in_si, range_in_unit
 from .drag_range import arms_of_drags, drag_lines
 from .load_lines import ANSWER_DIGITS, compression_lines, extreme_arms_text, flutter_force_line
-from .validity_sentences import plane_lines, row_clause, validity_sentence
+from .validity_sentences import plane_lines, row_motion_clause, validity_sentence
 
 Lines = list[str]
 """Lines of text."""
@@ -49,7 +49,7 @@ def _validity_lines(view: ResultView, computed: np.ndarray, rods: np.ndarray) ->
         return no_rods if computed.any() else []
     validity = {variable.name: view.variables[variable.name][rods] for variable in VALIDITY_VARIABLES}
     noun = "row" if "crossing_at" in view.variables else "point"
-    caveat = validity_sentence(validity, row_clause(view, rods), noun)
+    caveat = validity_sentence(validity, row_motion_clause(view, rods), noun)
     is_in_model = rods & (view.variables["model_applies"] != Validity.does_not_apply)
     answer_lines = ANSWER_LINES_BY_TASK[view.task]
     if not is_in_model.any():
@@ -66,7 +66,7 @@ def range_text(view: ResultView, values: np.ndarray, si: str, errors: np.ndarray
     return range_in_unit(view, values, si, errors, ANSWER_DIGITS)
 
 
-def load_range_text(view: ResultView, loads: np.ndarray) -> str:
+def si_loads_text(view: ResultView, loads: np.ndarray) -> str:
     """Range of the loads `loads`, (n,) in SI units, as text in the unit that the user typed."""
     return range_text(view, loads, UNITS[view.load_kind][0])
 
@@ -99,11 +99,11 @@ def _threshold_lines(view: ResultView, rods: np.ndarray) -> tuple[Lines, Lines]:
     onset = variables[f"{load}_onset"][rods]
     restabilized = variables[f"{load}_restabilization"][rods]
     if len(flutter) > 1 and np.isfinite(onset).any():
-        lines.append(f"decaying disturbances oscillate from {load_range_text(view, onset)} on")
+        lines.append(f"decaying disturbances oscillate from {si_loads_text(view, onset)} on")
     if len(flutter) > 1 and np.isfinite(restabilized).any():
         points = count_of_total(int(np.isfinite(restabilized).sum()), len(restabilized), "point")
         lines.append(
-            f"the straight arm is stable again at {points}, from {load_range_text(view, restabilized)} on"
+            f"the straight arm is stable again at {points}, from {si_loads_text(view, restabilized)} on"
         )
     return _flutter_lines(view, flutter, ends, rates), lines
 
@@ -139,11 +139,11 @@ def _count_clause(mask: np.ndarray, rods: np.ndarray) -> str:
 def _flutter_lines(view: ResultView, loads: np.ndarray, end: np.ndarray, frequency: np.ndarray) -> Lines:
     """Lines about flutter. loads: flutter loads. end: largest searched loads. frequency: in Hz. All (n,)."""
     flutters = np.isfinite(loads)
-    search = f"up to {load_range_text(view, end)}" if np.isfinite(end).any() else ""
+    search = f"up to {si_loads_text(view, end)}" if np.isfinite(end).any() else ""
     if not flutters.any():
         return [f"does not flutter {search}".rstrip()]
     count_clause = f" at {int(flutters.sum())} of {len(loads)} points" if not flutters.all() else ""
-    sentence = f"flutter begins{count_clause} at {load_range_text(view, loads)}"
+    sentence = f"flutter begins{count_clause} at {si_loads_text(view, loads)}"
     lines = [f"{sentence}; there the arm beats at {range_text(view, frequency, 'Hz')}"]
     if count_clause:
         lines.append(f"does not flutter at {int((~flutters).sum())} of {len(loads)} points {search}".rstrip())
@@ -211,7 +211,7 @@ def _branch_lines(view: ResultView, rods: np.ndarray) -> tuple[Lines, Lines]:
         return ["has no branch of cycles from a Hopf point in the range searched"], []
     frequency = 1 / view.variables["period_si"][rods]
     rate_text = range_text(view, frequency, "Hz", errors=frequency * view.variables["period_error"][rods])
-    return [f"cycles, stable or not, exist at {load_range_text(view, loads)}; they beat at {rate_text}"], []
+    return [f"cycles, stable or not, exist at {si_loads_text(view, loads)}; they beat at {rate_text}"], []
 
 
 def _row_lines(view: ResultView, rods: np.ndarray) -> tuple[Lines, Lines]:

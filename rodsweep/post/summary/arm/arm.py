@@ -19,7 +19,7 @@ from ....results.layouts.si_units import HERTZ
 from ....results.layouts.si_variables import si_variables_of
 from ....results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from ...located_thresholds import LocatedThreshold
-from ...tables.rows_and_columns import quantities_at_points
+from ...tables.rows_and_columns import quantities_of_view
 from ..errors import absolute_errors, is_known
 from ..number_texts import RANGE_DIGITS, rounded_text, span_text
 
@@ -93,7 +93,7 @@ def _largest_absolute(values: np.ndarray) -> float:
 
 def given_columns(view: ResultView) -> dict[str, np.ndarray]:
     """Given quantities of an arm that differ between points of a file, by name: at all points, (points,)."""
-    columns = {name: column for name, column in quantities_at_points(view).items() if name not in ARM_SCALES}
+    columns = {name: column for name, column in quantities_of_view(view).items() if name not in ARM_SCALES}
     return {name: column for name, column in columns.items() if len(np.unique(column[~np.isnan(column)])) > 1}
 
 

@@ -10,26 +10,27 @@ from ....results.layouts.si_variables import NEGLECTED_EFFECTS, VALIDITY_NOT_KNO
 from ....results.layouts.thresholds import HOPF_CROSSING_CODES
 from ....wording import count_of_total, counted, two_digits
 
-OTHER_PLANE = (
+OTHER_PLANE_WARNING = (
     "the motion is in the plane of the height; where the height exceeds the width, the arm flutters first in "
-    "the other plane, at a lower load: exchange width and height to compute it"
+    "the other plane, at a lower load: exchange width and height to compute this flutter"
 )
 """Warning for a rectangular section whose height exceeds its width."""
 
-MISSED_MOTION = (
-    "an unstable mode or a cycle may have been missed, and the neglected effects depend on its frequency"
+MISSED_MOTION_TEXT = (
+    "an unstable mode or a cycle may have been missed, and the neglected effects depend on the frequency of "
+    "the motion"
 )
 """Reason why it is not known whether the model applies."""
 
 
 def plane_lines(quantities: Mapping[str, np.ndarray]) -> list[str]:
-    """List with the warning OTHER_PLANE if some arm is higher than wide, and flutters first in the plane that
-    is not computed; else an empty list.
+    """List with the warning OTHER_PLANE_WARNING if some arm is higher than wide, and flutters first in the
+    plane that is not computed; else an empty list.
 
     quantities: quantities of the arm in SI units, by name, () or (n,).
     """
     height, width = (np.asarray(quantities.get(name, np.nan)) for name in ("height", "width"))
-    return [OTHER_PLANE] if np.max(height) > np.min(width) else []
+    return [OTHER_PLANE_WARNING] if np.max(height) > np.min(width) else []
 
 
 def validity_caveat(variables: Mapping[str, np.ndarray]) -> str:
@@ -52,7 +53,7 @@ def validity_sentence(validity: Mapping[str, np.ndarray], condition: str = "", n
     count = len(validities)
     everywhere_text = f" {preposition} all {counted(count, noun)}" if count > 1 else ""
     if is_unknown.all():
-        return f"whether the model applies is not known{everywhere_text}{condition}: {MISSED_MOTION}"
+        return f"whether the model applies is not known{everywhere_text}{condition}: {MISSED_MOTION_TEXT}"
     unknown_clause = f"; not known {preposition} {count_of_total(int(is_unknown.sum()), count, noun)}"
     rest_clause = unknown_clause if is_unknown.any() else ""
     worst_validity = Validity(int(validities.max()))
@@ -72,7 +73,7 @@ def validity_sentence(validity: Mapping[str, np.ndarray], condition: str = "", n
     )
 
 
-def row_clause(view: ResultView, rows: np.ndarray) -> str:
+def row_motion_clause(view: ResultView, rows: np.ndarray) -> str:
     """Clause on the motion by which the validity of the model on rows of a phase diagram was judged: the
     first Hopf point of each row, or rest on a row without Hopf point. Empty for other tasks, and for rows
     whose motion is not known. rows: mask of the rows, (...,).

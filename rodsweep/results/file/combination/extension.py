@@ -83,9 +83,9 @@ class Extension:
             for option, old_value in self.increased_options:
                 is_kept &= option.has_data(records, old_value)
             if is_kept.any():
-                yield self._converted(records[is_kept], index[is_kept])
+                yield self._records_in_new_layout(records[is_kept], index[is_kept])
 
-    def _converted(self, records: np.ndarray, index: Indices) -> np.ndarray:
+    def _records_in_new_layout(self, records: np.ndarray, index: Indices) -> np.ndarray:
         """Stored records converted to the new layout, (n,), at new flat indices `index`, (n,). Values that
         the old layout lacks are fill values."""
         converted = np.empty(len(records), self.new_layout.record_dtype)

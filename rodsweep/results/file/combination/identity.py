@@ -17,21 +17,21 @@ from ....config.base_config import Config
 from ....config.document.reading import config_from_resolved
 from ....config.parameters_section import ParametersSection
 
-LONGEST_VALUE = 80
+MAX_VALUE_CHARACTERS = 80
 """Maximum number of characters of a value in a message; longer values are cut."""
 
 
-VARIABLE = "variable"
+VARYING_QUANTITY = "variable"
 """Stands for the values of an arm's quantity that varies between the points of a config."""
 
 
 def compared_settings(config: Config) -> dict[str, Any]:
-    """`Config.settings_of_results`, in which a quantity of an arm is VARIABLE instead of None if it varies
-    between points, so that None means that a key is not given."""
+    """`Config.settings_of_results`, in which a quantity of an arm is VARYING_QUANTITY instead of None if it
+    varies between points, so that None means that a key is not given."""
     settings = config.settings_of_results
     if "arm" not in settings:
         return settings
-    arm = {name: VARIABLE if value is None else value for name, value in settings["arm"].items()}
+    arm = {name: VARYING_QUANTITY if value is None else value for name, value in settings["arm"].items()}
     return settings | {"arm": arm}
 
 
@@ -98,17 +98,17 @@ def config_difference(
     if stored == given:
         return ""
     longest = max(len(json.dumps(value)) for value in (stored, given))
-    if isinstance(stored, list) and isinstance(given, list) and longest > LONGEST_VALUE:
+    if isinstance(stored, list) and isinstance(given, list) and longest > MAX_VALUE_CHARACTERS:
         return f"{key} has {_list_difference(stored, given, origins)}"
     texts = [_value_text(value) for value in (stored, given)]
     return f"{key} is {texts[0]} in {origins[0]} and {texts[1]} in {origins[1]}"
 
 
 def _value_text(value: Any) -> str:
-    """A value of a config as text for a message, cut to LONGEST_VALUE characters."""
-    if value is None or value == VARIABLE:
-        return "not given" if value is None else VARIABLE
-    return json.dumps(value)[:LONGEST_VALUE]
+    """A value of a config as text for a message, cut to MAX_VALUE_CHARACTERS characters."""
+    if value is None or value == VARYING_QUANTITY:
+        return "not given" if value is None else VARYING_QUANTITY
+    return json.dumps(value)[:MAX_VALUE_CHARACTERS]
 
 
 def _list_difference(stored: list[Any], given: list[Any], origins: tuple[str, str]) -> str:
@@ -117,7 +117,7 @@ def _list_difference(stored: list[Any], given: list[Any], origins: tuple[str, st
     numbered_pairs = enumerate(zip_longest(stored, given), 1)
     number, values = next((i, pair) for i, pair in numbered_pairs if pair[0] != pair[1])
     stored_text, requested_text = (
-        "missing" if value is None else json.dumps(value)[:LONGEST_VALUE] for value in values
+        "missing" if value is None else json.dumps(value)[:MAX_VALUE_CHARACTERS] for value in values
     )
     return (
         f"{lengths_text}; value {number} is {stored_text} in {origins[0]} and {requested_text} in "

@@ -19,7 +19,7 @@ from ....config.base_config import Config
 from ....config.document.reading import config_from_resolved, config_yaml, resolved_config
 from ....errors import InputError
 from ....sweep.points.points import Points
-from ...layouts.variables import MISSING_STATUS, SECONDS
+from ...layouts.variables import MISSING_STATUS, SECONDS_VARIABLE
 from ..content_digests import SEAL_ATTRIBUTE
 from ..creation import FilePlan
 from ..points import points_of_file, records_at, stored_records, write_records
@@ -59,12 +59,12 @@ class JoinedFile:
             for records in stored_records(source.path, source.layout):
                 records["index"] = point_map(records["index"])
                 is_new = owner[records["index"]] < 0
-                self._compare(path, records[~is_new], owner, number)
+                self._refuse_different(path, records[~is_new], owner, number)
                 write_records(path, [records[is_new]], self.plan.layout)
                 owner[records["index"][is_new]] = number
         return [self.sources[number] for number in np.unique(owner[owner >= 0])]
 
-    def _compare(self, path: Path, records: np.ndarray, owner: np.ndarray, number: int) -> None:
+    def _refuse_different(self, path: Path, records: np.ndarray, owner: np.ndarray, number: int) -> None:
         """Raises InputError if records, (n,), of the source `number` differ from the values already stored in
         the file for the same points. Rounding errors are allowed. owner: number of the source of each stored
         point, (points,)."""
@@ -72,7 +72,7 @@ class JoinedFile:
             return
         stored_records = records_at(path, records["index"], self.plan.layout)
         for name in (
-            variable.name for variable in self.plan.layout.variables if variable.name != SECONDS.name
+            variable.name for variable in self.plan.layout.variables if variable.name != SECONDS_VARIABLE.name
         ):
             old_values = stored_records[name]
             new_values = records[name]

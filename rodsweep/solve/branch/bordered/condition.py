@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ....arrays import Array
-from ....determinant.exponents import ROUND_OFF
+from ....determinant.exponents import MACHINE_EPSILON
 from ....discretization.stress.form import STRESS_FORM_SETTINGS, StressForm
 from ....solve_progress import report
 from ...orbit.matrix.workspace import NewtonWorkspace
@@ -136,8 +136,9 @@ def require_equal_unknowns(form: StressForm, orbit: Orbit) -> None:
     if form.unknown_velocities != orbit.form.unknown_velocities:
         settings = STRESS_FORM_SETTINGS
         raise Unsolvable(
-            f"the solver changes its unknowns at a rotational drag of {settings.min_eliminated_drag:.0e} "
-            f"gamma2 L^2 and at an axial drag of {settings.min_eliminated_axial_drag:.0e} gamma2, and one of "
+            "the solver changes its unknowns at a rotational drag of "
+            f"{settings.min_eliminated_rotational_drag:.0e} gamma2 L^2 and at an axial drag of "
+            f"{settings.min_eliminated_axial_drag:.0e} gamma2, and one of "
             "these values lies between the two cycles: choose a range on one side of it"
         )
 
@@ -149,7 +150,7 @@ def moved_orbit(orbit: Orbit, name: str, change: Array) -> Orbit:
     try:
         coordinate = orbit.form.rod.coordinate(name)
         new_coordinate = coordinate + float(change[-1])
-        if new_coordinate < 0 < new_coordinate + ROUND_OFF * abs(coordinate):  # 0 but for rounding
+        if new_coordinate < 0 < new_coordinate + MACHINE_EPSILON * abs(coordinate):  # 0 but for rounding
             new_coordinate = 0.0
         form = orbit.form.with_coordinate(name, new_coordinate)
     except (ValueError, ZeroDivisionError) as error:

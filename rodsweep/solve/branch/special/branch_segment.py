@@ -10,7 +10,7 @@ from ..bordered.condition import moved_orbit
 from ..bordered.corrected_linearisation import bordered_matrix_of
 from ..bordered.matrix import BorderedMatrix
 from ..branch_prediction import parameter_polynomial
-from .augmented.fold_and_torus_functions import FoldFunction, correct_until_converged
+from .augmented.fold_and_torus_functions import FoldTestFunction, correct_until_converged
 from .special_point import SPECIAL_POINT_SETTINGS
 
 
@@ -76,7 +76,7 @@ class BranchSegment:
         )
         self._matrix = bordered_matrix_of(solved)
         # The tangent is corrected with the factors of the nearby cycle, so no second matrix is factorised.
-        function = FoldFunction(self._matrix, self.start.unit_tangent, False)
+        function = FoldTestFunction(self._matrix, self.start.unit_tangent, False)
         correct_until_converged(function, solved.orbit)
         self._last_solved = length, solved.orbit, function.null_vectors
         return solved

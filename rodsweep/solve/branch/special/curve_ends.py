@@ -29,7 +29,7 @@ class CurveEndSettings:
 END_SETTINGS = CurveEndSettings()
 ROW_EDGE_MARGINS = (2, 3)
 """Indices, in `SpecialCurveProblem.margins`, of the two edges that are parallel to the rows."""
-END_BY_MARGIN = (
+END_REASON_BY_MARGIN = (
     *4 * (CurveEndReason.edge,),
     CurveEndReason.crushed,
     CurveEndReason.left_the_model,

@@ -17,7 +17,7 @@ from ...orbit.orbit_mesh import mesh_of
 from ...unsolvable import Unsolvable, WorkLimitReached
 from ..bordered.matrix import BorderedMatrix
 from .augmented.fold_and_torus_functions import pair_nearest_unit_circle
-from .curve_ends import END_BY_MARGIN, END_SETTINGS, ROW_EDGE_MARGINS
+from .curve_ends import END_REASON_BY_MARGIN, END_SETTINGS, ROW_EDGE_MARGINS
 from .curve_prediction import (
     length_before_crushing,
     orbit_with_parameters,
@@ -74,7 +74,7 @@ class SpecialCurveProblem:
     def _end_reason(self, curve: Curve[SolvedPoint]) -> CurveEndReason:
         """Reason for the end of the curve `curve`, as stored in the result file."""
         if curve.end_reason is StopReason.zero_margin:
-            return END_BY_MARGIN[curve.margin_index]
+            return END_REASON_BY_MARGIN[curve.margin_index]
         if curve.end_reason is StopReason.closed:
             return CurveEndReason.closed
         return (
@@ -159,7 +159,7 @@ class SpecialCurveProblem:
     ) -> SolvedPoint | None:
         """The point between `previous[-1]` and `outer` at which the margin with index `margin` is 0; None if
         this point is `previous[-1]` itself. For the margin of the amplitude: `outer`. Raises Unsolvable."""
-        if END_BY_MARGIN[margin] is CurveEndReason.hopf:
+        if END_REASON_BY_MARGIN[margin] is CurveEndReason.hopf:
             return outer  # no cycle exists at the Hopf point itself: the curve's end is extrapolated
         inner = self.roles.with_roles(previous[-1], self.roles.are_exchanged_at(outer))
         ends = float(self.margins(inner)[margin]), float(self.margins(outer)[margin])

@@ -21,7 +21,7 @@ from ...unsolvable import Unsolvable
 from ..bordered.condition import BorderCondition, moved_orbit
 from ..bordered.scale import ArcLengthScale
 from ..branch_tangent import tangent_at
-from .augmented.fold_and_torus_functions import AUGMENTED_SETTINGS
+from .augmented.fold_and_torus_functions import MINIMALLY_AUGMENTED_SETTINGS
 from .augmented.nearby_cycles import NearbyCycleSolver
 from .solved_curve_point import CURVE_SECANT_SETTINGS, NormalDerivatives, SearchLine, SolvedPoint
 
@@ -138,7 +138,7 @@ class SecantSearch:
     def _is_accurate_enough(self, error: float) -> bool:
         """Whether a point at the distance `error` from the curve is accurate enough. Errors within the
         tolerance of the test function are always small enough."""
-        if error <= AUGMENTED_SETTINGS.tolerance:
+        if error <= MINIMALLY_AUGMENTED_SETTINGS.tolerance:
             return True
         parameter = abs(getattr(self.orbit.form.rod, self.family.scale.parameter_name))
         max_error = CURVE_SECANT_SETTINGS.max_secant_error_ratio * CURVE_SECANT_SETTINGS.accuracy * parameter
@@ -153,9 +153,10 @@ class SecantSearch:
         self.orbit = family.orbit_at_row(self.orbit, row)
         slope = abs(rates.test_slope) if rates else 1.0
         is_accurate = (
-            AUGMENTED_SETTINGS.tolerance
+            MINIMALLY_AUGMENTED_SETTINGS.tolerance
             if rates
-            else AUGMENTED_SETTINGS.tolerance_to_distance_ratio * CURVE_SECANT_SETTINGS.first_secant_step
+            else MINIMALLY_AUGMENTED_SETTINGS.tolerance_to_distance_ratio
+            * CURVE_SECANT_SETTINGS.first_secant_step
         )
         condition = BorderCondition(family.scale, family.border, length)
         self.orbit, test_value = self.nearby_solver.solve(self.orbit, condition, slope, is_accurate)
@@ -223,7 +224,7 @@ class SecantSearch:
             row_coordinate=row_coordinate,
             parameter=getattr(orbit.form.rod, scale.parameter_name),
             row_parameter=getattr(orbit.form.rod, family.row_axis.name),
-            secant_error=self._parameter_error(distance_error + AUGMENTED_SETTINGS.tolerance),
+            secant_error=self._parameter_error(distance_error + MINIMALLY_AUGMENTED_SETTINGS.tolerance),
             normal_derivatives=derivatives,
         )
 

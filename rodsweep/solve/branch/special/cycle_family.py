@@ -19,7 +19,7 @@ from ...orbit.tails import smooth_tails
 from ...unsolvable import Unsolvable
 from ..bordered.matrix import BorderedMatrix
 from ..bordered.scale import ArcLengthScale
-from .augmented.fold_and_torus_functions import FoldFunction, TorusFunction
+from .augmented.fold_and_torus_functions import FoldTestFunction, TorusTestFunction
 from .curve_prediction import orbit_with_parameters
 from .curve_secant import SecantSearch
 from .solved_curve_point import (
@@ -55,7 +55,7 @@ class CycleFamily:
         """The family of the cycles near `point` of a curve of special points of the kind `kind`. row_axis:
         axis of the row parameter. workspace: memory of Newton's matrices."""
         has_small_cycles = (
-            kind == SpecialKind.fold and point.tip_y_max < CURVE_SECANT_SETTINGS.small_fold_cycle
+            kind == SpecialKind.fold and point.tip_y_max < CURVE_SECANT_SETTINGS.max_small_cycle_y
         )
         return cls(kind, row_axis, point.scale, point.branch_direction, has_small_cycles, workspace)
 
@@ -63,11 +63,11 @@ class CycleFamily:
         """The orbit with unchanged values, for the rod at `row_coordinate`; raises Unsolvable."""
         return orbit_with_parameters(orbit, {self.row_axis.name: self.row_axis.value(row_coordinate)})
 
-    def test_function(self, matrix: BorderedMatrix) -> FoldFunction | TorusFunction:
+    def test_function(self, matrix: BorderedMatrix) -> FoldTestFunction | TorusTestFunction:
         """The test function of this kind of special points, for cycles near the orbit of `matrix`."""
         if self.kind == SpecialKind.fold:
-            return FoldFunction(matrix, self.border, self.has_small_cycles)
-        return TorusFunction(matrix)
+            return FoldTestFunction(matrix, self.border, self.has_small_cycles)
+        return TorusTestFunction(matrix)
 
     def corrected_point(
         self,

@@ -10,7 +10,7 @@ import numpy as np
 from ....arrays import Array
 from .special_point import RowSpecialPoint, SpecialKind, SpecialPoint
 
-FOLDS = "folds_beyond"
+FOLDS_ARRAY = "folds_beyond"
 """Name of the array of a row's folds beyond the range, (folds, 3): parameter along the row, period, tip y."""
 
 
@@ -33,7 +33,7 @@ class FoldsBeyondRange:
         return self.first_item + len(self.row_values)
 
     def items_to_solve(self, results: Mapping[int, dict[str, Array]]) -> list[int]:
-        """Numbers of the rows without a result. results: arrays `FOLDS`, (folds, 3), by number."""
+        """Numbers of the rows without a result. results: arrays `FOLDS_ARRAY`, (folds, 3), by number."""
         return [item for item in range(self.first_item, self.end_item) if item not in results]
 
     def row_of(self, item: int) -> int:
@@ -53,7 +53,7 @@ class FoldsBeyondRange:
         self, item: int, known_points: Callable[[int], tuple[SpecialPoint, ...]], limits: tuple[float, float]
     ) -> dict[str, Array]:
         """Folds of the row of a work item beyond the range `limits` of the parameter along the rows, as the
-        array `FOLDS`, (folds, 3). known_points: function from the index of a row to its special points,
+        array `FOLDS_ARRAY`, (folds, 3). known_points: function from the index of a row to its special points,
         within the range and beyond."""
         folds = [
             (point.parameter_value, point.period, point.tip_y_max)
@@ -61,10 +61,10 @@ class FoldsBeyondRange:
             if point.kind == SpecialKind.fold and not limits[0] <= point.parameter_value <= limits[1]
         ]
         # A row without folds gives shape (0, 3), which `np.array` alone cannot know.
-        return {FOLDS: np.array(folds, dtype=float).reshape(-1, 3)}
+        return {FOLDS_ARRAY: np.array(folds, dtype=float).reshape(-1, 3)}
 
     def special_points(self, results: Mapping[int, dict[str, Array]]) -> list[RowSpecialPoint]:
-        """The folds of all rows. results: arrays `FOLDS`, (folds, 3), of all work items, by number."""
+        """The folds of all rows. results: arrays `FOLDS_ARRAY`, (folds, 3), of all work items, by number."""
         return [
             RowSpecialPoint(
                 row_index=self.row_of(item),
@@ -75,5 +75,5 @@ class FoldsBeyondRange:
                 tip_y_max=float(height),
             )
             for item in range(self.first_item, self.end_item)
-            for value, period, height in results[item].get(FOLDS, ())
+            for value, period, height in results[item].get(FOLDS_ARRAY, ())
         ]

@@ -20,7 +20,7 @@ from ..arc_length_step import BranchCycle
 from ..bordered.condition import moved_orbit
 from ..bordered.corrected_linearisation import bordered_matrix_of
 from ..bordered.scale import ArcLengthScale
-from .augmented.fold_and_torus_functions import TorusFunction, correct_until_converged
+from .augmented.fold_and_torus_functions import TorusTestFunction, correct_until_converged
 from .branch_segment import BranchSegment
 from .special_point import SPECIAL_POINT_SETTINGS, SpecialKind, SpecialPoint
 from .special_point_errors import special_point_at, unlocated_point, with_mesh_errors
@@ -41,7 +41,7 @@ def test_function_value(kind: SpecialKind, segment: BranchSegment, solved: Conve
     if kind == SpecialKind.left_the_model:
         return least_stretch(CycleMotion(solved.orbit))
     if kind == SpecialKind.torus:
-        function = TorusFunction(bordered_matrix_of(solved))
+        function = TorusTestFunction(bordered_matrix_of(solved))
         correct_until_converged(function, solved.orbit)
         return function.value(solved.orbit)
     matrix = segment.matrix_at(solved.orbit)

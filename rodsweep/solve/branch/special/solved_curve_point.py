@@ -25,7 +25,7 @@ class CurveSecantSettings:
     solved to 1e-9."""
     max_points_per_measurement: int = 3
     """Maximum number of successive points of a curve that share one measured error."""
-    small_fold_cycle: float = 0.05
+    max_small_cycle_y: float = 0.05
     """If the largest tip y, in L, is smaller than this number, the fold test function is divided by the
     deflection; without this division the function vanishes at a Hopf point too."""
     first_secant_step: float = 1e-3

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import ClassVar
 
 from ....determinant.parameter_plane import PlaneAxis
-from ...continuation.curve_search import CurveTracing, TracedCurves, trace_all_curves
+from ...continuation.curve_search import CurveTracingState, TracedCurves, trace_all_curves
 from ...orbit.matrix.workspace import NewtonWorkspace
 from .curve_comparison import are_identical_curves, leaves_range
 from .curve_ends import END_SETTINGS
@@ -98,7 +98,7 @@ class SpecialCurveTracer:
 
     def _searches(
         self, results: Mapping[int, HalfCurveArrays]
-    ) -> "Iterator[tuple[_CurvesOfKind, CurveTracing[_TracedCurve]]]":
+    ) -> "Iterator[tuple[_CurvesOfKind, CurveTracingState[_TracedCurve]]]":
         """Yields (curves with `results`, state of the search for these curves) for each kind of points."""
         # Numbers run through all stages, but the seeds of this stage are counted from 0.
         own_results = {number - self.first_item: result for number, result in results.items()}
@@ -178,7 +178,7 @@ class _CurvesOfKind:
         needs_backward = half is not None and half.end is not CurveEndReason.closed
         return [backward_item] if needs_backward and backward_item not in self.results else []
 
-    def possible_items(self, search: "CurveTracing[_TracedCurve]") -> list[int]:
+    def possible_items(self, search: "CurveTracingState[_TracedCurve]") -> list[int]:
         """Numbers of half curves that may be needed later: from special points on no curve yet, on the rows
         where the half curves needed now start."""
         rows = {self.special_points[item // 2].row_value for item in search.missing_items}

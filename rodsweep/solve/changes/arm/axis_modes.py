@@ -31,7 +31,7 @@ NO_EIGENVALUES: Complex = np.empty(0, complex)
 
 
 @dataclass(frozen=True)
-class CriticalModes:
+class ArmModes:
     """Modes of the arm at path variable p: eigenvalues w and their slopes dw/dp, (modes,) each, and the
     number of unstable modes. w: either the leading eigenvalues, with both members of each pair, or the
     eigenvalues near the imaginary axis, with one member of each pair."""
@@ -58,7 +58,7 @@ class CriticalModes:
         return float(np.abs(self.w).max(initial=0.0))
 
 
-class CriticalModesOfPath:
+class ModesAlongPath:
     """The modes of the arms of a path, computed when needed. modes_by_p: the modes computed so far, by path
     variable p. outside_p_by_end: for p of each end of the path, a path variable just outside, at which the
     modes are counted instead if the count at the end fails, for example because a pair lies on the axis."""
@@ -66,7 +66,7 @@ class CriticalModesOfPath:
     def __init__(self, problem: ArmPath, certify: bool):
         self.problem = problem
         self.certify = certify
-        self.modes_by_p: dict[float, CriticalModes] = {}
+        self.modes_by_p: dict[float, ArmModes] = {}
         self.outside_p_by_end: dict[float, float] = {}
 
     def has_many_modes(self, p: float) -> bool:
@@ -77,7 +77,7 @@ class CriticalModesOfPath:
             and self.problem.expected_unstable_count(p) > AXIS_MODE_SETTINGS.max_growing_for_leading_modes
         )
 
-    def modes_at(self, p: float, guesses: Complex | None = None) -> CriticalModes:
+    def modes_at(self, p: float, guesses: Complex | None = None) -> ArmModes:
         """The modes at path variable p, or just outside an end p of the path where the count fails; raises
         Unsolvable if the eigenvalues or the count cannot be computed. guesses: approximate eigenvalues near
         the imaginary axis, (n,), one of each pair, if available."""
@@ -93,7 +93,7 @@ class CriticalModesOfPath:
                     raise reason from None
         return self.modes_by_p[p]
 
-    def _compute_modes(self, p: float, guesses: Complex | None) -> CriticalModes:
+    def _compute_modes(self, p: float, guesses: Complex | None) -> ArmModes:
         """The modes near the imaginary axis if `has_many_modes(p)` and their count is decided, otherwise the
         leading modes; raises Unsolvable. guesses: approximate eigenvalues near the imaginary axis, (n,), one
         of each pair, if available."""
@@ -112,7 +112,7 @@ class CriticalModesOfPath:
         except FloatingPointError as unresolved:
             raise Unsolvable(f"{self.problem.path.text_at(p)}: {unresolved}") from None
 
-    def _modes_near_axis(self, p: float, guesses: Complex | None) -> CriticalModes | None:
+    def _modes_near_axis(self, p: float, guesses: Complex | None) -> ArmModes | None:
         """The modes near the imaginary axis at path variable p, and a count of the unstable modes; None if
         the count is undecided. guesses: approximate eigenvalues of these modes, (n,), if available."""
         if guesses is None:
@@ -121,9 +121,9 @@ class CriticalModesOfPath:
         w = np.array([root[0] for root in refined_roots], complex)
         count = self.problem.counted_unstable_modes(p, w, np.array([root[2] for root in refined_roots]))
         slopes = np.array([root[1] for root in refined_roots], complex)
-        return None if count is None else CriticalModes(p, w, slopes, count)
+        return None if count is None else ArmModes(p, w, slopes, count)
 
-    def _leading_modes(self, p: float, expected_count: int) -> CriticalModes:
+    def _leading_modes(self, p: float, expected_count: int) -> ArmModes:
         """The leading modes at path variable p, at least two more than the unstable modes; raises Unsolvable
         if the count fails or too many modes grow. expected_count: expected number of unstable modes."""
         settings = SPECTRUM_SAMPLE_SETTINGS
@@ -154,7 +154,7 @@ class CriticalModesOfPath:
         for i, w in enumerate(spectrum.eigenvalues.tolist()):
             # The lower member of a pair follows the upper one in the list.
             slopes[i] = self.problem.eigenvalue(w, p)[1] if w.imag >= 0 else slopes[i - 1].conjugate()
-        return CriticalModes(p, spectrum.eigenvalues, slopes, spectrum.unstable_count)
+        return ArmModes(p, spectrum.eigenvalues, slopes, spectrum.unstable_count)
 
 
 def _needed_modes(spectrum: Spectrum) -> int:
@@ -164,7 +164,7 @@ def _needed_modes(spectrum: Spectrum) -> int:
     return 2 + max(spectrum.unstable_count, growing_count)
 
 
-def next_count_position(left: CriticalModes, right: CriticalModes) -> float:
+def next_count_position(left: ArmModes, right: ArmModes) -> float:
     """Position of the next count as a fraction of the interval of p from `left` to `right`; 0 if no count is
     needed, because no pair can touch the imaginary axis in the interval."""
     length = right.p - left.p

@@ -13,7 +13,7 @@ import numpy as np
 from ...unsolvable import Unsolvable
 from ..search_range import IntervalQueue, SearchEnd
 from ..threshold_kinds import Threshold, crossing_kind
-from .axis_modes import CriticalModes, CriticalModesOfPath, next_count_position
+from .axis_modes import ArmModes, ModesAlongPath, next_count_position
 from .path import ArmPath
 
 
@@ -60,7 +60,7 @@ class CrossingSearch:
 
     def __init__(self, problem: ArmPath, certify: bool):
         self.problem = problem
-        self.axis_modes = CriticalModesOfPath(problem, certify)
+        self.axis_modes = ModesAlongPath(problem, certify)
         self.crossings_by_p: dict[float, Threshold] = {}
         self.gaps: list[tuple[float, float]] = []
 
@@ -142,7 +142,7 @@ class CrossingSearch:
         intervals.add_subintervals((a, middle), (middle, b))
 
     def _intervals_between_crossings(
-        self, crossings: list[Threshold], left: CriticalModes, right: CriticalModes, length: float
+        self, crossings: list[Threshold], left: ArmModes, right: ArmModes, length: float
     ) -> list[tuple[float, float]] | None:
         """The intervals between crossings, in increasing order of p; None if the counts just before and just
         after a crossing do not confirm the crossing. length: length of the path."""
@@ -170,7 +170,7 @@ class CrossingSearch:
             start = p_after
         return [*intervals, (start, right.p)]
 
-    def _crossings_between(self, left: CriticalModes, right: CriticalModes) -> list[Threshold]:
+    def _crossings_between(self, left: ArmModes, right: ArmModes) -> list[Threshold]:
         """Crossings between the arms with the modes `left` and `right`, in increasing order of p, that
         explain the change of the number of unstable modes; empty if a crossing is not found or the change is
         too large for one search."""
@@ -198,7 +198,7 @@ class CrossingSearch:
         return []
 
     def _newton_crossing(
-        self, start: CriticalModes, i: int, p_ends: tuple[float, float], grows: bool
+        self, start: ArmModes, i: int, p_ends: tuple[float, float], grows: bool
     ) -> Threshold | None:
         """The crossing of the imaginary axis by the eigenvalue with index i in `start.w`, by Newton's method
         for p; None if Newton's method does not converge within `p_ends`, or converges to another crossing.

@@ -34,10 +34,10 @@ class ArmPathSettings:
     an edge would lie on a Hopf point, where no count succeeds, if the range ends at twice its force."""
     steps_per_interval: int = 4
     """Number of steps in which eigenvalues are followed through each of `first_interval_count` intervals."""
-    followed_modes: int = 4
+    followed_mode_count: int = 4
     """Number of leading eigenvalues, besides all unstable ones, that are proved complete at each step."""
-    spare_modes: int = 2
-    """Number of modes computed in addition, if more than `followed_modes` modes are requested."""
+    spare_mode_count: int = 2
+    """Number of modes computed in addition, if more than `followed_mode_count` modes are requested."""
     max_growing_modes: float = 16.0
     """No modes are followed where the estimate `expected_unstable_count` exceeds this number: at most 13
     modes can be followed, and the estimate is 0.9 to 1.9 times the true number."""
@@ -105,7 +105,7 @@ class ArmPath(PathProblem):
                 / ARM_PATH_SETTINGS.steps_per_interval
             )
             points = np.interp(step_positions, np.arange(len(edges)), edges)
-            self._followed_arms = FollowedArms(self.path, points, ARM_PATH_SETTINGS.followed_modes)
+            self._followed_arms = FollowedArms(self.path, points, ARM_PATH_SETTINGS.followed_mode_count)
         return edges.tolist()
 
     def expected_unstable_count(self, p: float) -> float:
@@ -146,7 +146,11 @@ class ArmPath(PathProblem):
             or len(stored_spectrum.eigenvalues) < request.modes
             or stored_spectrum.status != SpectrumStatus.ok
         ):
-            spare = ARM_PATH_SETTINGS.spare_modes if request.modes > ARM_PATH_SETTINGS.followed_modes else 0
+            spare = (
+                ARM_PATH_SETTINGS.spare_mode_count
+                if request.modes > ARM_PATH_SETTINGS.followed_mode_count
+                else 0
+            )
             stored_spectrum = super().spectrum(p, replace(request, modes=request.modes + spare))
             # The additional modes may be harder to solve; they must not spoil the requested modes.
             if spare and stored_spectrum.status != SpectrumStatus.ok:
@@ -179,7 +183,7 @@ class ArmPath(PathProblem):
         return self._determinant_along_path.double_eigenvalue(x, p, expected_distance)
 
     def count_right_of(self, line: float, p: float) -> EigenvalueCount:
-        spectrum = self.followed_spectrum(p, ARM_PATH_SETTINGS.followed_modes)
+        spectrum = self.followed_spectrum(p, ARM_PATH_SETTINGS.followed_mode_count)
         if spectrum is not None:
             w = spectrum.eigenvalues
             error = spectrum.error_estimate
@@ -187,7 +191,7 @@ class ArmPath(PathProblem):
             # The followed modes are complete down to the last of them, so counting them is a proof.
             if are_clear and w[-1].real < line <= 0:
                 return EigenvalueCount(int((w.real > line).sum()), 0)
-            if are_clear and line == 0 and spectrum.unstable_count < ARM_PATH_SETTINGS.followed_modes:
+            if are_clear and line == 0 and spectrum.unstable_count < ARM_PATH_SETTINGS.followed_mode_count:
                 return EigenvalueCount(spectrum.unstable_count, 0)
         followed_roots = self._followed_arms.followed_roots(p) if self._followed_arms is not None else None
         return ArmProblem(self.path.rod_at(p)).count(line, followed_roots)

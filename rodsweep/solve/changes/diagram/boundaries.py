@@ -43,7 +43,7 @@ BOUNDARY_ASSIGNMENT_SETTINGS = BoundaryAssignmentSettings()
 
 
 @dataclass(frozen=True, slots=True)
-class Seed:
+class BoundarySeed:
     """A threshold on a row, at which a curve may start: values of both parameters, and the eigenvalue."""
 
     values: tuple[float, float]
@@ -53,23 +53,25 @@ class Seed:
     """The frequency of a Hopf point, or the double eigenvalue."""
 
 
-def seed_of(values: tuple[float, float], kind: int, frequency: float, growth_rate: float) -> Seed | None:
+def seed_of(
+    values: tuple[float, float], kind: int, frequency: float, growth_rate: float
+) -> BoundarySeed | None:
     """The seed at a threshold with the given `values` of both parameters; None for an overtaking of a real
     eigenvalue and a pair, because no boundary consists of overtakings. kind: value of `ThresholdKind`.
     frequency, growth_rate: Im and Re of the eigenvalue, in 1/tau2."""
     if kind in (ThresholdKind.hopf, ThresholdKind.hopf_reverse, ThresholdKind.restabilization):
-        return Seed(values, 0.0, frequency)
+        return BoundarySeed(values, 0.0, frequency)
     if kind in (ThresholdKind.onset, ThresholdKind.real_again):
-        return Seed(values, math.copysign(1.0, growth_rate), growth_rate)
+        return BoundarySeed(values, math.copysign(1.0, growth_rate), growth_rate)
     return None
 
 
 @dataclass(frozen=True, slots=True)
-class _StabilityBoundaries:
+class _BoundaryTracingProblem:
     """The boundary curves through the thresholds of all rows, as a problem for `trace_all_curves`."""
 
     plane: ParameterPlane
-    seeds: list[Seed]
+    seeds: list[BoundarySeed]
 
     def next_seed(self, untraced: Sequence[int]) -> int:
         """Index of the threshold at which the next curve starts: the first of `untraced`, which lie on no
@@ -101,16 +103,16 @@ class _StabilityBoundaries:
         )
 
 
-def boundary_curves_through(plane: ParameterPlane, seeds: list[Seed]) -> TracedCurves[BoundaryCurve]:
+def boundary_curves_through(plane: ParameterPlane, seeds: list[BoundarySeed]) -> TracedCurves[BoundaryCurve]:
     """Boundary curves through all thresholds `seeds`; no curve is traced from a threshold on a known
     curve."""
-    problem = _StabilityBoundaries(plane, seeds)
+    problem = _BoundaryTracingProblem(plane, seeds)
     return trace_all_curves(
         problem, range(len(seeds)), BOUNDARY_ASSIGNMENT_SETTINGS.max_threshold_distance
     ).traced_curves
 
 
-def _distance_from_curve(plane: ParameterPlane, curve: BoundaryCurve, seed: Seed) -> float:
+def _distance_from_curve(plane: ParameterPlane, curve: BoundaryCurve, seed: BoundarySeed) -> float:
     """Distance of a threshold from the curve along the first axis, at the threshold's value on the second
     axis, in the scaled coordinate of the first axis; inf if the curve has another `eigenvalue_sign`, or no
     point at this value with nearly the eigenvalue of the threshold."""

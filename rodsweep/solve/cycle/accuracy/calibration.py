@@ -181,7 +181,7 @@ def calibration_of(
     previous_mesh = nearby.mesh
     space_decay = nearby.space_decay
     time_order = nearby.time_order
-    if previous_mesh.order != mesh.order and previous_mesh.has_elements_of(mesh):
+    if previous_mesh.order != mesh.order and previous_mesh.has_same_edges_and_ratios(mesh):
         space_decay = _measured_space_decay(nearby.space_errors, space, mesh.order - previous_mesh.order)
     if previous_mesh.interval_count != mesh.interval_count and previous_mesh.grading == mesh.grading:
         time_order = _measured_time_order(nearby.time_errors, time, previous_mesh, mesh)

@@ -95,7 +95,7 @@ class CoarserMeshes:
         )
         return (
             is_near
-            and mesh.has_elements_of(self._fine_mesh)
+            and mesh.has_same_edges_and_ratios(self._fine_mesh)
             and mesh.stage_count == self.coarse_mesh.stage_count
         )
 

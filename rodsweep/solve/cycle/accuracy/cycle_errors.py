@@ -18,7 +18,7 @@ from ...orbit.path_differences import EXTREMUM_INDEX, PATH_INDEX, PERIOD_INDEX, 
 from ..integration_settings import INTEGRATION_SETTINGS
 from .calibration_settings import CALIBRATION_SETTINGS
 
-MULTIPLIER_INDEX = 4
+MULTIPLIER_ERROR_INDEX = 4
 """Index of the error of the largest nontrivial multiplier in the error arrays of a calibration."""
 
 
@@ -102,7 +102,7 @@ def errors_with_safety_factors(space_errors: Array, time_errors: Array, accuracy
         np.maximum(np.maximum(scaled_errors[PERIOD_INDEX], min_period_error), min_errors),
         np.maximum(np.maximum(scaled_errors[Y_INDEX], min_height_error), min_errors),
         np.maximum(scaled_errors[EXTREMUM_INDEX], CALIBRATION_SETTINGS.min_extrema_error_ratio * path_error),
-        scaled_errors[MULTIPLIER_INDEX],
+        scaled_errors[MULTIPLIER_ERROR_INDEX],
     ]
     min_error = max(CYCLE_ERROR_SETTINGS.min_error_ratio * accuracy, CYCLE_ERROR_SETTINGS.rounding_error)
     errors: Array = np.maximum(np.array(stated_errors), min_error)

@@ -44,13 +44,15 @@ def error_indicators(solved: ConvergedOrbit, motion: CycleMotion) -> Array:
     twice_energy = float((orbit.form.energy_norm(orbit.equidistant_states) ** 2).mean())
     relative_loss = lost_energy / twice_energy
     # A slowly attracting cycle is displaced farther by the same loss.
-    amplitude_error = relative_loss / _decay_in_one_part(solved.matrix.multipliers_over_solved_part)
+    amplitude_error = relative_loss / _slowest_decay_over_solved_part(
+        solved.matrix.multipliers_over_solved_part
+    )
     last_harmonics = float(np.linalg.norm(motion.last_tip_coefficients[-LAST_HARMONIC_COUNT:]))
     indicators = np.array([relative_loss, amplitude_error, last_harmonics / abs(motion.extrema["tip_y_max"])])
     return np.maximum(indicators, CYCLE_ERROR_SETTINGS.rounding_error)
 
 
-def _decay_in_one_part(multipliers: Complex) -> float:
+def _slowest_decay_over_solved_part(multipliers: Complex) -> float:
     """Smallest |ln h| of the nontrivial multipliers h; 1 without a nontrivial multiplier. multipliers:
     multipliers over the solved part of the period, with the trivial multiplier, (m,)."""
     exponents = np.sort(np.abs(np.log(multipliers[multipliers != 0])))[

@@ -25,7 +25,7 @@ class MinimalPeriodSettings:
     min_harmonic_ratio: float = 1e-3
     """While the error of the orbit is not known, a harmonic is treated as nonzero if its size divided by the
     size of the largest harmonic exceeds this number."""
-    certain_harmonic_in_errors: float = 10.0
+    min_certain_harmonic_in_errors: float = 10.0
     """A harmonic is certainly nonzero if its size divided by the size of the largest harmonic exceeds this
     number times the relative error of the extrema."""
     min_certain_harmonic_ratio: float = 1e-6
@@ -66,7 +66,7 @@ def possible_period_divisor(motion: CycleMotion, extrema_error: float) -> int:
     return common_harmonic_divisor(
         motion,
         max(
-            MINIMAL_PERIOD_SETTINGS.certain_harmonic_in_errors * extrema_error,
+            MINIMAL_PERIOD_SETTINGS.min_certain_harmonic_in_errors * extrema_error,
             MINIMAL_PERIOD_SETTINGS.min_certain_harmonic_ratio,
         ),
     )

@@ -12,7 +12,7 @@ import numpy as np
 
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.measures import CycleMotion
-from ...orbit.mesh_choice import cheapest_stage_count, finer_mesh, mesh_from_tails, regraded
+from ...orbit.mesh_choice import cheapest_stage_count, finer_orbit_mesh, mesh_from_tails, regraded
 from ...orbit.newton import (
     ORBIT_NEWTON_SETTINGS,
     ConvergedOrbit,
@@ -126,7 +126,7 @@ def _predicted_cycle(
         # A prediction that gets worse on a finer mesh has reached rounding errors, or another cycle.
         if error > max_error:
             raise Unsolvable("the errors do not decrease on finer meshes")
-        mesh = finer_mesh(mesh, cheapest_mesh(calibration, sufficient_error))
+        mesh = finer_orbit_mesh(mesh, cheapest_mesh(calibration, sufficient_error))
         max_error = REFINEMENT_SETTINGS.max_error_increase * error
         if not mesh.is_allowed:
             break
@@ -172,7 +172,7 @@ def cycle_with_measured_errors(
             break
         max_error = REFINEMENT_SETTINGS.max_error_increase * error
         target = regraded(cheapest_mesh(calibration, sufficient_error), solved.orbit)
-        next_mesh = finer_mesh(calibration.mesh, target)
+        next_mesh = finer_orbit_mesh(calibration.mesh, target)
         if not next_mesh.is_allowed:
             break
         solved = _solve_on_mesh(next_mesh, solved, accuracy, parameter_name)

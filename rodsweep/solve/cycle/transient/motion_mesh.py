@@ -34,7 +34,7 @@ class MotionMeshSettings:
     """Maximum number of times that the mesh of a motion is refined."""
     max_refined_nodes: int = 64
     """Maximum number of nodes of a refined mesh; with more nodes a motion takes minutes."""
-    expected_modes: int = 3
+    expected_mode_count: int = 3
     """Number of modes that the first mesh resolves; the mesh is refined for the cycle later."""
     wave_number_per_root_force: float = 2.5
     """Largest expected wave number of a cycle, in 1/L, divided by sqrt(F), F in k3/L^2; 1/sqrt(F) is the
@@ -49,7 +49,7 @@ class MotionMeshSettings:
     max_stiffness: float = 1e8
     """A larger dimensionless stiffness k1 or k2 is replaced by this value for the integration; the motion
     changes by 1e-6 or less."""
-    min_drag: float = 1e-6
+    min_rotational_drag: float = 1e-6
     """A smaller rotational drag gamma3 is replaced by this value for the integration; the motion changes by
     1e-6 or less."""
     min_axial_drag: float = 1e-6
@@ -64,13 +64,14 @@ def motion_mesh(rod: Rod, accuracy: float) -> Mesh:
     """The first mesh for the integration of the motion of `rod` to the relative accuracy `accuracy`."""
     wave_number = MOTION_MESH_SETTINGS.wave_number_per_root_force * abs(rod.F) ** 0.5
     if not rod.is_uniform_and_linear:
-        modal_mesh = arm_mesh(rod, MOTION_MESH_SETTINGS.expected_modes, accuracy)
+        modal_mesh = arm_mesh(rod, MOTION_MESH_SETTINGS.expected_mode_count, accuracy)
         mesh = arm_elements(rod, wave_number, accuracy)
         # The bends of a large motion may be sharper than those of its modes.
         finest_mesh = max(modal_mesh, mesh, key=lambda each: each.node_count)
         return mesh_with_edges(finest_mesh.edges, finest_mesh.order)
     max_wave_number = max(
-        expected_wave_number(MOTION_MESH_SETTINGS.expected_modes, most_amplified_wave(rod)[1]), wave_number
+        expected_wave_number(MOTION_MESH_SETTINGS.expected_mode_count, most_amplified_wave(rod)[1]),
+        wave_number,
     )
     resolution = resolution_for(max_wave_number, accuracy)
     return uniform_mesh(resolution.element_count, resolution.order)
@@ -117,12 +118,13 @@ def coarse_mesh_along_branch(rod: Rod) -> Mesh:
 
 def integrable_rod(rod: Rod, distance: float = 1.0) -> Rod:
     """The rod with k1 and k2 at the base of at most MOTION_MESH_SETTINGS.max_stiffness, and with gamma3 and
-    gamma1 of at least `min_drag` and `min_axial_drag` at the base and at every row of a profile; a limiting
-    rod (k1 = inf, k2 = inf or gamma3 = 0) cannot be integrated in time. distance: distance of the replaced
-    values from these limits, divided by the distance in the settings. Larger stiffnesses along the arm stay:
-    they cost no digits, because the unknowns of `ExplicitSystem` are scaled with the compliances."""
+    gamma1 of at least `min_rotational_drag` and `min_axial_drag` at the base and at every row of a profile; a
+    limiting rod (k1 = inf, k2 = inf or gamma3 = 0) cannot be integrated in time. distance: distance of the
+    replaced values from these limits, divided by the distance in the settings. Larger stiffnesses along the
+    arm stay: they cost no digits, because the unknowns of `ExplicitSystem` are scaled with the
+    compliances."""
     least = {
-        "gamma3": distance * MOTION_MESH_SETTINGS.min_drag,
+        "gamma3": distance * MOTION_MESH_SETTINGS.min_rotational_drag,
         "gamma1": distance * MOTION_MESH_SETTINGS.min_axial_drag,
     }
     max_stiffness = MOTION_MESH_SETTINGS.max_stiffness / distance

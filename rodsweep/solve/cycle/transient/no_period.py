@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from ....arrays import Array
 from ....wording import counted
-from .returns import RETURN_SETTINGS, repetition
+from .returns import RETURN_SETTINGS, recurrence
 
 
 def no_period_text(return_count: int, limit_text: str, last_returns: Sequence[tuple[float, Array]]) -> str:
@@ -18,7 +18,7 @@ def no_period_text(return_count: int, limit_text: str, last_returns: Sequence[tu
     moments = [state for _, state in last_returns][-1 - RETURN_SETTINGS.max_returns_per_period :]
     if len(moments) < 2:
         return text
-    _, distance = repetition(moments)
+    _, distance = recurrence(moments)
     if distance >= RETURN_SETTINGS.max_equal_return_distance:
         return text
     return (

@@ -22,7 +22,7 @@ class NewtonFromMotionSettings:
     """Number of collocation stages per interval of the approximate orbit."""
     intervals_per_return: int = 20
     """Number of time intervals of the approximate orbit per return of the tip."""
-    peak_search_times: int = 128
+    peak_search_time_count: int = 128
     """Number of equidistant times per period from which the time of the largest y is chosen."""
     max_asymmetry: float = 0.2
     """The orbit is solved as symmetric if the `relative_asymmetry` of the motion is less than this number."""
@@ -52,8 +52,8 @@ def orbit_from_motion(
     times = (
         start_time
         + period
-        * np.arange(NEWTON_FROM_MOTION_SETTINGS.peak_search_times)
-        / NEWTON_FROM_MOTION_SETTINGS.peak_search_times
+        * np.arange(NEWTON_FROM_MOTION_SETTINGS.peak_search_time_count)
+        / NEWTON_FROM_MOTION_SETTINGS.peak_search_time_count
     )
     period_states = spline(times)
     # The cycle's phase condition holds at the largest y, so the orbit starts near it.

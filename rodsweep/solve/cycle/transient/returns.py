@@ -22,9 +22,9 @@ from ...motion.integrator import EndReason, RunLimit, Trajectory
 class ReturnSettings:
     """Settings for the returns of the tip to the section theta = 0, by which a motion is classified."""
 
-    straight_norm: float = 1e-6
-    """A motion with |z| < straight_norm has decayed to the straight state, if this state is stable; z: state.
-    If the norm of the bending and shear components of z is smaller than this number, the rod no longer
+    max_straight_norm: float = 1e-6
+    """A motion with |z| < max_straight_norm has decayed to the straight state, if this state is stable; z:
+    state. If the norm of the bending and shear components of z is smaller than this number, the rod no longer
     oscillates. Numerical damping governs smaller motions."""
     max_equal_return_distance: float = 0.03
     """Two returns are equal if their relative distance is at most this number, or twice the smallest
@@ -33,7 +33,7 @@ class ReturnSettings:
     """A cycle is recognised if the tip returns at most this number of times per period."""
     max_steps_per_run: int = 20_000
     """Maximum number of time steps in one run."""
-    searched_last_states: int = 200
+    searched_last_state_count: int = 200
     """If a run fails, this number of its last states is searched for a cross-section whose strain energy is
     not convex. The equations are ill-posed for such a cross-section, and the integrator may fail only some
     steps later."""
@@ -83,7 +83,7 @@ def run_failure(system: ExplicitSystem, run: Trajectory, return_count: int) -> R
         h1 = system.least_stretch(run.states[-1])
         place = f"at a point of the rod after {counted(return_count, 'return')} of the tip"
         return RunFailure(True, f"the axial stretch h1 is {h1:.3g} {place}")
-    if not run.message and _loses_convexity(system, run.states[-RETURN_SETTINGS.searched_last_states :]):
+    if not run.message and _loses_convexity(system, run.states[-RETURN_SETTINGS.searched_last_state_count :]):
         reason = (
             f"after {counted(return_count, 'return')} of the tip a cross-section has lost its stiffness: its "
             "strain energy is not convex, so the model ends there"
@@ -138,7 +138,7 @@ def _hermite_weights(x: float) -> tuple[float, float, float, float]:
     return y * y * (1 + 2 * x), x * x * (3 - 2 * x), x * y * y, -x * x * y
 
 
-def repetition(moments: Sequence[Array]) -> tuple[int, float]:
+def recurrence(moments: Sequence[Array]) -> tuple[int, float]:
     """Returns (m, distance). m: number of returns per period, the smallest number with a nearly minimal
     distance. distance: relative distance between the last return and the m-th return before it. (1, inf) if
     the last moments are rounding errors.
@@ -148,7 +148,9 @@ def repetition(moments: Sequence[Array]) -> tuple[int, float]:
     1e7.
     """
     size = np.linalg.norm(moments[-1])
-    if size < RETURN_SETTINGS.straight_norm:  # moments of this size are rounding errors, which do not repeat
+    if (
+        size < RETURN_SETTINGS.max_straight_norm
+    ):  # moments of this size are rounding errors, which do not repeat
         return 1, inf
     distances = [
         (float(np.linalg.norm(moments[-1] - moments[-1 - m]) / size), m) for m in range(1, len(moments))

@@ -24,12 +24,12 @@ from ..accuracy.refined_cycle import RefinedCycle
 from ..accuracy.refinement import refined_cycle
 from ..cycle_outcome import CycleRequest
 from ..status import CycleStatus
-from ..straight_rod import StraightRodStability, integrated_growth_rate
+from ..straight_rod import StraightRodStability, system_growth_rate
 from .amplitude_equation import AmplitudeEquation
 from .motion_mesh import integrable_rod
 from .no_period import decayed_text, no_period_text
 from .orbit_from_motion import orbit_from_motion, scaled_state
-from .returns import RETURN_SETTINGS, repetition, return_limit, run_failure, section_crossings, tip_angle_row
+from .returns import RETURN_SETTINGS, recurrence, return_limit, run_failure, section_crossings, tip_angle_row
 from .schemes import schemes_for_growth
 from .shape_trace import ShapeTrace
 from .tip_trace import TipTrace
@@ -71,7 +71,7 @@ class TransientIntegration:
             rate * period, request.transient > 0
         )
         self.max_steps = max_steps * max(request.most_periods, TRANSIENT_SETTINGS.min_returns_for_max_steps)
-        excess = rate - integrated_growth_rate(form.rod, self.system.rod, straight, rate)
+        excess = rate - system_growth_rate(form.rod, self.system.rod, straight, rate)
         self.amplitude_equation = AmplitudeEquation(period, rate, excess, growth_error)
         self.step = period / TRANSIENT_SETTINGS.first_steps_per_period
         """First time step of the next run, in tau2."""
@@ -104,7 +104,7 @@ class TransientIntegration:
             times, states = section_crossings(self.system, run)
             self._record_returns(run, times, states)
             # An unstable rod is excluded, because rounding errors exceed the growth of so small a motion.
-            if self.straight.stable is not False and np.linalg.norm(z) < RETURN_SETTINGS.straight_norm:
+            if self.straight.stable is not False and np.linalg.norm(z) < RETURN_SETTINGS.max_straight_norm:
                 return self._result(CycleStatus.straight, "the motion has decayed to rounding error")
             if self.straight.stable is False and not self._bends_visibly(z):
                 if self.record or self.jump_count >= TRANSIENT_SETTINGS.max_jumps:
@@ -174,7 +174,7 @@ class TransientIntegration:
     def _bends_visibly(self, z: Array) -> bool:
         """Whether the bending and shear components of the state z, (unknowns,), exceed rounding errors."""
         size = np.linalg.norm(self.system.layout.transverse_unknowns(z))
-        return bool(size >= RETURN_SETTINGS.straight_norm)
+        return bool(size >= RETURN_SETTINGS.max_straight_norm)
 
     def _state_after_fast_decay(self, z: Array) -> Array:
         """The state, (unknowns,), after the decay of the fast components of the start z, (unknowns,). A
@@ -209,7 +209,7 @@ class TransientIntegration:
         otherwise, or before the next attempt is due, None. The number of returns between attempts doubles
         with each attempt. After too many failures near a periodic motion, sets `unsolved_message`."""
         states = [state for _, state in self.past_returns]
-        count, distance = repetition(states[-1 - RETURN_SETTINGS.max_returns_per_period :])
+        count, distance = recurrence(states[-1 - RETURN_SETTINGS.max_returns_per_period :])
         often_failed = self.successive_failures >= TRANSIENT_SETTINGS.max_successive_failures
         if often_failed and distance < TRANSIENT_SETTINGS.max_periodic_distance:
             repeats_text = f"the motion repeats within {distance:.0e}, but Newton's method"

@@ -12,7 +12,7 @@ from ....determinant.arm.hull.region import hull_at
 from ....determinant.parameter_path import ParameterPath
 from ..candidates import lines_for_count
 from .arm_interval import ArmInterval
-from .carried_count import leading_eigenvalues
+from .carried_count import leading_eigenvalues_of_track
 from .prediction import FollowedEigenvalues
 
 
@@ -22,7 +22,7 @@ def confirmed_count_at(
     """Number of eigenvalues at path variable p that are confirmed by a count to be all eigenvalues to the
     right of a line; 0 if no count confirms this. interval: an interval that contains p. point_track: a track
     with the eigenvalues at p only."""
-    w, error = leading_eigenvalues(point_track, point_track.w.shape[1])
+    w, error = leading_eigenvalues_of_track(point_track, point_track.w.shape[1])
     line = confirmed_line(path, interval, p, (w[0], error[0]), mode_count)
     return 0 if line is None else int((w[0].real > line).sum())
 

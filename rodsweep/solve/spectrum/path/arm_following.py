@@ -27,12 +27,12 @@ from ....determinant.value import DETERMINANT_SETTINGS, second_difference
 from ....model.compiled.compilation import compiled
 from ..candidates import CANDIDATE_SETTINGS
 from .following import (
-    FOLLOWING_SETTINGS,
+    EIGENVALUE_FOLLOWING_SETTINGS,
     CorrectedEigenvalue,
     are_distinct_roots,
     converged_error,
     curvature_estimate,
-    newton_step,
+    eigenvalue_newton_step,
     store_root,
 )
 from .prediction import FollowedEigenvalues, find_conjugates, predict_eigenvalues, set_two_guesses
@@ -49,7 +49,7 @@ def correct_eigenvalue_of_arm(w: complex, level: PropagatorsWithSlopes) -> Corre
     error estimate contains only the rounding errors of the products of propagators; it is no bound of the
     rounding error of D, see `rounding_error_from_propagators`."""
     value = path_value_from_propagators(w, level[0], level[1], level[2])
-    return newton_step(w, value, value.rounding_error)
+    return eigenvalue_newton_step(w, value, value.rounding_error)
 
 
 @compiled
@@ -63,7 +63,7 @@ def _converged_step_and_error(
     interpolation along the whole arm. level: propagators of the arm. The error is inf without convergence.
     """
     step = first
-    for _ in range(FOLLOWING_SETTINGS.max_newton_steps):
+    for _ in range(EIGENVALUE_FOLLOWING_SETTINGS.max_newton_steps):
         error = converged_error(step, crowding, exact)
         if error < math.inf:
             if exact:

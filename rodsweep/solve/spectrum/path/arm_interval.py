@@ -33,7 +33,7 @@ from ..search import SpectrumSearch
 from ..spectrum import SpectrumRequest
 from .arm_following import follow_eigenvalues_of_arms
 from .arm_following_settings import ARM_FOLLOWING_SETTINGS
-from .prediction import FollowedEigenvalues, slice_track, start_track
+from .prediction import FollowedEigenvalues, new_track, slice_track
 
 
 class ArmInterval(NamedTuple):
@@ -161,7 +161,7 @@ def _follow_with_further_modes(
     if first_w is None or family_data is None:
         return None
     family, hulls = family_data
-    track = start_track(first_w, n)
+    track = new_track(first_w, n)
     proved_counts = np.zeros(n, np.int64)
     reached = follow_eigenvalues_of_arms(track, family, hulls, p[:n], request.modes, proved_counts)
     if reached == 0:

@@ -9,12 +9,12 @@ from itertools import pairwise
 
 import numpy as np
 
-from ....determinant.arm.count.no_crossing import proves_no_crossing, sampled_point_indices
+from ....determinant.arm.count.no_crossing import proves_no_crossing_of_arms, sampled_point_indices
 from ....determinant.arm.count.settings import NO_CROSSING_SETTINGS
 from ....determinant.parameter_path import ParameterPath
 from .arm_count import confirmed_line
 from .arm_interval import ArmInterval
-from .carried_count import leading_eigenvalues
+from .carried_count import leading_eigenvalues_of_track
 
 
 class ArmCountCarrier:
@@ -27,7 +27,7 @@ class ArmCountCarrier:
         self.path = path
         self.interval = interval
         self.modes = mode_count
-        self.w, self.error = leading_eigenvalues(interval.track, interval.track.w.shape[1])
+        self.w, self.error = leading_eigenvalues_of_track(interval.track, interval.track.w.shape[1])
         last = self.w[:, mode_count - 1]
         # Left of the axis, so that the count also tells the number of unstable modes.
         self.lines = np.minimum(last.real, 0.0) - NO_CROSSING_SETTINGS.line_distance_ratio * np.abs(last)
@@ -98,7 +98,7 @@ class ArmCountCarrier:
         known_w = interval.track.w[points], interval.track.error[points]
         p = interval.p[points]
         rods = [self.path.rod_at(value) for value in p.tolist()]
-        return proves_no_crossing(line, rods, p, known_w, interval.family, interval.hulls)
+        return proves_no_crossing_of_arms(line, rods, p, known_w, interval.family, interval.hulls)
 
     def _store_proved_modes(self, points: list[int], lines: list[float]) -> None:
         """Fills `interval.proved_counts` between successive `points`, where no followed eigenvalue is close

@@ -22,9 +22,10 @@ from .prediction import FollowedEigenvalues
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CarriedCountSettings(KernelConstants):
-    """Settings for a count that is carried from point to point of a path."""
+    """Settings for a count of eigenvalues that is carried from rod to rod along a path: number of rectangles
+    of a proof, and gaps in which the line of a count may lie."""
 
-    base_rectangles: int = 60
+    base_rectangle_count: int = 60
     """The number of rectangles (`moving_line`) of one proof is at most this number plus
     `rectangles_per_point` times the number of points covered."""
     rectangles_per_point: int = 20
@@ -139,8 +140,9 @@ def carry_count(
         if gap > 0:
             first = _interval_end(track, i, gap, p, coefficients)
             end = _interval_end(track, j, gap, p, coefficients)
-            most = CARRIED_COUNT_SETTINGS.base_rectangles + CARRIED_COUNT_SETTINGS.rectangles_per_point * (
-                j - i
+            most = (
+                CARRIED_COUNT_SETTINGS.base_rectangle_count
+                + CARRIED_COUNT_SETTINGS.rectangles_per_point * (j - i)
             )
             proved, _ = proves_no_crossing(first, end, direction, most)
         if proved:
@@ -188,7 +190,7 @@ def assess_points(
 
 
 @compiled
-def leading_eigenvalues(track: FollowedEigenvalues, modes: int) -> tuple[Complex, Array]:
+def leading_eigenvalues_of_track(track: FollowedEigenvalues, modes: int) -> tuple[Complex, Array]:
     """The leading `modes` eigenvalues and their errors at every point of a track, (points, modes) each."""
     n = track.w.shape[0]
     w = np.empty((n, modes), np.complex128)

@@ -14,8 +14,8 @@ from .arm_count import confirmed_count_at
 from .arm_following import follow_eigenvalues_of_arms
 from .arm_following_settings import ARM_FOLLOWING_SETTINGS
 from .arm_interval import ArmInterval, follow_interval
-from .carried_count import assess_points, leading_eigenvalues
-from .prediction import FollowedEigenvalues, KnownRoots, slice_track, start_track
+from .carried_count import assess_points, leading_eigenvalues_of_track
+from .prediction import FollowedEigenvalues, KnownRoots, new_track, slice_track
 
 
 class FollowedArms:
@@ -139,7 +139,7 @@ class FollowedArms:
         for steps in ARM_FOLLOWING_SETTINGS.steps_from_nearest:
             # At the point itself the eigenvalues are refined once more, with a proof for more modes.
             grid = np.array([start]) if p == start else start + (p - start) * np.arange(steps + 1) / steps
-            track = start_track(interval.track.w[i], len(grid))
+            track = new_track(interval.track.w[i], len(grid))
             proved_counts = np.zeros(len(grid), np.int64)
             track.descending_order[0] = interval.track.descending_order[i]
             if follow_eigenvalues_of_arms(
@@ -167,7 +167,7 @@ class ProvedEigenvalues(NamedTuple):
         )
         if not is_good[0]:
             return None
-        w, error = leading_eigenvalues(self.track, mode_count)
+        w, error = leading_eigenvalues_of_track(self.track, mode_count)
         return Spectrum(
             status=SpectrumStatus.ok,
             eigenvalues=w[0],

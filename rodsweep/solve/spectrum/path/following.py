@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ....arrays import Array, Complex
-from ....determinant.exponents import ROUND_OFF
+from ....determinant.exponents import MACHINE_EPSILON
 from ....determinant.parameter_path import PathDeterminantValue, determinant_along_path
 from ....determinant.roots.roots import sort_descending, taylor_parabola_roots
 from ....determinant.roots.settings import ROOT_NEWTON_SETTINGS, ROOT_SETTINGS
@@ -25,7 +25,7 @@ from .prediction import FollowedEigenvalues, find_conjugates, predict_eigenvalue
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class FollowingSettings(KernelConstants):
+class EigenvalueFollowingSettings(KernelConstants):
     """Settings of Newton's method for followed eigenvalues."""
 
     max_newton_steps: int = 8
@@ -39,7 +39,7 @@ class FollowingSettings(KernelConstants):
     """Newton's method stops when the step is at most this multiple of the eigenvalue's rounding error."""
 
 
-FOLLOWING_SETTINGS = FollowingSettings()
+EIGENVALUE_FOLLOWING_SETTINGS = EigenvalueFollowingSettings()
 
 
 class CorrectedEigenvalue(NamedTuple):
@@ -60,11 +60,13 @@ def correct_eigenvalue(
 ) -> CorrectedEigenvalue:
     """One Newton step for a root of D from w; a real w stays real. direction: d(F, nu, c2, gamma3)/dp."""
     value = determinant_along_path(w, coefficients, direction)
-    return newton_step(w, value, DETERMINANT_SETTINGS.typical_rounding_fraction * value.rounding_error)
+    return eigenvalue_newton_step(
+        w, value, DETERMINANT_SETTINGS.typical_rounding_fraction * value.rounding_error
+    )
 
 
 @compiled
-def newton_step(w: complex, value: PathDeterminantValue, rounding: float) -> CorrectedEigenvalue:
+def eigenvalue_newton_step(w: complex, value: PathDeterminantValue, rounding: float) -> CorrectedEigenvalue:
     """One Newton step from w, given D and its derivatives with respect to w and p; a real w stays real.
     rounding: rounding error of D, on the same scale as D. If D_w vanishes, w is returned unchanged, with step
     and rounding error inf."""
@@ -86,23 +88,23 @@ def curvature_estimate(w: Complex, k: int) -> float:
     for j in range(len(w)):
         if j != k:
             total += 1 / abs(w[k] - w[j])
-    return FOLLOWING_SETTINGS.curvature_safety_factor * total
+    return EIGENVALUE_FOLLOWING_SETTINGS.curvature_safety_factor * total
 
 
 @compiled
 def converged_error(step: CorrectedEigenvalue, crowding: float, exact: bool) -> float:
     """Absolute error of an eigenvalue after a Newton step; inf until the remainder crowding step^2 is small
     enough. crowding: upper estimate of |D''/(2 D')| at the eigenvalue. exact: whether the remainder must be
-    below the rounding error, instead of `FOLLOWING_SETTINGS.accuracy` |w|."""
+    below the rounding error, instead of `EIGENVALUE_FOLLOWING_SETTINGS.accuracy` |w|."""
     remainder = crowding * step.step_length * step.step_length
     allowed = (
-        max(step.rounding_error, ROUND_OFF * abs(step.w))
+        max(step.rounding_error, MACHINE_EPSILON * abs(step.w))
         if exact
-        else FOLLOWING_SETTINGS.accuracy * abs(step.w)
+        else EIGENVALUE_FOLLOWING_SETTINGS.accuracy * abs(step.w)
     )
     if (
         remainder <= allowed
-        or step.step_length <= FOLLOWING_SETTINGS.final_step_over_rounding * step.rounding_error
+        or step.step_length <= EIGENVALUE_FOLLOWING_SETTINGS.final_step_over_rounding * step.rounding_error
     ):
         return max(step.rounding_error, min(remainder, step.step_length))
     return math.inf
@@ -140,7 +142,7 @@ def _iterate_to_convergence(
     convergence.
     """
     step = first
-    for _ in range(FOLLOWING_SETTINGS.max_newton_steps):
+    for _ in range(EIGENVALUE_FOLLOWING_SETTINGS.max_newton_steps):
         error = converged_error(step, crowding, exact)
         if error < math.inf:
             if exact and step.rounding_error > ROOT_SETTINGS.ill_conditioned_ratio * abs(step.w):

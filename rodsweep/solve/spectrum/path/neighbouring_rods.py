@@ -27,9 +27,9 @@ from .arm_count import confirmed_count_at
 from .arm_following_settings import ARM_FOLLOWING_SETTINGS
 from .arm_interval import follow_interval
 from .carried_arm_count import ArmCountCarrier
-from .carried_count import assess_points, carry_count, leading_eigenvalues, line_in_gap, widest_gap
+from .carried_count import assess_points, carry_count, leading_eigenvalues_of_track, line_in_gap, widest_gap
 from .following import follow_eigenvalues
-from .prediction import FollowedEigenvalues, slice_track, start_track
+from .prediction import FollowedEigenvalues, new_track, slice_track
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -144,7 +144,7 @@ def _followed_eigenvalues(
     first_w, proved_count = first
     modes = request.modes
     later_rods = NeighbouringRods(rods.path, rods.values[start:])
-    track = start_track(first_w, len(later_rods))
+    track = new_track(first_w, len(later_rods))
     n = follow_eigenvalues(
         track, later_rods.coefficients, later_rods.path_variables, rods.path.direction, modes
     )
@@ -154,7 +154,7 @@ def _followed_eigenvalues(
     proved_counts = _proved_counts_along(later_rods, track, modes, proved_count)
     reached_track = slice_track(track, 0, len(proved_counts))
     is_good, unstable_counts = assess_points(reached_track, proved_counts, modes, request.accuracy)
-    return FollowedPoints(*leading_eigenvalues(reached_track, modes), unstable_counts, is_good)
+    return FollowedPoints(*leading_eigenvalues_of_track(reached_track, modes), unstable_counts, is_good)
 
 
 def follow_spectra_of_arms(path: ParameterPath, p: Array, request: SpectrumRequest) -> FollowedPoints | None:
@@ -177,7 +177,9 @@ def follow_spectra_of_arms(path: ParameterPath, p: Array, request: SpectrumReque
     is_accepted, unstable_counts = assess_points(
         interval.track, interval.proved_counts, request.modes, request.accuracy
     )
-    return FollowedPoints(*leading_eigenvalues(interval.track, request.modes), unstable_counts, is_accepted)
+    return FollowedPoints(
+        *leading_eigenvalues_of_track(interval.track, request.modes), unstable_counts, is_accepted
+    )
 
 
 def _proved_counts_along(

@@ -52,7 +52,7 @@ class KnownRoots(NamedTuple):
     error: Array
 
 
-def start_track(first_eigenvalues: Complex, point_count: int) -> FollowedEigenvalues:
+def new_track(first_eigenvalues: Complex, point_count: int) -> FollowedEigenvalues:
     """A track of `point_count` points; only the first is filled, with `first_eigenvalues`, (m,), in
     descending order."""
     shape = (point_count, len(first_eigenvalues))

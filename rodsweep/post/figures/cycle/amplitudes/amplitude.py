@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from .....config.arm.axes import CHANGED_PARAMETER
+from .....config.arm.axes import PARAMETER_CHANGED_ALONG
 from .....config.task.limit_cycle import LONGEST_AXIS
 from .....errors import InputError
 from .....results.file.view import ResultView
@@ -17,11 +17,11 @@ from ... import style
 from ...grid_slices import left_out_clause
 from ..selection import shared_and_own_of_arms, shared_and_own_texts
 from ..units_and_labels import units_of_files
-from .branches import AmplitudeSeries, abscissa_parameter, amplitude_branches
+from .branches import AmplitudeSeries, abscissa_parameter, amplitude_series
 from .hopf_marks import draw_square_root_laws, mark_hopf_points
 from .square_root import square_root_laws
 
-BRANCH_LOOKS = tuple(zip(style.LINE_COLOURS, ("o", "s", "^", "D", "v", "P"), strict=True))
+SERIES_LOOKS = tuple(zip(style.LINE_COLOURS, ("o", "s", "^", "D", "v", "P"), strict=True))
 """(colour, marker) of each line."""
 MIN_ARROW_POINTS = 4
 """Only a line with at least this number of points has an arrow in the direction of continuation."""
@@ -39,11 +39,11 @@ def draw_amplitude(views: Sequence[ResultView], is_narrow: bool = False) -> tupl
     name = abscissa_parameter(first_view)
     units = units_of_files(views, [np.arange(view.variables["status"].size) for view in views])
     pairs = zip(views, units, strict=True)
-    branches = [branch for view, own_units in pairs for branch in amplitude_branches(view, name, own_units)]
-    if len(branches) > len(BRANCH_LOOKS):
+    branches = [branch for view, own_units in pairs for branch in amplitude_series(view, name, own_units)]
+    if len(branches) > len(SERIES_LOOKS):
         raise InputError(
             f"{first_view.path} gives {len(branches)} lines over {name}, and a figure has room for "
-            f"{len(BRANCH_LOOKS)}: choose lines with --at, such as --at k1=150, or draw a full grid over two "
+            f"{len(SERIES_LOOKS)}: choose lines with --at, such as --at k1=150, or draw a full grid over two "
             "parameters as maps (--what maps)"
         )
     has_amplitude = any(np.isfinite(branch.amplitude_y).any() for branch in branches)
@@ -52,7 +52,7 @@ def draw_amplitude(views: Sequence[ResultView], is_narrow: bool = False) -> tupl
     panels = figure.subplots(*((4, 1) if is_narrow else (2, 2)), sharex=True).T.ravel()
     common_text, branch_texts = _common_and_own_texts(branches, name)
     handles = _draw_branches(panels, branches, branch_texts, _legend_entries_of_files(views, name))
-    colours = (colour for colour, _ in BRANCH_LOOKS)
+    colours = (colour for colour, _ in SERIES_LOOKS)
     coloured = zip(branches, colours, strict=False)
     marks = [(point, colour) for branch, colour in coloured for point in branch.hopf]
     handles += mark_hopf_points(panels, marks)
@@ -66,7 +66,7 @@ def draw_amplitude(views: Sequence[ResultView], is_narrow: bool = False) -> tupl
     for panel in panels:
         style.scale_axis(panel, "x", np.unique(branches[0].x))
     if legend := [handle for handle in handles if handle.get_label()]:
-        style.legend_below(figure, legend, column_count=min(2, len(legend)))
+        style.draw_legend_below(figure, legend, column_count=min(2, len(legend)))
     figure.suptitle(style.heading_text(first_view, common_text))
     omissions = [left_out_clause(view.point_columns, [name]) for view in views]
     return figure, f"amplitudes of the tip, period and power against {name}{max(omissions, key=len)}"
@@ -82,7 +82,7 @@ def _draw_branches(
     `_legend_entries_of_files`."""
     handles = []
     unknown_statuses = set[str]()
-    for branch, text, (colour, marker) in zip(branches, texts, BRANCH_LOOKS, strict=False):
+    for branch, text, (colour, marker) in zip(branches, texts, SERIES_LOOKS, strict=False):
         keywords: dict[str, Any] = {"color": colour, "marker": marker, "lw": 1.2, "ms": 3.5}
         # Open, larger markers do not hide the markers of the first file.
         if branch.view is not branches[0].view:
@@ -91,7 +91,7 @@ def _draw_branches(
         handles.append(Line2D([], [], label=", ".join(filter(None, (word, text))), **keywords))
         unknown_statuses |= _draw_branch(panels, branch, keywords)
         if upward is not None:
-            _show_direction(panels, branch, upward, colour)
+            _draw_direction_arrow_on_line(panels, branch, upward, colour)
     if any("unstable" in branch.status_names for branch in branches):
         handles.append(Line2D([], [], color="0.3", marker="o", label="unstable cycle", **UNSTABLE_LOOK))
     if unknown_statuses:
@@ -122,7 +122,9 @@ def _legend_entries_of_files(views: Sequence[ResultView], name: str) -> dict[int
     return {id(view): entries[direction] for view, direction in zip(views, directions, strict=True)}
 
 
-def _show_direction(panels: Sequence[Axes], branch: AmplitudeSeries, upward: bool, colour: str) -> None:
+def _draw_direction_arrow_on_line(
+    panels: Sequence[Axes], branch: AmplitudeSeries, upward: bool, colour: str
+) -> None:
     """Draws an arrow of the colour `colour` on a line, in each panel, in the direction of continuation.
     upward: whether the parameter increased."""
     arrow = {"arrowstyle": "-|>", "color": colour, "lw": 1.2, "mutation_scale": 14}
@@ -143,7 +145,7 @@ def _common_and_own_texts(branches: Sequence[AmplitudeSeries], name: str) -> tup
     view = branches[0].view
     if branches[0].units.in_si and all(branch.view is view for branch in branches):
         axis_names = [
-            quantity for quantity, changed_name in CHANGED_PARAMETER.items() if changed_name == name
+            quantity for quantity, changed_name in PARAMETER_CHANGED_ALONG.items() if changed_name == name
         ]
         numbers = [branch.first_number for branch in branches]
         return shared_and_own_of_arms(view, numbers, {name, *axis_names})

@@ -11,7 +11,7 @@ from .....results.file.view import ResultView
 from .....results.layouts.limit_cycle import CYCLE_STATUSES
 from .....sweep.points.points import lines_along
 from ....located_thresholds import LocatedThreshold, StoredThresholds
-from ..units_and_labels import PLAIN_UNITS, CycleUnits
+from ..units_and_labels import DIMENSIONLESS_UNITS, CycleUnits
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +64,9 @@ def abscissa_parameter(view: ResultView) -> str:
     return name
 
 
-def amplitude_branches(view: ResultView, name: str, units: CycleUnits = PLAIN_UNITS) -> list[AmplitudeSeries]:
+def amplitude_series(
+    view: ResultView, name: str, units: CycleUnits = DIMENSIONLESS_UNITS
+) -> list[AmplitudeSeries]:
     """Curves of a file against the parameter `name`, one for each combination of the other parameters. units:
     units of the drawn quantities."""
     statuses = view.status_names

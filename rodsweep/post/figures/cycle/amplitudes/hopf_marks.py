@@ -22,7 +22,7 @@ HOPF_LINE_LOOK: dict[str, Any] = {"ls": ":", "lw": 1.1}
 """Matplotlib style of a vertical line at a Hopf point."""
 SHARED_POINT_COLOUR = "0.3"
 """Colour of a Hopf point that belongs to several lines."""
-LAW_COLOUR = "0.45"
+SQUARE_ROOT_LAW_COLOUR = "0.45"
 """Colour of a square-root law."""
 COEFFICIENT_DIGITS = 3
 """Largest number of significant digits of a coefficient in a legend."""
@@ -69,7 +69,7 @@ def draw_square_root_laws(axes: Axes, laws: Sequence[SquareRootLaw], unit: str =
         chosen_laws = [law for law in laws if law.is_above == is_above]
         if not chosen_laws:
             continue
-        keywords: dict[str, Any] = {"color": LAW_COLOUR, "lw": 1.0, "ls": (0, (5, 2.5))}
+        keywords: dict[str, Any] = {"color": SQUARE_ROOT_LAW_COLOUR, "lw": 1.0, "ls": (0, (5, 2.5))}
         for law in chosen_laws:
             axes.plot(*law.curve(), zorder=1.5, **keywords)
         difference_in_tex = rf"\tilde F - {HOPF_SYMBOL}" if is_above else rf"{HOPF_SYMBOL} - \tilde F"

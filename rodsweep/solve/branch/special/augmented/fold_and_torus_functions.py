@@ -20,7 +20,7 @@ from ..special_point import SPECIAL_POINT_SETTINGS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class AugmentedSettings:
+class MinimallyAugmentedSettings:
     """Settings for correcting a cycle, its test function and its null vectors with the matrix factors of a
     nearby cycle."""
 
@@ -47,15 +47,15 @@ class AugmentedSettings:
     inverse_iteration_shift: float = 1e-9
     """Relative distance of the shift of inverse iteration from the eigenvalue; with this distance the shifted
     matrix is regular."""
-    inverse_iterations: int = 2
+    inverse_iteration_count: int = 2
     """Number of inverse iterations. Each iteration multiplies the components of other eigenvectors by the
     ratio of `inverse_iteration_shift` to the relative gap between the eigenvalues."""
 
 
-AUGMENTED_SETTINGS = AugmentedSettings()
+MINIMALLY_AUGMENTED_SETTINGS = MinimallyAugmentedSettings()
 
 
-class FoldFunction:
+class FoldTestFunction:
     """Test function of folds: derivative of the scaled parameter coordinate with respect to the arc length in
     the direction `border`, (3,). matrix: matrix of a nearby cycle, whose factors are used. has_small_cycles:
     whether the derivative is divided by the deflection; without this division the derivative vanishes at a
@@ -89,7 +89,7 @@ class FoldFunction:
         self.null_vectors = corrected_tangent(self.matrix, orbit, self.border, tangent, residuals)
 
 
-class TorusFunction:
+class TorusTestFunction:
     """Test function of torus points: |mu| - 1, mu: complex multiplier nearest to the unit circle, which is
     corrected together with its eigenvector. matrix: matrix of a nearby cycle, whose factors are used.
     null_vectors: real and imaginary part of the eigenvector, (2, N + 1). shifted_propagator: P - (1 + shift)
@@ -105,11 +105,11 @@ class TorusFunction:
         p = matrix.orbit.orbit_equations
         # At the multiplier itself the matrix would be singular, so inverse iteration needs a small shift.
         self.shifted_propagator = (
-            matrix.propagator - (1 + AUGMENTED_SETTINGS.inverse_iteration_shift) * pair * p.symmetry
+            matrix.propagator - (1 + MINIMALLY_AUGMENTED_SETTINGS.inverse_iteration_shift) * pair * p.symmetry
         )
         # Almost any start has a part along the eigenvector, and only this part grows.
         start = np.ones(len(p.mass), dtype=complex)
-        for _ in range(AUGMENTED_SETTINGS.inverse_iterations):
+        for _ in range(MINIMALLY_AUGMENTED_SETTINGS.inverse_iteration_count):
             start = np.linalg.solve(self.shifted_propagator, p.symmetry @ start)
             start /= np.linalg.norm(start)
         self.border = start.conj()
@@ -153,19 +153,19 @@ class TorusFunction:
         )
 
 
-def correct_until_converged(function: FoldFunction | TorusFunction, orbit: Orbit) -> None:
+def correct_until_converged(function: FoldTestFunction | TorusTestFunction, orbit: Orbit) -> None:
     """Corrects a test function at an orbit until its value changes only by rounding error; raises
     Unsolvable."""
     value = function.value(orbit)
     previous_change = np.inf
-    for correction_index in range(AUGMENTED_SETTINGS.max_corrections):
+    for correction_index in range(MINIMALLY_AUGMENTED_SETTINGS.max_corrections):
         function.correct_vectors(orbit)
         previous_value = value
         value = function.value(orbit)
         change = abs(value - previous_value)
         if change <= SPECIAL_POINT_SETTINGS.test_function_tolerance or (
             change > SPECIAL_POINT_SETTINGS.converging_step_ratio * previous_change
-            and change <= AUGMENTED_SETTINGS.rounding_correction
+            and change <= MINIMALLY_AUGMENTED_SETTINGS.rounding_correction
         ):
             return
         # The iteration converges linearly, so a change that grows will not decrease later.

@@ -12,7 +12,7 @@ from ....unsolvable import Unsolvable
 from ...bordered.condition import BorderCondition, moved_orbit
 from ...bordered.matrix import BorderedMatrix
 from ...bordered.scale import ArcLengthScale
-from .fold_and_torus_functions import AUGMENTED_SETTINGS, FoldFunction, TorusFunction
+from .fold_and_torus_functions import MINIMALLY_AUGMENTED_SETTINGS, FoldTestFunction, TorusTestFunction
 
 
 class CycleFamilyInterface(Protocol):
@@ -31,7 +31,7 @@ class CycleFamilyInterface(Protocol):
     @property
     def workspace(self) -> NewtonWorkspace: ...
 
-    def test_function(self, matrix: BorderedMatrix) -> "FoldFunction | TorusFunction":
+    def test_function(self, matrix: BorderedMatrix) -> "FoldTestFunction | TorusTestFunction":
         """The test function that is zero on the curve of special points, for cycles near the orbit of
         `matrix`."""
 
@@ -72,9 +72,9 @@ class NearbyCycleSolver:
 
         slope: approximate modulus of the derivative of the test function across the curve. tolerance:
         relative tolerance of cycle and test function; far from the curve
-        `AUGMENTED_SETTINGS.tolerance_to_distance_ratio` allows more."""
+        `MINIMALLY_AUGMENTED_SETTINGS.tolerance_to_distance_ratio` allows more."""
         previous_change = 0.0
-        for _ in range(AUGMENTED_SETTINGS.max_corrections):
+        for _ in range(MINIMALLY_AUGMENTED_SETTINGS.max_corrections):
             report()
             orbit, change = self._corrected_orbit(orbit, condition)
             distance = self.matrix_distance
@@ -92,16 +92,18 @@ class NearbyCycleSolver:
             )
             # Divided by a small deflection, the test function changes for reasons other than the matrix.
             if previous_change and not self._family.has_small_cycles:
-                contraction = AUGMENTED_SETTINGS.contraction_safety_factor * correction_ratio / distance
-                self.contraction_rate = max(AUGMENTED_SETTINGS.min_contraction_rate, contraction)
+                contraction = (
+                    MINIMALLY_AUGMENTED_SETTINGS.contraction_safety_factor * correction_ratio / distance
+                )
+                self.contraction_rate = max(MINIMALLY_AUGMENTED_SETTINGS.min_contraction_rate, contraction)
             # The product predicts the next change, that is the error left after this correction.
             if change_after_step * min(correction_ratio, 1.0) <= max(
-                tolerance, AUGMENTED_SETTINGS.tolerance_to_distance_ratio * abs(value) / slope
+                tolerance, MINIMALLY_AUGMENTED_SETTINGS.tolerance_to_distance_ratio * abs(value) / slope
             ):
                 return orbit, value
-            if previous_change and correction_ratio > AUGMENTED_SETTINGS.max_correction_ratio:
+            if previous_change and correction_ratio > MINIMALLY_AUGMENTED_SETTINGS.max_correction_ratio:
                 # Corrections that stall at this size are rounding, which a new matrix would not reduce.
-                if change_after_step <= AUGMENTED_SETTINGS.rounding_correction:
+                if change_after_step <= MINIMALLY_AUGMENTED_SETTINGS.rounding_correction:
                     return orbit, value
                 self._assemble_matrix(orbit)
                 # With a new matrix no ratio to the last change is known.
