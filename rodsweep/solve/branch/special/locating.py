@@ -88,24 +88,28 @@ def special_point_between(
         if kind == SpecialKind.fold:
             try:
                 segment = BranchSegment(start, end)
-                return _point_near(kind, segment, segment.predicted_fold(), required_accuracy)
+                point, length = _point_near(kind, segment, segment.predicted_fold(), required_accuracy)
+                # Nothing encloses the prediction, which may have led to another fold.
+                if not 0 <= length <= segment.length:
+                    raise Unsolvable("the predicted fold does not lie between the two cycles")
+                return point
             except WorkLimitReached:
                 raise
             except Unsolvable:
                 pass  # the fold is bracketed instead
         segment = BranchSegment(start, end)
         segment.set_mesh(mesh_of(end.orbit))
-        return _point_near(kind, segment, _bracketed_zero(kind, segment), required_accuracy)
+        return _point_near(kind, segment, _bracketed_zero(kind, segment), required_accuracy)[0]
     except Unsolvable as reason:
         return unlocated_point(kind, start, end, f"the special point ({kind.name}) is not located: {reason}")
 
 
 def _point_near(
     kind: SpecialKind, segment: BranchSegment, guess: tuple[float, float], required_accuracy: float
-) -> SpecialPoint:
-    """The special point of a kind on `segment`, to a relative accuracy, or with a larger error if no allowed
-    mesh suffices or the limit of the work is reached; raises Unsolvable. guess: (arc length near the point,
-    slope of the test function there)."""
+) -> tuple[SpecialPoint, float]:
+    """Returns (special point of a kind, its arc length on `segment`), to a relative accuracy, or with a
+    larger error if no allowed mesh suffices or the limit of the work is reached; raises Unsolvable. guess:
+    (arc length near the point, slope of the test function there)."""
     length, slope = guess
     start, end = segment.start, segment.end
     mesh = first_mesh(end.calibration, required_accuracy)
@@ -131,9 +135,7 @@ def _point_near(
             break
     if point is None or np.isnan(point.error):
         raise mesh_limit_error()
-    if not 0 <= length <= segment.length:
-        raise Unsolvable("the point found does not lie between the two cycles")
-    return point
+    return point, length
 
 
 def _bracketed_zero(kind: SpecialKind, segment: BranchSegment) -> tuple[float, float]:
