@@ -81,7 +81,7 @@ def test_a_portrait_is_drawn_and_said(command):
             (*ROD, "--accuracy", "2"),
             "--accuracy = 2.0 is not allowed; it should be a number from 1e-13 to 0.01",
         ),
-        ((*ROD, "--profile", "no.csv"), "--profile: no.csv does not exist"),
+        ((*ROD, "--profile", "no.csv"), "--profile: no.csv does not exist; give the name of a CSV file"),
         ((*ROD, "--law", "x"), "--law = 'x' is not allowed; it should be linear or neo_hookean"),
         ((*ROD, "--poisson", "0.3"), "--viscosity is missing; an arm needs the viscosity of its fluid"),
         (("--k1", "x", "--k2", "1", "--gamma3", "1"), "Invalid value for '--k1': 'x' is not a valid float."),
