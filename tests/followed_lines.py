@@ -13,7 +13,7 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.spectrum.path.neighbouring_rods import NeighbouringRods, follow_spectra
 from rodsweep.solve.spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
-from rodsweep.sweep.points.groups import GROUP_POINTS
+from rodsweep.sweep.points.groups import MAX_GROUP_POINTS
 
 LARGEST = 400
 """Unknowns up to which whole matrices are solved."""
@@ -32,8 +32,8 @@ def line(name: str, values, **others: float) -> NeighbouringRods:
 def parts(whole: NeighbouringRods) -> list[NeighbouringRods]:
     """A line cut as a sweep cuts it."""
     return [
-        NeighbouringRods(whole.path, whole.values[at : at + GROUP_POINTS])
-        for at in range(0, len(whole), GROUP_POINTS)
+        NeighbouringRods(whole.path, whole.values[at : at + MAX_GROUP_POINTS])
+        for at in range(0, len(whole), MAX_GROUP_POINTS)
     ]
 
 
@@ -42,7 +42,7 @@ def random_line(rng: np.random.Generator) -> NeighbouringRods:
     k1, k2 = (10 ** rng.uniform(0, 6) if rng.random() < 0.8 else np.inf for _ in range(2))
     gamma3 = 10 ** rng.uniform(-8, 1) if rng.random() < 0.7 else 0.0
     F = min(0.999 * k1, 10 ** rng.uniform(0, 3)) * (1 if rng.random() < 0.9 else -1)
-    name, n = str(rng.choice(["F", "k1", "k2", "gamma3"])), int(rng.integers(8, GROUP_POINTS + 1))
+    name, n = str(rng.choice(["F", "k1", "k2", "gamma3"])), int(rng.integers(8, MAX_GROUP_POINTS + 1))
     if name == "F":
         values = np.linspace(F * rng.uniform(-0.1, 0.9), F, n)
     else:

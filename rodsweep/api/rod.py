@@ -38,7 +38,7 @@ from .task_keywords import (
 if TYPE_CHECKING:
     from .answers.rod_portrait import RodPortrait
 
-ARM_EXAMPLE = 'rs.Rod(arm=rs.Arm(length="10 cm", radius="5 mm", young="100 kPa", viscosity="1.4 Pa s"))'
+ROD_EXAMPLE = 'rs.Rod(arm=rs.Arm(length="10 cm", radius="5 mm", young="100 kPa", viscosity="1.4 Pa s"))'
 
 
 class SoftRod:
@@ -78,7 +78,7 @@ class SoftRod:
                 raise InputError(f"a rod has no parameter {name}; {rod_argument_hint(name) or suggestion}")
         if arm is not None:
             if not isinstance(arm, SlenderArm):
-                raise InputError(f"arm = {short_repr(arm)} is not an arm; write it as in {ARM_EXAMPLE}")
+                raise InputError(f"arm = {short_repr(arm)} is not an arm; write it as in {ROD_EXAMPLE}")
             given_values = rod_parameters_of(with_load_in_si(arm)) | given_values
             material_values = {name: value for name, value in material.items() if value is not None}
             material = material_config_of(arm) | material_values

@@ -77,7 +77,7 @@ def solve_in_process(
         statuses=solver.statuses,
         values=values,
         filled=(*from_config, *sweep_wide.variables, *from_points),
-        run_attributes=_solve_attributes(start_time, reasons),
+        run_attributes=_attributes_of_solve(start_time, reasons),
         messages=messages,
     )
 
@@ -87,7 +87,7 @@ def _point_text_of(job: Job) -> Callable[[int], str]:
     return lambda index: parameters_text(job.points.values(index))
 
 
-def _solve_attributes(start_time: str, reasons: Sequence[str]) -> dict[str, Any]:
+def _attributes_of_solve(start_time: str, reasons: Sequence[str]) -> dict[str, Any]:
     """Attributes of a result whose solve ends now."""
     from ..solve.backend import petsc
 

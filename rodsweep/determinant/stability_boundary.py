@@ -32,7 +32,7 @@ class BoundaryPointSettings:
     determinants of regular matrices are far larger."""
     converging_step_ratio: float = 0.5
     """A small step of more than this number times the previous step is rounding error."""
-    stagnant_step: float = 1e-10
+    max_stagnant_step: float = 1e-10
     """Newton's method has also converged if |step| is below this number and more than `converging_step_ratio`
     times the previous |step|."""
 
@@ -103,7 +103,7 @@ class StabilityBoundary:
             step_size = float(np.abs(step).max())
             v = v + step
             if step_size <= BOUNDARY_POINT_SETTINGS.converged_step_in_rounding_errors * error or (
-                step_size < BOUNDARY_POINT_SETTINGS.stagnant_step
+                step_size < BOUNDARY_POINT_SETTINGS.max_stagnant_step
                 and step_size > BOUNDARY_POINT_SETTINGS.converging_step_ratio * previous_size
             ):
                 return BoundarySolution(v, jacobian, max(error, step_size))

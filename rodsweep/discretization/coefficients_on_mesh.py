@@ -146,7 +146,7 @@ def _mean_at_nodes(values: Array, mesh: Mesh) -> Array:
     return mean
 
 
-class NodePoints(NamedTuple):
+class OneSidedNodePoints(NamedTuple):
     """The `one_sided_nodes` of a mesh, sorted by the node to which they belong. first_indices: index
     of the first point of each node, (nodes + 1,). weights: quadrature weight of each point within its
     element, (nodes + elements,)."""
@@ -156,8 +156,8 @@ class NodePoints(NamedTuple):
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
-def _points_of_nodes(mesh: Mesh) -> NodePoints:
-    """The `NodePoints` of a mesh, cached."""
+def _points_of_nodes(mesh: Mesh) -> OneSidedNodePoints:
+    """The `OneSidedNodePoints` of a mesh, cached."""
     parts = zip(mesh.lengths, mesh.orders, strict=True)
     weights = np.concatenate([length / 2 * gauss_lobatto_rule(order)[1] for length, order in parts])
-    return NodePoints(np.unique(mesh.element_nodes, return_index=True)[1], weights)
+    return OneSidedNodePoints(np.unique(mesh.element_nodes, return_index=True)[1], weights)

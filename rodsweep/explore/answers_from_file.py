@@ -14,7 +14,7 @@ from ..model.parameters import PARAMETERS
 from ..post.branch_curves import RodBranches
 from ..post.figures.cycle.animation import MIN_SHAPES
 from ..results.file.view import status_sentences_in
-from .slider_scales import SCALES
+from .slider_scales import SLIDER_SCALES
 from .solving.diagrams import Dataset, flag_words
 from .solving.requests import AnswerVariables, drawn_branches
 from .state import PageState
@@ -94,7 +94,7 @@ class AnswersFromFile:
         default_value = nan if default is None else default
         stored_values = self.data[name] if name in self.data.variables else default_value
         at_points = (self.data["status"] * 0.0 + stored_values).transpose(*self.dims)
-        values: Array = at_points.values.ravel() * SCALES[tab][name].factor
+        values: Array = at_points.values.ravel() * SLIDER_SCALES[tab][name].factor
         return values
 
     def _matching_points(self, state: PageState, free_controls: Collection[str] = ()) -> NDArray[np.integer]:
@@ -104,7 +104,7 @@ class AnswersFromFile:
         along_rows = {name for name in state.values if self._is_along_rows(name)}
         for name, text in state.values.items():
             if name not in free_controls and name not in along_rows:
-                value = SCALES[state.tab][name].value(text)
+                value = SLIDER_SCALES[state.tab][name].value(text)
                 control_values = self._control_values(state.tab, name)
                 is_matching &= np.array(
                     [value is not None and _matches_control(value, number) for number in control_values],

@@ -10,7 +10,7 @@ from bokeh.models import Column, InlineStyleSheet, Select, Slider, TabPanel, Tab
 from bokeh.models.css import StyleSheet
 
 from ..post.summary.arm.arm import quantity_words
-from .slider_scales import SCALES, ControlScale, PictureAxis
+from .slider_scales import SLIDER_SCALES, ControlScale, PictureAxis
 from .state import MATERIAL_CHOICE_NAMES, SECOND_PARAMETERS, TAB_DEFAULTS, PageState
 
 MAX_FORCE_LABEL = "Largest force F (k3/L^2)"
@@ -80,7 +80,7 @@ class Controls:
         sheets: list[StyleSheet] = [style_sheet]
         self.fields = {
             tab: {name: SliderField(scale, self._field_changed, sheets) for name, scale in scales.items()}
-            for tab, scales in SCALES.items()
+            for tab, scales in SLIDER_SCALES.items()
         }
         panels = [
             TabPanel(

@@ -12,7 +12,7 @@ from .answers_from_file import AnswersFromFile
 from .controls import PauseTimer
 from .page_contents import PageContents
 from .sharing import state_from_config_text
-from .slider_scales import SCALES
+from .slider_scales import SLIDER_SCALES
 from .solving import request_inputs as kinds
 from .solving.diagrams import has_uniform_linear_rods
 from .solving.request_inputs import AnswerInputs, inputs_of_request, state_to_solve
@@ -241,10 +241,10 @@ class Page:
         if event.x is None or event.y is None or event.y <= 0:
             return
         values = {self.state.load: event.x, self.state.second: event.y}
-        self.change({name: SCALES[self.state.tab][name].text(value) for name, value in values.items()})
+        self.change({name: SLIDER_SCALES[self.state.tab][name].text(value) for name, value in values.items()})
 
     def _move_load(self, event: Tap) -> None:
         """Sets the load to the horizontal position of a click."""
         if event.x is not None:
             load = event.x if self.stored is None else self.stored.load_near(self.state, event.x)
-            self.change({self.state.load: SCALES[self.state.tab][self.state.load].text(load)})
+            self.change({self.state.load: SLIDER_SCALES[self.state.tab][self.state.load].text(load)})

@@ -18,7 +18,7 @@ from .pictures.moving_arm import MovingArmPicture
 from .pictures.numbers import NumbersTable
 from .pictures.spectrum import ModePicture, SpectrumPicture
 from .sharing import ExportPanel
-from .slider_scales import SCALES, length_axis, load_axis
+from .slider_scales import SLIDER_SCALES, length_axis, load_axis
 from .solving.diagrams import can_follow_cycle_curves
 from .state import PageState
 from .texts import SolvingIndicator, add_texts
@@ -94,7 +94,9 @@ class PageContents:
         """Marks the second parameter and the load of `state` in the diagram, and updates controls, address,
         config and Python lines."""
         self.controls.show_largest_load(state, load_axis(state))
-        x, y = (SCALES[state.tab][name].value(state.values[name]) for name in (state.load, state.second))
+        x, y = (
+            SLIDER_SCALES[state.tab][name].value(state.values[name]) for name in (state.load, state.second)
+        )
         if x is not None and y is not None:
             self.diagram.move_point(x, y)
         self.buttons["cycles"].visible = can_follow_cycle_curves(state)
@@ -109,7 +111,7 @@ class PageContents:
     def show_solved_load(self, answer: dict[str, Any], state: PageState) -> None:
         """Marks the load of `state` in all pictures. answer: answer to the request "load"."""
         self.move_load_lines(state, answer["F"])
-        y = SCALES[state.tab][state.second].value(state.values[state.second])
+        y = SLIDER_SCALES[state.tab][state.second].value(state.values[state.second])
         if y is not None:
             self.diagram.move_point(answer["F"] * load_axis(state).factor, y)
 
@@ -137,7 +139,7 @@ class PageContents:
         elif kind == "branch":
             self.branches.show(answer, load_axis(state), length_axis(state))
         else:
-            scales = SCALES[state.tab]
+            scales = SLIDER_SCALES[state.tab]
             self.diagram.show(answer, scales[state.load], scales[state.second])
             if kind == "cycles" and len(answer["cycle_curve_x"]) == 0:
                 self.diagram.card.show_sentence_above(NO_CYCLE_CURVES_SENTENCE)

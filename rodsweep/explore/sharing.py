@@ -15,7 +15,7 @@ from ..config.document.reading import validated_config
 from ..errors import InputError
 from .page_style import style_sheet, template_text
 from .pictures.card import Card
-from .state import DEFAULT_F_MAX, PageState
+from .state import PAGE_F_MAX, PageState
 from .state_of_file import state_from_config
 
 ADDRESS_SCRIPT = 'history.replaceState(null, "", location.pathname + "?" + address.tags[0])'
@@ -146,7 +146,7 @@ def _saving_script(code: str, **arguments: Any) -> CustomJS:
     return CustomJS(args=arguments, code=template_text("download.js") + code)
 
 
-def state_from_config_text(text: str, F_max: str = DEFAULT_F_MAX) -> PageState:
+def state_from_config_text(text: str, F_max: str = PAGE_F_MAX) -> PageState:
     """State of the page for `text`, a config in YAML. F_max: largest force if the config has none. For an
     invalid config, raises the same InputError as the command line."""
     source = "the loaded file"

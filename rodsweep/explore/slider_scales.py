@@ -94,7 +94,7 @@ def load_axis(state: PageState) -> PictureAxis:
 
 def length_axis(state: PageState) -> PictureAxis:
     """Axis of a length: in units of L for a rod, in cm for an arm."""
-    scale = SCALES["arm"]["length"]
+    scale = SLIDER_SCALES["arm"]["length"]
     length = scale.value(state.arm["length"]) if state.tab == "arm" else None
     return PictureAxis("L", 1.0) if length is None else PictureAxis(scale.unit, length)
 
@@ -149,5 +149,7 @@ ARM_SLIDERS = (
     _arm_scale("viscosity", 1e-2, 1e3, "Pa s", 1.0),
     _arm_scale("pressure", 0, 20, "kPa", 1e-3, logarithmic=False),
 )
-SCALES = {tab: {s.name: s for s in scales} for tab, scales in (("rod", ROD_SLIDERS), ("arm", ARM_SLIDERS))}
+SLIDER_SCALES = {
+    tab: {s.name: s for s in scales} for tab, scales in (("rod", ROD_SLIDERS), ("arm", ARM_SLIDERS))
+}
 """Scale of every slider, by tab and by name of the parameter or quantity."""

@@ -46,7 +46,7 @@ SECOND_PARAMETERS = {
     "arm": ("length", "radius", "young", "viscosity"),
 }
 """Choices of the diagram's second parameter on each tab; the first is the default."""
-DEFAULT_F_MAX = "200"
+PAGE_F_MAX = "200"
 """Largest force with which the page opens, in k3/L^2."""
 LARGEST_FORCE_KEYS = {"thresholds": "F_max", "branch": "stop"}
 """Key of the largest force in the section of a task, by task."""
@@ -66,7 +66,7 @@ class PageState:
     """Constitutive law, a key of `MATERIAL_CHOICES`."""
     across: str = ""
     """Second parameter of the diagram that the user has chosen; empty for the default of the tab."""
-    F_max: str = DEFAULT_F_MAX
+    F_max: str = PAGE_F_MAX
     """Largest force of thresholds, branches and diagram, in k3/L^2."""
 
     @property

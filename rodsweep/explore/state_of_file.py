@@ -15,7 +15,7 @@ from ..config.task.branch import BranchConfig
 from ..errors import InputError
 from ..results import RESULT_ENDINGS
 from .answers_from_file import AnswersFromFile
-from .slider_scales import SCALES
+from .slider_scales import SLIDER_SCALES
 from .solving.diagrams import (
     Dataset,
     diagram_from_arm_result,
@@ -25,10 +25,10 @@ from .solving.diagrams import (
 from .solving.requests import crushing_force
 from .state import (
     DEFAULT_ARM,
-    DEFAULT_F_MAX,
     DEFAULT_ROD,
     LARGEST_FORCE_KEYS,
     MATERIAL_CHOICES,
+    PAGE_F_MAX,
     SECOND_PARAMETERS,
     PageState,
 )
@@ -55,7 +55,7 @@ def page_state_of_file(path: Path) -> tuple[PageState, AnswersFromFile | None]:
     return state, AnswersFromFile(path, data, state, stored_diagram(data, state))
 
 
-def state_from_config(config: Config, path: Path, F_max: str = DEFAULT_F_MAX) -> PageState:
+def state_from_config(config: Config, path: Path, F_max: str = PAGE_F_MAX) -> PageState:
     """State of the page for a config.
 
     Each parameter has the middle value of its axis; F has the middle of its values that do not crush the rod.
@@ -121,7 +121,7 @@ def _state_of_arm(config: Config, path: Path) -> PageState:
     texts = dict(DEFAULT_ARM)
     axes = {name: quantities[name].array() for name in DEFAULT_ARM if name in quantities}
     for name, values in axes.items():
-        scale = SCALES["arm"][name]
+        scale = SLIDER_SCALES["arm"][name]
         value = scale.factor * float(values[len(values) // 2])
         texts[name] = scale.text(value) if len(values) > 1 else f"{_exact_number_text(value)} {scale.unit}"
     if shares is not None:
@@ -167,7 +167,7 @@ def stored_diagram(data: Dataset, state: PageState) -> dict[str, Any] | None:
     data = data.isel({name: data.sizes[name] // 2 for name in other_names})
     row_values = data[second_name].values
     if state.tab == "arm":
-        scale = SCALES["arm"]["pressure"]
+        scale = SLIDER_SCALES["arm"]["pressure"]
         pressure = (scale.value(state.arm["pressure"]) or 0.0) / scale.factor
         return diagram_from_arm_result(data, row_values, pressure) if "crossing_pressure" in data else None
     if "crossing_F" in data:

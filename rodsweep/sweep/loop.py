@@ -17,7 +17,7 @@ from .points.ranges import IndexRange
 from .ranks import Ranks
 from .stop import RankListener, StopRequest
 
-PointIndices = int | NDArray[np.int64]
+ItemIndices = int | NDArray[np.int64]
 """Flat index of one point, or flat indices, (n,), of points that are stored together."""
 
 
@@ -25,7 +25,7 @@ class ItemSolver(Protocol):
     """Function that solves a work item, that is, a point, a chain or a group of points. Yields (flat index,
     result) of a point, or (flat indices, results) of points of a group that were solved together."""
 
-    def __call__(self, item: int, /) -> Iterable[tuple[PointIndices, Any]]: ...
+    def __call__(self, item: int, /) -> Iterable[tuple[ItemIndices, Any]]: ...
 
 
 class ProgressSink(Protocol):
@@ -57,7 +57,7 @@ class SweepCallbacks:
 
     solve: ItemSolver
     """Solves the points of an item."""
-    store: Callable[[PointIndices, Any], None]
+    store: Callable[[ItemIndices, Any], None]
     """Stores the result of a point durably, on the rank that solved it, before the next point begins."""
     prepare: Callable[[], object] = lambda: None
     """Called once, before the first item."""

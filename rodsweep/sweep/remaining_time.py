@@ -16,7 +16,7 @@ MIN_POINTS = 2
 MIN_FRACTION_DONE = 0.1
 """Minimum sum of the fractions done of unfinished points, for an estimate without finished points. For
 smaller sums, the time of starting up dominates."""
-TIME_CONSTANT = 0.25
+TIME_CONSTANT_RATIO = 0.25
 """Time constant of the reported remaining time, divided by the smaller of elapsed and remaining time."""
 RECORD_RATIO = 1.02
 """Ratio of the numbers of finished points in two successive stored records: about 35 records per doubling."""
@@ -53,7 +53,7 @@ class RemainingTimeEstimator:
         # A countdown that only passes time; the new estimate corrects it with the weight below.
         expected = max(reported - (now - last_time), 0.0)
         # A zero time constant would divide by zero when nothing is left.
-        time_constant = TIME_CONSTANT * min(now, max(remaining, expected)) or 1.0
+        time_constant = TIME_CONSTANT_RATIO * min(now, max(remaining, expected)) or 1.0
         weight = 1 - exp(-(now - last_time) / time_constant)
         self.reported = now, expected + weight * (remaining - expected)
         return self.reported[1]

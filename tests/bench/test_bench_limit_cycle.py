@@ -28,7 +28,7 @@ from rodsweep.bench.limit_cycle.sweeping import (
 from rodsweep.bench.limit_cycle.swept_rods import QUICK_RODS, RODS
 from rodsweep.bench.limit_cycle.tracking import (
     FOLLOWED_PERIODS,
-    PERIOD_MAP,
+    SMALL_STEP_SCHEME,
     cycle_request,
     orbit_of,
     solve_reference,
@@ -53,7 +53,7 @@ def test_error_of_an_exact_run_is_that_of_the_measurement():
     at = cycle()
     steps = int(128 * FOLLOWED_PERIODS)
     duration = steps / 128 * at.period
-    run = integrator(at.system.mesh, PERIOD_MAP).run(at.system, at.state, duration, at.period / 128)
+    run = integrator(at.system.mesh, SMALL_STEP_SCHEME).run(at.system, at.state, duration, at.period / 128)
     assert trajectory_measurement_fields(at, run)["error"] < 1e-8
 
 

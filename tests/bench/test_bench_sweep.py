@@ -19,7 +19,7 @@ from rodsweep.bench.sweep.launch import (
     KILLED,
     CommandRunCost,
     SweepCase,
-    launcher_words,
+    launcher_arguments,
     run_case,
     shuffled_forces,
     write_spectrum_case,
@@ -70,17 +70,17 @@ def test_quick_study_writes_its_tables_and_its_measurements(monkeypatch, loaded)
     command = (sys.executable, "-SE", str(RANK), str(loaded.ranks), *MEASURED_COMMAND[1:])
     study = run_sweep_study(quick=True, command=command)
     assert "| spectra | 16 | 1 |" in study.text
-    assert (f"| {TWO_COMMAND_CASE} | 16 | 1 |" in study.text) == bool(launcher_words(2))
+    assert (f"| {TWO_COMMAND_CASE} | 16 | 1 |" in study.text) == bool(launcher_arguments(2))
     assert "| no solver | 400 | 1 |" in study.text
     assert "| resumed | 400 | 1 |" in study.text
     assert growth_table([]) in study.text
     assert "| limit cycles | 2 | 1 |" in study.text
     assert "| 12 of F | 144 |" in study.text
-    assert ("| no solver | 400 | 2 |" in study.text) == bool(launcher_words(2))
+    assert ("| no solver | 400 | 2 |" in study.text) == bool(launcher_arguments(2))
     assert not study.is_drawable
     table = study.table()
     instant = [i for i, case in enumerate(table["case"]) if case == "no solver"]
-    assert len(instant) == (2 if launcher_words(2) else 1)
+    assert len(instant) == (2 if launcher_arguments(2) else 1)
     for name in ("ranks", "points", "points_per_second", "rss_megabytes", "file_bytes_per_point"):
         assert all(table[name][i] > 0 for i in instant), name
     assert all(np.isfinite(table["microseconds_overhead"][i]) for i in instant)
@@ -126,7 +126,7 @@ def test_a_run_that_fails_is_told(tmp_path):
 
 
 def test_two_ranks_are_skipped_without_a_launcher(monkeypatch):
-    monkeypatch.setattr(sweep, "launcher_words", lambda ranks: [])
+    monkeypatch.setattr(sweep, "launcher_arguments", lambda ranks: [])
     solved, instant = [], []
 
     def sweeps(into, kinds):

@@ -30,7 +30,7 @@ from rodsweep.bench.limit_cycle.sweeping import ACCURACY, AccurateCycle
 from rodsweep.bench.limit_cycle.swept_rods import RODS
 from rodsweep.bench.limit_cycle.tracking import (
     FOLLOWED_PERIODS,
-    PERIOD_MAP,
+    SMALL_STEP_SCHEME,
     cycle_request,
     measure_following,
     orbit_of,
@@ -93,7 +93,7 @@ def test_every_method_follows_the_cycle_and_gains_from_a_tighter_tolerance(famil
 def test_order_of_the_errors(name):
     order, *tolerances = ORDERS[name]
     family, at = next(f for f in FAMILIES if f.name == name), cycle()
-    over = integrator(at.system.mesh, PERIOD_MAP).run(at.system, at.state, at.period, at.period / 128)
+    over = integrator(at.system.mesh, SMALL_STEP_SCHEME).run(at.system, at.state, at.period, at.period / 128)
     error, steps = np.zeros((2, PHASES)), np.zeros((2, PHASES))
     for phase, state in enumerate(over.states[: 128 : 128 // PHASES + 1]):
         for i, tolerance in enumerate(tolerances):

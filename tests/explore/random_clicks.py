@@ -22,7 +22,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from explore.browser import Browser
 
 from rodsweep.errors import UserError
-from rodsweep.explore.slider_scales import SCALES
+from rodsweep.explore.slider_scales import SLIDER_SCALES
 from rodsweep.explore.state import MATERIAL_CHOICES, SECOND_PARAMETERS, TAB_DEFAULTS, PageState
 
 SECONDS = 600.0
@@ -46,7 +46,7 @@ RANGES = {
 BAD_VALUES = ("abc", "", "-1", "nan", "1e400", "inf", "<b>x</b>", "0", "1,5", "10 furlongs")
 BUTTONS = ("diagram", "branches", "cycles", "film", "stop", "save", "copy_yaml", "png", "svg")
 FIGURES = ("diagram", "growth", "branches", "beating", "spectrum", "mode")
-WIDTHS = (1280, 800, 500, 320)
+COLUMN_WIDTHS = (1280, 800, 500, 320)
 ACTIONS = {
     "click": 4, "drag": 2, "slide": 4, "fill": 3, "fill_badly": 1.5, "choose": 1, "change_tab": 0.5,
     "let_go": 2, "press": 2.5, "go_back": 0.7, "resize": 0.5,
@@ -135,12 +135,12 @@ class RandomUser:
         """A random value of a control, in its unit."""
         low, high = RANGES[name]
         share = self.random.random()
-        logarithmic = SCALES[self.tab()][name].is_logarithmic
+        logarithmic = SLIDER_SCALES[self.tab()][name].is_logarithmic
         return float(low * (high / low) ** share if logarithmic else low + share * (high - low))
 
     def slide(self) -> str:
         """A slider that is moved in five steps."""
-        scales = SCALES[self.tab()]
+        scales = SLIDER_SCALES[self.tab()]
         name = self.one_of(scales)
         ends = [scales[name].position(scales[name].text(self.value(name))) for _ in range(2)]
         for at in np.linspace(*ends, 5):
@@ -150,14 +150,14 @@ class RandomUser:
 
     def fill(self) -> str:
         """A value in a field."""
-        name = self.one_of([*SCALES[self.tab()], "F_max"])
+        name = self.one_of([*SLIDER_SCALES[self.tab()], "F_max"])
         if name == "F_max":
             return self.set(name, f"{self.random.uniform(20, 120):.3g}")
-        return self.set(f"{name}_field", SCALES[self.tab()][name].text(self.value(name)))
+        return self.set(f"{name}_field", SLIDER_SCALES[self.tab()][name].text(self.value(name)))
 
     def fill_badly(self) -> str:
         """A bad value in a field; the value before is written back after a moment, mostly."""
-        name = self.one_of([f"{each}_field" for each in SCALES[self.tab()]] + ["F_max"])
+        name = self.one_of([f"{each}_field" for each in SLIDER_SCALES[self.tab()]] + ["F_max"])
         before = self.browser.model(name, "value")
         told = self.set(name, self.one_of(BAD_VALUES))
         time.sleep(0.3)
@@ -193,7 +193,7 @@ class RandomUser:
 
     def resize(self) -> str:
         """Another width of the window."""
-        width = int(self.one_of(WIDTHS))
+        width = int(self.one_of(COLUMN_WIDTHS))
         self.browser.resize(width, 1200)
         return str(width)
 

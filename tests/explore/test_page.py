@@ -22,7 +22,7 @@ from rodsweep.explore.pictures.diagram import (
 )
 from rodsweep.explore.pictures.diagram_regions import region_table
 from rodsweep.explore.pictures.numbers import NumbersTable, number_text
-from rodsweep.explore.solving.diagrams import CRUSHED_COUNT, UNKNOWN_COUNT
+from rodsweep.explore.solving.diagrams import CRUSHED_CODE, UNKNOWN_CODE
 from rodsweep.explore.solving.request_inputs import INSTANT_KINDS
 from rodsweep.explore.solving.requests import Reply, SolveRequest, answer_to, answer_variables
 from rodsweep.explore.state import PageState
@@ -225,7 +225,7 @@ def test_texts_to_share_wait_until_the_page_rests_and_what_the_buttons_copy_does
 
 def test_the_diagram_names_its_areas_under_the_pointer_and_nothing_else():
     picture = page_with(ImmediateSolvers(())).contents.diagram
-    counts = np.array([[0, 1, 2, UNKNOWN_COUNT, CRUSHED_COUNT]])
+    counts = np.array([[0, 1, 2, UNKNOWN_CODE, CRUSHED_CODE]])
     cells = diagram_cells(np.arange(5.0), np.ones(1), counts)
     assert [unstable_count_words(cell.unstable) for cell in cells] == [
         "stable", "1 unstable mode", "2 unstable modes", "not searched, or not known", "crushed by the load",
@@ -252,7 +252,7 @@ def test_areas_of_a_diagram_end_at_its_curves_of_hopf_points():
         assert (row[middles < hopf - 0.01] == 0).all()
         assert (row[(middles > hopf + 0.01) & (middles < 1.94)] == 2).all()
         assert row[np.abs(middles - 1.96).argmin()] == 4
-        assert row[-1] == (CRUSHED_COUNT if 1.98 * 10**level < sides[-2] else 2)
+        assert row[-1] == (CRUSHED_CODE if 1.98 * 10**level < sides[-2] else 2)
     assert (levels[0], levels[-1]) == pytest.approx((1, 10))
     assert region_table(found | {"curve_kind": ["double"] * 8}) is None
     rigid = region_table(found | {"crushing_load": np.full(2, np.inf)})

@@ -78,14 +78,14 @@ CHECKS = {
     "phase_diagram": diagram_figure,
     "branch": branch_figure,
 }
-WIDTHS = (None, "89 mm", "183 mm")
+COLUMN_WIDTHS = (None, "89 mm", "183 mm")
 
 
 def random_figure(index):
     """(task, keywords of `rs.sweep`, choices and the width of `rodsweep plot`) of that number."""
     random = np.random.default_rng([36, index])
     task, keywords = random_sweep(index)
-    choices, width = {}, WIDTHS[int(random.integers(3))]
+    choices, width = {}, COLUMN_WIDTHS[int(random.integers(3))]
     if "arm" in keywords:
         if task in ("thresholds", "spectrum", "modes") and random.random() < 0.5:
             _second_quantity(random, keywords["arm"])

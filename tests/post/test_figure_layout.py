@@ -24,7 +24,7 @@ from rodsweep.post.figures.layout.ticks import visible_labels
 from rodsweep.post.figures.request import FigureLook
 from rodsweep.post.figures.style import FIGURE_STYLE
 
-WIDTHS = ("89 mm", "183 mm", None)
+COLUMN_WIDTHS = ("89 mm", "183 mm", None)
 IN_TURN = ("89 mm", "183 mm", "89 mm", None)
 """The widths of one figure after another: most at that of a column, where there is the least room."""
 LONG = "An arm of silicone whose length is to be chosen for the laboratory, a title too long for a line"
@@ -39,7 +39,7 @@ TOUCH = 0.01
 """Inches by which the boxes of two texts may lie over each other: they have blank edges."""
 
 
-def at_widths(figures, widths=WIDTHS, every=1):
+def at_widths(figures, widths=COLUMN_WIDTHS, every=1):
     """Some of the figures, as tuples, each at one width in turn, and `make survey` tries each at all."""
     if RODS:
         return [(*figure, width) for figure in figures for width in widths]
@@ -193,7 +193,9 @@ CYCLES = {
 @pytest.mark.long
 @pytest.mark.parametrize(
     ("name", "what", "width"),
-    at_widths([(name, what) for name, (_, kinds) in CYCLES.items() for what in kinds], WIDTHS[:2], every=4),
+    at_widths(
+        [(name, what) for name, (_, kinds) in CYCLES.items() for what in kinds], COLUMN_WIDTHS[:2], every=4
+    ),
 )
 def test_nothing_of_cycles_is_cut_or_over_anything_else(name, what, width, tmp_path, monkeypatch):
     (axes, _), some = CYCLES[name], 0.0 if what in ("cycle", "energy") else 0.3
@@ -247,7 +249,9 @@ def test_the_frames_of_a_film_are_whole(name):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(("seed", "width"), at_widths([(seed,) for seed in range(4)], WIDTHS[:2], every=3))
+@pytest.mark.parametrize(
+    ("seed", "width"), at_widths([(seed,) for seed in range(4)], COLUMN_WIDTHS[:2], every=3)
+)
 def test_random_figures_of_cycles_are_whole(seed, width, tmp_path, monkeypatch):
     rng = np.random.default_rng(seed)
     forces = list(np.sort(rng.uniform(10, 10 ** rng.uniform(2, 4), rng.integers(2, 30))))

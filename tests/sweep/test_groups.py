@@ -14,7 +14,7 @@ from surveyed import few
 import rodsweep as rs
 from rodsweep.results.file.view import read_view
 from rodsweep.sweep.points.groups import (
-    GROUP_POINTS,
+    MAX_GROUP_POINTS,
     MIN_GROUP_AXIS_VALUES,
     GroupResult,
     GroupSolver,
@@ -31,7 +31,7 @@ parameters:
   k2: [50, 1.0e4]
   gamma3: [0, 1.0e-4]
 """
-LAST_POINTS = 200 - GROUP_POINTS
+LAST_POINTS = 200 - MAX_GROUP_POINTS
 """Number of points of the second and last group of each line of SPECTRA."""
 EVERY = ("F", "k1", "k2", "gamma3")
 SHAPES = [(200, 3, 2, 2), (3, 258, 2, 1), (2, 2, 64, 5), (1, 1, 1, 9)]
@@ -45,7 +45,7 @@ def test_every_point_is_in_one_stretch_of_neighbours(shape):
     for part in parts:
         places = np.array(np.unravel_index(part, shape))
         others = np.delete(places, groups.axis, axis=0)
-        assert len(part) <= GROUP_POINTS
+        assert len(part) <= MAX_GROUP_POINTS
         assert (others == others[:, :1]).all()
         assert (np.diff(places[groups.axis]) == 1).all()
 
@@ -161,15 +161,15 @@ def test_a_stretch_of_which_a_part_was_written_is_redone_and_its_rest_kept(comma
     command.write("c.yaml", SPECTRA)
     path = command.directory / "c.h5"
     process = command.started("run", "c.yaml", patch=slowly(FOR_EVER, 2))
-    pause_until_journalled(process, path, 2 * GROUP_POINTS)
+    pause_until_journalled(process, path, 2 * MAX_GROUP_POINTS)
     process.kill()
     process.communicate(timeout=PATIENCE)
     (journal,) = (command.directory / "c.h5.journal").glob("rank-*")
-    record = (journal.stat().st_size - 100) // (2 * GROUP_POINTS)
+    record = (journal.stat().st_size - 100) // (2 * MAX_GROUP_POINTS)
     with journal.open("r+b") as file:
         file.truncate(journal.stat().st_size - 20 * record - 7)
     kept = read_view(path).journalled_count
-    assert 2 * GROUP_POINTS - 28 < kept < 2 * GROUP_POINTS - 18
+    assert 2 * MAX_GROUP_POINTS - 28 < kept < 2 * MAX_GROUP_POINTS - 18
     again = command("run", "c.yaml")
     assert again.returncode == 0, again.stderr
     assert f"{2400 - kept} of 2400 points to do, {kept} kept" in again.stdout
@@ -189,8 +189,8 @@ def test_stopped_run_ends_with_whole_stretches_and_goes_on(command):
     with h5py.File(command.directory / "c.h5") as file:
         kept = (file["status"][...] == 0).reshape(200, -1)
     assert kept.sum() == done
-    assert set(kept[:GROUP_POINTS].sum(axis=0)) <= {0, GROUP_POINTS}
-    assert set(kept[GROUP_POINTS:].sum(axis=0)) <= {0, LAST_POINTS}
+    assert set(kept[:MAX_GROUP_POINTS].sum(axis=0)) <= {0, MAX_GROUP_POINTS}
+    assert set(kept[MAX_GROUP_POINTS:].sum(axis=0)) <= {0, LAST_POINTS}
     assert command("run", "c.yaml").returncode == 0
     assert command("run", "c.yaml", "-o", "whole.h5").returncode == 0
     assert same(content(command.directory / "c.h5"), content(command.directory / "whole.h5"))
@@ -249,7 +249,7 @@ FEW_FORCES = "F: {start: 0, stop: 49.75, num: 20}"
 @pytest.mark.parametrize(
     ("first", "larger", "kept"),
     [
-        ("", "F: {start: 0, stop: 66.25, num: 266}", GROUP_POINTS),
+        ("", "F: {start: 0, stop: 66.25, num: 266}", MAX_GROUP_POINTS),
         ("", "F: {start: 0, stop: 49.75, num: 200}\n  k1: [100, 200, 1.0e4, .inf]", 200),
         (FEW_FORCES, f"{FEW_FORCES}\n  k2: {{start: 50, stop: 600, num: 31}}", 0),
         ("", "F: {start: -0.25, stop: 49.75, num: 201}", 0),

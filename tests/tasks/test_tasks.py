@@ -355,7 +355,9 @@ def test_a_curve_of_one_point_has_the_reasons_of_both_ends():
         (CurveEndReason.edge, CurveEndReason.not_followed),
         (None, None),
     )
-    filled = cycle_curve_values(TracedCurves((curve,), max_seed_distance=0.0, untraced_count=0), ("F", "k1"))
+    filled = cycle_curve_values(
+        TracedCurves((curve,), max_seed_curve_distance=0.0, untraced_count=0), ("F", "k1")
+    )
     view = SimpleNamespace(variables={variable.name: values for variable, values in filled})
     (line,) = cycle_curve_lines(view, "F", "k1")
     first, last = (
@@ -382,7 +384,7 @@ def test_an_extremum_of_the_row_parameter_along_a_curve_of_folds_is_stored_and_s
     )
     curves = [SpecialPointCurve(SpecialKind.fold, points[2:], (CurveEndReason.edge,) * 2, (None, None))]
     curves.append(replace(curves[0], points=points))
-    traced = TracedCurves(tuple(curves), max_seed_distance=0.0, untraced_count=0)
+    traced = TracedCurves(tuple(curves), max_seed_curve_distance=0.0, untraced_count=0)
     filled = curve_extremum_values(traced, ("F", "k1"))
     view = SimpleNamespace(variables={variable.name: values for variable, values in filled})
     assert {name: values.tolist() for name, values in view.variables.items()} == {
@@ -412,7 +414,9 @@ def test_a_row_that_a_curve_of_folds_meets_without_a_fold_of_its_own_is_named():
         for at, k1, x in ((60.0, 150.0, 0.5), (70.0, 200.0, 1.0))
     )
     curve = SpecialPointCurve(SpecialKind.fold, points, (CurveEndReason.edge,) * 2, (None, None))
-    filled = cycle_curve_values(TracedCurves((curve,), max_seed_distance=0.0, untraced_count=0), ("F", "k1"))
+    filled = cycle_curve_values(
+        TracedCurves((curve,), max_seed_curve_distance=0.0, untraced_count=0), ("F", "k1")
+    )
     nan = float("nan")
     rows = {
         "cycle_special_kind": np.array([[0, 0], [1, 2], [0, 0], [2, 3], [2, 0]]),

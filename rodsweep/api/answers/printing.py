@@ -30,7 +30,7 @@ MIN_ROWS = 3
 """Minimum number of printed numbers, or printed rows of a list, whatever the length of the heading."""
 PROOF_WORDS = ("not certified", "certified")
 """Texts for the values 0 and 1 of the variable certified."""
-ERROR_SIGN = "+-"
+ERROR_SEPARATOR = "+-"
 """Sign between a number and its error."""
 
 
@@ -164,7 +164,7 @@ def _main_number_texts(printed: PrintedAnswer) -> list[tuple[str, str, str, str]
         if column is not None:
             ((value, error),) = printed.rod.point_texts.value_and_error_texts(column.name)
             name_and_number_texts.append(
-                (column.name, value, f"{ERROR_SIGN} {error}" if error else "", column.printed_unit)
+                (column.name, value, f"{ERROR_SEPARATOR} {error}" if error else "", column.printed_unit)
             )
     return name_and_number_texts
 
@@ -197,7 +197,7 @@ def _brief_cells(printed: PrintedAnswer, max_rows: int) -> tuple[list[list[str]]
     for column in columns if row_count else ():
         values, errors = zip(*digits.value_and_error_texts(column.name)[:max_rows], strict=True)
         added = [column_cells((column.name, column.printed_unit), values)]
-        added += [column_cells((ERROR_SIGN, ""), errors)] if any(errors) else []
+        added += [column_cells((ERROR_SEPARATOR, ""), errors)] if any(errors) else []
         width += sum(len(cells[0]) + len(COLUMN_GAP) for cells in added)
         if width > LINE_WIDTH:
             break

@@ -23,7 +23,7 @@ from ..keyword_arguments import plain_keyword
 from ..solving_in_process import solve_in_process
 from .answer import Answer
 
-SAVE_EXAMPLE = 'rod.portrait().save("portrait.png")'
+SAVE_PORTRAIT_EXAMPLE = 'rod.portrait().save("portrait.png")'
 
 
 @dataclass(frozen=True)
@@ -93,11 +93,11 @@ class RodPortrait:
         return portrait_figure(self.results, with_words=False)
 
     @one_at_a_time
-    @refusing_wrong_arguments(SAVE_EXAMPLE)
+    @refusing_wrong_arguments(SAVE_PORTRAIT_EXAMPLE)
     def save(self, path: str | Path) -> str:
         """Writes the portrait (.png, .pdf, .svg, or .html with tables) and returns a sentence about the
         file."""
-        output = named_file_path(path, SAVE_EXAMPLE)
+        output = named_file_path(path, SAVE_PORTRAIT_EXAMPLE)
         require_portrait(output)
         return write_portrait(self.results, output)
 

@@ -42,7 +42,7 @@ REFERENCE_INTERVALS, REFERENCE_STAGES = 32, 6
 reference cycle."""
 REFERENCE_NEWTON_TOLERANCE = 1e-13
 """Relative tolerance of Newton's method for the reference cycle."""
-PERIOD_MAP = TimeScheme(
+SMALL_STEP_SCHEME = TimeScheme(
     "arkimex", "5", tolerance=1e-8, newton_tolerance_ratio=1e-6, equal_steps=True, prefix="bench_map_"
 )
 """Scheme of the small steps by which returns and extrema are located. The error of its Newton iteration is
@@ -158,7 +158,7 @@ class TipReturns:
 
 def tip_returns(system: ExplicitSystem, run: Trajectory) -> TipReturns:
     """Returns of the tip in a run, see `TipReturns`: time and state by Newton's method with small steps,
-    largest y from the run repeated with small steps."""
+    largest y of the tip from a repetition of the run with small steps."""
     row = tip_angle_row(system)
     y = system.tip_coordinates(run.states)[1]
     angle = run.states @ row
@@ -190,7 +190,7 @@ def largest_y_near(system: ExplicitSystem, run: Trajectory, k: int) -> float:
 def _integrate_in_small_steps(system: ExplicitSystem, state: Array, duration: float) -> Trajectory:
     """Trajectory from the state z, (unknowns,), over `duration`, in tau2, in SMALL_STEP_COUNT equal steps."""
     limit = RunLimit(max_steps=SMALL_STEP_COUNT + 2)
-    return integrator(system.mesh, PERIOD_MAP).run(
+    return integrator(system.mesh, SMALL_STEP_SCHEME).run(
         system, state, duration, duration / SMALL_STEP_COUNT, limit
     )
 

@@ -55,7 +55,7 @@ EDGE_ACCURACY = 1e-2
 mesh more accurate."""
 TARGET_ERROR = 1e-10
 """Relative error at which the methods are compared."""
-REFERENCE_REFINEMENT = 16.0
+REFERENCE_W_RATIO = 16.0
 """The elements of the reference D resolve moduli |w| up to this number times the |w| of the arm."""
 NEWTON_STEP_COUNT = 3
 """Number of Newton steps with the reference D."""
@@ -81,7 +81,7 @@ def exact_arm_spectrum(rod: Rod) -> list[complex]:
     determinant = ArmDeterminant(rod)
     roots: list[complex] = rodsweep_spectrum(rod, certify=True).tolist()
     for _ in range(NEWTON_STEP_COUNT):
-        values = [determinant.value_on_finer_elements(w, REFERENCE_REFINEMENT) for w in roots]
+        values = [determinant.value_on_finer_elements(w, REFERENCE_W_RATIO) for w in roots]
         roots = [w - value.D / value.D_w for w, value in zip(roots, values, strict=True)]
     return roots
 

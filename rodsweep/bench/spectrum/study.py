@@ -87,7 +87,7 @@ def run_spectrum_study(quick: bool, peers: PeerContribution) -> BenchmarkReport:
     exact = [exact_spectrum(rod, MODE_COUNT) for rod in rods]
     methods = contenders() + peers.of(SPECTRUM_RACE)
     targets = TARGET_ERRORS[: 1 if quick else None]
-    blocks = [equal_error_table(methods, rods, exact, target, round_count) for target in targets]
+    blocks = [time_at_equal_error(methods, rods, exact, target, round_count) for target in targets]
     measurements = measure_hard_rods(every_nth_setting(methods, stride), round_count)
     arms = measure_arm_spectra(every_nth_setting(peers.of(ARM_RACE), stride), round_count)
     blocks += [*peers.notes, hard_rod_table(measurements), arm_table(arms, round_count), *peers.skipped]
@@ -110,7 +110,7 @@ def cheapest_contenders(
     return cheapest
 
 
-def equal_error_table(
+def time_at_equal_error(
     methods: Sequence[TimedMethod],
     rods: Sequence[Rod],
     exact: Sequence[list[Any]],

@@ -127,7 +127,7 @@ class CommandRunCost:
     SOLVED."""
 
 
-def launcher_words(rank_count: int) -> list[str]:
+def launcher_arguments(rank_count: int) -> list[str]:
     """Arguments that start a command on `rank_count` ranks; empty if there is no mpiexec."""
     next_to_python = Path(sys.executable).with_name("mpiexec")
     mpiexec = str(next_to_python) if next_to_python.exists() else shutil.which("mpiexec")
@@ -142,7 +142,7 @@ def run_case(command: Sequence[str], case: SweepCase, rank_count: int, fresh: bo
     """
     seconds_of_others = _other_process_seconds()
     start = time.monotonic()
-    full_command = [*launcher_words(rank_count), *command]
+    full_command = [*launcher_arguments(rank_count), *command]
     solver_kind = case.solver_kind
     processes = [
         _start_command(full_command, solver_kind, directory, fresh) for directory in case.directories

@@ -21,7 +21,7 @@ from .launch import (
     SOLVED,
     CommandRunCost,
     SweepCase,
-    launcher_words,
+    launcher_arguments,
     run_case,
     write_cycle_case,
     write_spectrum_case,
@@ -29,7 +29,7 @@ from .launch import (
 
 SWEEP_SIZES, QUICK_SIZES = (10**3, 10**4, 10**5, 10**6), (10**3, 10**4)
 """Numbers of points of the sweeps with the instant solver, in a complete and in a quick run."""
-SINGLE_RUN_POINTS = 10**6
+MIN_SINGLE_RUN_POINTS = 10**6
 """Sweeps with the instant solver and this number of points or more are run only once."""
 SPECTRUM_COUNT, QUICK_SPECTRUM_COUNT = 200_000, 6_000
 """Number of points of the sweep of spectra, in a complete and in a quick run."""
@@ -64,7 +64,7 @@ def run_sweep_study(quick: bool, command: Sequence[str]) -> BenchmarkReport:
     `rodsweep.bench.sweep.launch`.
     """
     run = partial(run_case, command)
-    ranks = (1, 2) if launcher_words(2) else (1,)
+    ranks = (1, 2) if launcher_arguments(2) else (1,)
     with TemporaryDirectory(prefix="rodsweep-bench-") as folder:
         solved = measure_solved_sweeps(Path(folder), run, quick, ranks)
         followed = measure_followed_sweeps(Path(folder), run, quick)
@@ -104,7 +104,9 @@ def measure_instant_sweeps(
     entries = []
     for size in sizes:
         case = write_spectrum_case(folder / f"instant{size}", "no solver", size, INSTANT)
-        entries += [(case, rank_count, 1 if size >= SINGLE_RUN_POINTS else rounds) for rank_count in ranks]
+        entries += [
+            (case, rank_count, 1 if size >= MIN_SINGLE_RUN_POINTS else rounds) for rank_count in ranks
+        ]
     measurements = measure_in_turn(run, entries)
     for size in sizes:
         killed = write_spectrum_case(folder / f"killed{size}", KILLED, size, KILLED)

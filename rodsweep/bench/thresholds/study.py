@@ -119,7 +119,7 @@ QUICK_ROUND_COUNT = 1
 """Number of timed rounds of a quick run."""
 WORK_FIELDS = {"eigenproblems": "solves", "determinants": "determinants", "products": "products"}
 """Field of `FirstThreshold` by name of the number of operations in a measurement."""
-MAX_DIGITS = 16
+MAX_CORRECT_DIGITS = 16
 """Upper limit of the counted number of correct digits of a threshold."""
 F_MAX = 200.0
 """Largest F of rodsweep's search on uniform rods."""
@@ -193,7 +193,7 @@ def threshold_measurement_fields(
     error, failure, cost, and correct decimal digits per eigenproblem (0 if the threshold was missed)."""
     error = case.error_of(threshold_kind, computed_threshold.force)
     outcome = "missed" if isnan(computed_threshold.force) else f"wrong ({computed_threshold.force:.2f})"
-    digits = -log10(min(max(error, 10**-MAX_DIGITS), 1.0))
+    digits = -log10(min(max(error, 10**-MAX_CORRECT_DIGITS), 1.0))
     values = {name: getattr(computed_threshold, field) for name, field in WORK_FIELDS.items()}
     values["digits"] = nan if isnan(getattr(case, threshold_kind)) else digits / computed_threshold.solves
     return {"error": error, "failure": outcome if isinf(error) else "", "extra": values}

@@ -12,7 +12,7 @@ from ...results.run.journal import journal_directory
 from ...solve.backend.solver_pools import destroy_pooled_solvers
 from ...solve_progress import SolveStopped, reporting_to
 from ...sweep.chunk_queue import ChunkQueue, DependentItemQueue
-from ...sweep.loop import PointIndices, RankStatistics, SweepCallbacks, sweep
+from ...sweep.loop import ItemIndices, RankStatistics, SweepCallbacks, sweep
 from ...sweep.progress import ProgressReporter, SilentProgress
 from ...sweep.ranks import Ranks
 from ...sweep.stop import RankListener, SingleRankCommunication, StopRequest
@@ -76,7 +76,7 @@ class SweepWideComputation:
         rank. title: text of the progress display; None for no display."""
         results: dict[int, NamedArrays] = {}
 
-        def keep(item: PointIndices, result: NamedArrays) -> None:
+        def keep(item: ItemIndices, result: NamedArrays) -> None:
             self.item_results.write(int(item), result)
             results[int(item)] = result
 

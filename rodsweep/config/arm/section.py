@@ -11,7 +11,7 @@ from pydantic import Field, model_validator
 from ...arrays import Array
 from ...errors import InputError
 from ...model.arm.arm import SlenderArm
-from ...model.arm.quantities import ARM_SCALES, LOAD_OF_RATIO, LOADS, QUANTITIES, SCALE_NAME, UNITS
+from ...model.arm.quantities import ARM_SCALES, LOAD_OF_RATIO, LOADS, QUANTITIES, SCALE_NAMES, UNITS
 from ...model.material.rod_material import RodMaterial
 from ...model.parameters import NONLINEAR_PARAMETERS, parameter_names_except
 from ..axis import Axis, ParameterAxis
@@ -197,7 +197,8 @@ class ArmConfig(StrictConfigSection):
             distinct = {getattr(self.arm_of(values), name) for values in self.values_of_arms()}
             axes[name] = Axis(values=tuple(sorted(distinct)))
         if self.load:
-            axes = {"F": self.quantity_axes[self.load].scaled(1 / getattr(arm, SCALE_NAME[self.load]))} | axes
+            axis = self.quantity_axes[self.load].scaled(1 / getattr(arm, SCALE_NAMES[self.load]))
+            axes = {"F": axis} | axes
         return axes
 
     def grid_quantities(self) -> dict[str, Array]:

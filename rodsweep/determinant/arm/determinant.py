@@ -50,7 +50,7 @@ class ArmDeterminant:
         """D and D' at w times exp(-S), from elements made for w_factor * |w|, w_factor >= 1. The differences
         between values for several factors show the rounding error of D."""
         W, polynomials = self.propagators_for(
-            w_factor * abs(w), ARM_ELEMENT_SETTINGS.max_compared_reuse_ratio
+            w_factor * abs(w), ARM_ELEMENT_SETTINGS.max_reuse_ratio_if_compared
         )
         return determinant_from_propagators(complex(w), W, polynomials)
 

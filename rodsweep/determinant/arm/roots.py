@@ -100,7 +100,7 @@ def _separate_close_roots(
     half_distance = [math.inf] * len(w)
     eigenvalues_and_errors = zip(w, errors, strict=True)
     if not any(
-        abs(a - b) <= ROOT_SETTINGS.pair_distance * (e + f)
+        abs(a - b) <= ROOT_SETTINGS.pair_distance_in_errors * (e + f)
         for (a, e), (b, f) in combinations(eigenvalues_and_errors, 2)
     ):
         return w, half_distance
@@ -109,7 +109,7 @@ def _separate_close_roots(
         if half_distance[i] < math.inf or not unpaired:
             continue
         partner = min(unpaired, key=lambda j: abs(w[j] - w[i]))
-        if abs(w[partner] - w[i]) <= ROOT_SETTINGS.pair_distance * (errors[i] + errors[partner]):
+        if abs(w[partner] - w[i]) <= ROOT_SETTINGS.pair_distance_in_errors * (errors[i] + errors[partner]):
             for _ in range(ROOT_SETTINGS.parabolas_per_pair):
                 middle = (w[i] + w[partner]) / 2
                 # The middle of a real or conjugate pair is real, and rounding must not move it off the axis.

@@ -111,7 +111,7 @@ def _separate_close_pairs(w: Complex, error: Array, coefficients: Coefficients) 
             if j != i and half_distances[j] == math.inf and abs(w[j] - w[i]) < min_distance:
                 nearest_index = j
                 min_distance = abs(w[j] - w[i])
-        if nearest_index >= 0 and min_distance <= ROOT_SETTINGS.pair_distance * (
+        if nearest_index >= 0 and min_distance <= ROOT_SETTINGS.pair_distance_in_errors * (
             error[i] + error[nearest_index]
         ):
             for _ in range(ROOT_SETTINGS.parabolas_per_pair):

@@ -15,7 +15,7 @@ class RootSettings(KernelConstants):
     max_pair_correction_ratio: float = 0.1
     """Two close eigenvalues of the mesh approximate two roots of D if |D/D'| of each eigenvalue is at most
     this number times the length over which D changes."""
-    pair_distance: float = 4.0
+    pair_distance_in_errors: float = 4.0
     """Two eigenvalues of the mesh are moved to the roots of a quadratic Taylor polynomial of D before
     Newton's method if their distance is at most this number times the sum of their Newton corrections."""
     parabolas_per_pair: int = 2

@@ -150,7 +150,7 @@ def equal_edges(element_count: int) -> tuple[float, ...]:
     return tuple(k / element_count for k in range(element_count + 1))
 
 
-def halve_elements(edges: tuple[float, ...]) -> tuple[float, ...]:
+def halved_element_edges(edges: tuple[float, ...]) -> tuple[float, ...]:
     """Edges of the elements after every element between `edges` is halved."""
     midpoints = [(a + b) / 2 for a, b in zip(edges[:-1], edges[1:], strict=True)]
     return tuple(sorted([*edges, *midpoints]))

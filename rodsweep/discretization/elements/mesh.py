@@ -17,7 +17,7 @@ from .quadrature import gauss_legendre_rule, gauss_lobatto_rule
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ReconstructionSettings:
+class ShapeQuadratureSettings:
     """Settings for the quadrature that computes the shape of a rod."""
 
     extra_point_count: int = 10
@@ -25,7 +25,7 @@ class ReconstructionSettings:
     Ten suffice if theta changes by up to two radians within an element."""
 
 
-RECONSTRUCTION_SETTINGS = ReconstructionSettings()
+SHAPE_QUADRATURE_SETTINGS = ShapeQuadratureSettings()
 
 
 class NodeMatrices(NamedTuple):
@@ -94,7 +94,7 @@ def interpolation_matrix(source: Mesh, target: Mesh) -> Array:
 def shape_from_strains(mesh: Mesh, strains: Array, clamp: Array) -> Array:
     """Shape (x, y, theta) of a rod at all nodes, (3, ..., nodes + 1), from its strains. strains: (h1, h2, Pi)
     at the nodes of every element, (3, ..., nodes + elements). clamp: (x, y, theta) at u = 0, (3,)."""
-    gauss_point_count = mesh.order + RECONSTRUCTION_SETTINGS.extra_point_count
+    gauss_point_count = mesh.order + SHAPE_QUADRATURE_SETTINGS.extra_point_count
     shape = np.empty((*strains.shape[:-1], mesh.node_count + 1), strains.dtype)
     start = np.broadcast_to(clamp.reshape(3, *(1,) * (strains.ndim - 1)), (3, *strains.shape[1:-1], 1))
     for e, (element, length) in enumerate(zip(mesh.node_ranges, mesh.lengths, strict=True)):
@@ -131,9 +131,9 @@ class ShapeIntegrationMatrices(NamedTuple):
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def shape_integration_matrices(order: int, gauss_point_count: int = 0) -> ShapeIntegrationMatrices:
     """The `ShapeIntegrationMatrices` of elements of order `order`, cached. gauss_point_count: number of Gauss
-    points; 0: `order` plus `RECONSTRUCTION_SETTINGS.extra_point_count`."""
+    points; 0: `order` plus `SHAPE_QUADRATURE_SETTINGS.extra_point_count`."""
     x = gauss_lobatto_rule(order)[0]
-    g = gauss_legendre_rule(gauss_point_count or order + RECONSTRUCTION_SETTINGS.extra_point_count)[0]
+    g = gauss_legendre_rule(gauss_point_count or order + SHAPE_QUADRATURE_SETTINGS.extra_point_count)[0]
     return ShapeIntegrationMatrices(
         lagrange_interpolation_matrix(x, g).T,
         integration_matrix(x, g).T,

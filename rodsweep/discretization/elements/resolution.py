@@ -25,7 +25,7 @@ class ResolutionSettings:
     """Increase of the order for each further digit, per unit of |q|, in addition to `digit_intercept`."""
     digit_slope_max_wave_number: float = 35.0
     """The increase of the order for each further digit is constant for |q| larger than this."""
-    wave_factor: float = 1.4
+    wave_safety_factor: float = 1.4
     """Safety factor on the wave number of the most amplified wave in the estimate of the largest |q|."""
     mode_offset: float = 0.3
     """Mode n of a rod without load has |q| near (n - 1/2) pi; (n - mode_offset) pi is an upper estimate."""
@@ -66,7 +66,7 @@ def expected_wave_number(mode_count: int, amplified_wave_number: float) -> float
     For the random rods of the module docstring the estimate is 0.95 to 1.37 times the true maximum.
     """
     return hypot(
-        RESOLUTION_SETTINGS.wave_factor * amplified_wave_number,
+        RESOLUTION_SETTINGS.wave_safety_factor * amplified_wave_number,
         (mode_count - RESOLUTION_SETTINGS.mode_offset) * pi,
     )
 

@@ -40,7 +40,7 @@ def arm_mesh(rod: Rod, mode_count: int, accuracy: float) -> ArmMesh:
     weights = sampled_arm(rod).weights
     _, amplified_q = most_amplified_local_waves(rod)
     unloaded_q = (mode_count - RESOLUTION_SETTINGS.mode_offset) * pi * _relative_wave_number(rod)
-    wave_numbers = np.hypot(RESOLUTION_SETTINGS.wave_factor * amplified_q, unloaded_q)
+    wave_numbers = np.hypot(RESOLUTION_SETTINGS.wave_safety_factor * amplified_q, unloaded_q)
     elements = _elements_for_wave(rod, wave_numbers * weights, accuracy, RESOLUTION_SETTINGS.max_order)
     return ArmMesh(elements.edges, elements.order)
 

@@ -12,7 +12,7 @@ import numpy as np
 from ...arrays import Array
 from ...model.compiled.compilation import compiled_for_vectors
 from ..elements.elements import ELEMENT_SETTINGS, Elements
-from ..elements.mesh import RECONSTRUCTION_SETTINGS, shape_integration_matrices
+from ..elements.mesh import SHAPE_QUADRATURE_SETTINGS, shape_integration_matrices
 from ..nodal_rod import IntegerArray
 
 
@@ -39,7 +39,7 @@ class TipMatrices(NamedTuple):
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def tip_matrices(mesh: Elements) -> TipMatrices:
     """The `TipMatrices` of a mesh, cached."""
-    points = mesh.order + RECONSTRUCTION_SETTINGS.extra_point_count
+    points = mesh.order + SHAPE_QUADRATURE_SETTINGS.extra_point_count
     matrices = [shape_integration_matrices(order, points) for order in mesh.orders]
     return TipMatrices(
         values_at_gauss_points=np.concatenate([m.values_at_gauss_points for m in matrices]),

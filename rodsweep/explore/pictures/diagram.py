@@ -12,7 +12,7 @@ from bokeh.models import HoverTool, Legend, LegendItem, Range1d
 from ...arrays import Array
 from ...wording import counted
 from ..slider_scales import ControlScale
-from ..solving.diagrams import CRUSHED_COUNT, UNKNOWN_COUNT
+from ..solving.diagrams import CRUSHED_CODE, UNKNOWN_CODE
 from . import card
 from .diagram_regions import region_table
 
@@ -70,17 +70,17 @@ def joined_cells(edges: Array, row_edges: Array, counts: Array) -> list[DiagramC
 
 
 def stability_colour(unstable_count: int) -> tuple[str, float]:
-    """(colour, opacity) for a number of unstable modes, or for CRUSHED_COUNT or UNKNOWN_COUNT."""
-    if unstable_count in (CRUSHED_COUNT, UNKNOWN_COUNT):
-        return card.NEUTRAL_COLOUR, 0.55 if unstable_count == CRUSHED_COUNT else 0.25
+    """(colour, opacity) for a number of unstable modes, or for CRUSHED_CODE or UNKNOWN_CODE."""
+    if unstable_count in (CRUSHED_CODE, UNKNOWN_CODE):
+        return card.NEUTRAL_COLOUR, 0.55 if unstable_count == CRUSHED_CODE else 0.25
     if unstable_count == 0:
         return card.STABLE_COLOUR, 0.18
     return card.UNSTABLE_COLOUR, 0.2 + 0.5 * min(unstable_count, DARKEST_COUNT) / DARKEST_COUNT
 
 
 def unstable_count_words(unstable_count: int) -> str:
-    """Phrase for a number of unstable modes, or for CRUSHED_COUNT or UNKNOWN_COUNT."""
-    texts = {0: "stable", CRUSHED_COUNT: "crushed by the load", UNKNOWN_COUNT: "not searched, or not known"}
+    """Phrase for a number of unstable modes, or for CRUSHED_CODE or UNKNOWN_CODE."""
+    texts = {0: "stable", CRUSHED_CODE: "crushed by the load", UNKNOWN_CODE: "not searched, or not known"}
     return texts.get(unstable_count, counted(unstable_count, "unstable mode"))
 
 

@@ -6,9 +6,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...arrays import Array
-from ...post.figures.phase_diagram import CURVES_END_AT_RATIO
+from ...post.figures.phase_diagram import END_CRUSHING_RATIO
 from ...post.figures.stability.regions import PIXEL_COUNT, ClassifiedPoints, DrawnPlane, pixel_classes
-from ..solving.diagrams import CRUSHED_COUNT, UNKNOWN_COUNT
+from ..solving.diagrams import CRUSHED_CODE, UNKNOWN_CODE
 
 PIXELS_PER_ROW = 2
 """Number of rows of pixels that are drawn as one row. The number of rows is then about the height of a
@@ -36,7 +36,7 @@ def region_table(answer: dict[str, Any]) -> RegionTable | None:
     plane = DrawnPlane(np.linspace(x[0], x[-1], 3), np.linspace(np.log(y[0]), np.log(y[-1]), 3))
     columns, rows = np.meshgrid(x, np.log(y))
     counts = np.asarray(answer["unstable_count"])
-    is_counted = counts != CRUSHED_COUNT
+    is_counted = counts != CRUSHED_CODE
     computed = ClassifiedPoints(
         plane.fractions_of_axes(columns[is_counted], rows[is_counted]), counts[is_counted]
     )
@@ -50,8 +50,8 @@ def region_table(answer: dict[str, Any]) -> RegionTable | None:
             plane.fractions_of_axes(answer["curve_x"][is_of_curve], np.log(answer["curve_y"][is_of_curve]))
         )
     ratio = _crushing_ratio(plane, np.log(y), answer["crushing_load"])
-    pixels = pixel_classes(computed, row_points, curves, ratio > CURVES_END_AT_RATIO, UNKNOWN_COUNT)
-    pixels = np.where(ratio < 1, pixels, CRUSHED_COUNT)
+    pixels = pixel_classes(computed, row_points, curves, ratio > END_CRUSHING_RATIO, UNKNOWN_CODE)
+    pixels = np.where(ratio < 1, pixels, CRUSHED_CODE)
     column_edges = np.linspace(x[0], x[-1], PIXEL_COUNT + 1)
     row_edges = np.geomspace(y[0], y[-1], PIXEL_COUNT // PIXELS_PER_ROW + 1)
     return RegionTable(column_edges, row_edges, pixels[PIXELS_PER_ROW // 2 :: PIXELS_PER_ROW])

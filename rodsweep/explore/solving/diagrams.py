@@ -37,9 +37,9 @@ CYCLE_ACCURACY = 1e-4
 """Relative error of the cycles between special points; the diagram does not show these cycles. For the first
 rod of the page and F up to 200, the default error of 1e-6 takes three times as long, and changes the curves
 of folds and torus points by 2e-8 at most."""
-UNKNOWN_COUNT = -1
+UNKNOWN_CODE = -1
 """Value of `unstable_count` at a point whose number of unstable modes is unknown."""
-CRUSHED_COUNT = -2
+CRUSHED_CODE = -2
 """Value of `unstable_count` at a point whose load crushes the rod."""
 PARAMETER_SPAN_RATIO = 10.0
 """The values of a rod's second parameter extend from 1/PARAMETER_SPAN_RATIO to PARAMETER_SPAN_RATIO times the
@@ -51,8 +51,8 @@ TAPER_RANGE = (0.4, 1.6)
 def diagram_answer(state: PageState) -> dict[str, Any]:
     """Stability diagram around the rod or arm of `state`, as arrays by name.
 
-    x: load, (columns,). y: second parameter, (rows,). unstable_count: number of unstable modes, UNKNOWN_COUNT
-    or CRUSHED_COUNT, (rows, columns). between_x, between_y, between_count: places between neighbouring
+    x: load, (columns,). y: second parameter, (rows,). unstable_count: number of unstable modes, UNKNOWN_CODE
+    or CRUSHED_CODE, (rows, columns). between_x, between_y, between_count: places between neighbouring
     crossings of a row, and numbers of unstable modes there, (places,). crushing_load: the crushing load (zero
     stretch) of a row, (rows,), or empty. curve_x, curve_y, curve_number, curve_kind: stability boundaries,
     (curve points,); cycle_curve_x, ...: curves of folds and torus points of cycles. crossing_x, crossing_y,
@@ -137,7 +137,7 @@ def diagram_from_phase_result(data: Dataset, second_parameter: str) -> dict[str,
     counts = data["unstable_count"].transpose(second_parameter, "F").values
     if "class" in data:
         is_crushed = flag_words(data["class"].transpose(second_parameter, "F")) == "crushed"
-        counts = np.where(is_crushed, CRUSHED_COUNT, counts)
+        counts = np.where(is_crushed, CRUSHED_CODE, counts)
     axes = {"x": data["F"].values, "y": data[second_parameter].values}
     diagram = axes | {"unstable_count": counts} | _empty_curves()
     if "crossing_at" in data:
@@ -196,7 +196,7 @@ def diagram_from_row_result(
     data: Dataset, row_values: np.ndarray, name: str, largest: float
 ) -> dict[str, Any]:
     """Diagram, with the variables of `diagram_answer`, from a result of the task `thresholds` over a second
-    parameter. Beyond the end of a row's search, and on rows without a search, the count is UNKNOWN_COUNT.
+    parameter. Beyond the end of a row's search, and on rows without a search, the count is UNKNOWN_CODE.
 
     row_values: second parameter, (rows,). name: name of the variable with the loads at the thresholds.
     largest: largest load of the diagram.
@@ -211,7 +211,7 @@ def diagram_from_row_result(
         for load, count in zip(loads[row], counts_after[row], strict=True):
             if np.isfinite(load):
                 counts[row, loads_of_grid > load] = count
-        counts[row, ~(loads_of_grid <= ends[row])] = UNKNOWN_COUNT
+        counts[row, ~(loads_of_grid <= ends[row])] = UNKNOWN_CODE
     listed = np.isfinite(loads) & (loads <= largest)
     rows = np.broadcast_to(row_values[:, None], loads.shape)
     crossings = {"crossing_x": loads[listed], "crossing_y": rows[listed], "crossing_kind": list(kind[listed])}

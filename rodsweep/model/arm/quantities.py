@@ -67,7 +67,7 @@ ARM_SCALES = {
     "pressure_scale": Quantity("Pa", "pressure on the tip's cross section that makes F = 1, k3/(L^2 A)"),
 }
 """Units of time, force and pressure that an arm defines, by name of the property of `SlenderArm`."""
-SCALE_NAME = {load: f"{load}_scale" for load in LOADS}
+SCALE_NAMES = {load: f"{load}_scale" for load in LOADS}
 """Name of the property of `SlenderArm` that is the load at which F = 1, by name of the load."""
 ALL_QUANTITIES = QUANTITIES | ARM_SCALES
 """All variables of an arm in a result file, except the parameters of the arm as a rod."""

@@ -20,9 +20,9 @@ from .section import Circle, Section, Tube
 
 BUCKLING_NODE_COUNT = 400
 """Number of midpoint-rule nodes in the integrals for the buckling weight; the relative error is then 5e-5."""
-BUCKLING_TOLERANCE = 1e-12
+POWER_ITERATION_TOLERANCE = 1e-12
 """The power iteration stops when the largest eigenvalue changes relatively by at most this."""
-BUCKLING_MAX_ITERATIONS = 1000
+MAX_POWER_ITERATIONS = 1000
 """Maximum number of steps of the power iteration, which usually takes twenty."""
 MAX_RADIUS_RATIO = 1.3
 """Maximum ratio of the radii of a cone at neighbouring u of its profile. The cubic polynomials of the profile
@@ -160,7 +160,7 @@ class ArmGeometry:
         volume_beyond = np.cumsum(volume[::-1])[::-1] - volume / 2
         theta = np.ones(len(lengths))
         ratio = 0.0
-        for _ in range(BUCKLING_MAX_ITERATIONS):
+        for _ in range(MAX_POWER_ITERATIONS):
             moment_step = volume_beyond * theta * lengths
             angle_step = (np.cumsum(moment_step[::-1])[::-1] - moment_step / 2) * lengths / stiffness
             theta = np.cumsum(angle_step) - angle_step / 2
@@ -168,7 +168,7 @@ class ArmGeometry:
             # The largest angle is at the tip, so the iterates keep one size.
             ratio = float(theta[-1])
             theta /= ratio
-            if abs(ratio - previous_ratio) <= BUCKLING_TOLERANCE * ratio:
+            if abs(ratio - previous_ratio) <= POWER_ITERATION_TOLERANCE * ratio:
                 break
         return weight_density * ratio
 

@@ -34,11 +34,11 @@ SIDE_COLUMNS = ("nu", "c1", "c3", "share of c1", "share of c3", "share of the qu
 w in the mean of q1 and of q3, the side's fraction of the quadrature weight of the node, and c2."""
 SHEAR_COLUMN = SIDE_COLUMNS.index("c2")
 """Index of the shear compliance c2 in `SIDE_COLUMNS`."""
-MAX_ITERATIONS = 40
+MAX_JUMP_ITERATIONS = 40
 """Maximum number of Newton iterations; without convergence the last iterate is used."""
 CONVERGED_STEP = 1e-9
 """Newton's method stops when |step| <= CONVERGED_STEP * |unknown|, as the next step would be rounding."""
-MIN_STRETCH_RATIO = 0.1
+MIN_STEP_STRETCH_RATIO = 0.1
 """A Newton step is shortened so that the stretch h1 after the step is at least this times h1 before the step,
 because the law is defined for h1 > 0 only."""
 
@@ -65,13 +65,13 @@ def _solve_tangent_system(T: TangentMatrix, N: float, M: float) -> LawUnknowns:
 
 @compiled
 def _largest_step_fraction(material: LocalSection, q1: float, step: float) -> float:
-    """Largest fraction, up to 1, of a step of q1 after which h1 >= MIN_STRETCH_RATIO times h1 before the
+    """Largest fraction, up to 1, of a step of q1 after which h1 >= MIN_STEP_STRETCH_RATIO times h1 before the
     step. material, q1: section and unknown before the step. step: increment of q1."""
     h = material.nu + material.c1 * q1
     change = material.c1 * step
-    if h + change >= MIN_STRETCH_RATIO * h:
+    if h + change >= MIN_STEP_STRETCH_RATIO * h:
         return 1.0
-    return (MIN_STRETCH_RATIO - 1) * h / change
+    return (MIN_STEP_STRETCH_RATIO - 1) * h / change
 
 
 @compiled
@@ -95,7 +95,7 @@ def unknowns_before_jump(law: int, sides: Array, q: LawUnknowns) -> LawUnknowns:
     ratio1 = sides[0, 3] / sides[1, 3]
     ratio3 = sides[0, 4] / sides[1, 4]
     a = q
-    for _ in range(MAX_ITERATIONS):
+    for _ in range(MAX_JUMP_ITERATIONS):
         b = unknowns_behind_jump(sides, q, a)
         s = stress_beyond_rest(law, base_side, a.q1, a.q3)
         t = stress_beyond_rest(law, tip_side, b.q1, b.q3)

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-Values = Any
+FloatOrArray = Any
 """A float, or an array of floats of any shape."""
 
 SHORTENING_NEWTON_STEPS = 2
@@ -36,19 +36,19 @@ class Law:
 
     law_name: str
     section_name: str
-    energy_over_square: Callable[[Values], Values]
-    stress: Callable[[Values], Values]
-    stiffness: Callable[[Values], Values]
-    stiffness_slope: Callable[[Values], Values]
-    stiffness_second_derivative: Callable[[Values], Values]
-    bending_factor: Callable[[Values], Values]
-    bending_factor_slope: Callable[[Values], Values]
-    bending_factor_second_derivative: Callable[[Values], Values]
-    shortening: Callable[[Values], Values]
+    energy_over_square: Callable[[FloatOrArray], FloatOrArray]
+    stress: Callable[[FloatOrArray], FloatOrArray]
+    stiffness: Callable[[FloatOrArray], FloatOrArray]
+    stiffness_slope: Callable[[FloatOrArray], FloatOrArray]
+    stiffness_second_derivative: Callable[[FloatOrArray], FloatOrArray]
+    bending_factor: Callable[[FloatOrArray], FloatOrArray]
+    bending_factor_slope: Callable[[FloatOrArray], FloatOrArray]
+    bending_factor_second_derivative: Callable[[FloatOrArray], FloatOrArray]
+    shortening: Callable[[FloatOrArray], FloatOrArray]
     crushing_load: float = np.inf
 
 
-def _neo_hookean_shortening(x: Values) -> Values:
+def _neo_hookean_shortening(x: FloatOrArray) -> FloatOrArray:
     """Shortening e = 1 - nu of neo-Hookean rubber under the load x = F/k1, (...,); nu^3 + 3 x nu^2 = 1.
     Cardano's formula gives a start for Newton's method for e."""
     x = np.asarray(x, dtype=float)
@@ -67,11 +67,11 @@ def _neo_hookean_shortening(x: Values) -> Values:
     return e if e.ndim else float(e)
 
 
-def _ones(h1: Values) -> Values:
+def _ones(h1: FloatOrArray) -> FloatOrArray:
     return np.ones_like(np.asarray(h1, dtype=float))
 
 
-def _zeros(h1: Values) -> Values:
+def _zeros(h1: FloatOrArray) -> FloatOrArray:
     return np.zeros_like(np.asarray(h1, dtype=float))
 
 

@@ -21,7 +21,7 @@ from .cycle.selection import shared_and_own_of_points
 from .request import FigureRequest
 from .smooth_branch import smooth_curve_of_branch
 
-STABILITY_LINES = {1: ("-", "stable"), 0: ("--", "unstable"), -1: (":", "stability not known")}
+STABILITY_LOOKS = {1: ("-", "stable"), 0: ("--", "unstable"), -1: (":", "stability not known")}
 """(line style, legend entry) of a branch, by stability: 1 stable, 0 unstable, -1 unknown."""
 SPECIAL_POINT_MARKS = {
     "hopf": ("o", "Hopf point"),
@@ -35,7 +35,7 @@ SPECIAL_POINT_MARKS = {
 }
 """(marker, legend entry) of a special point, by kind, or by reason for the end of a branch. Other ends are
 not marked."""
-PREDICTION_LINE = (0, (4, 1, 1, 1))
+PREDICTION_LINE_STYLE = (0, (4, 1, 1, 1))
 """Line style of the amplitude predicted by the normal form near a Hopf point."""
 PREDICTION_WORD = "predicted by the normal form"
 """Legend entry of the amplitude predicted by the normal form."""
@@ -109,14 +109,14 @@ def draw_straight_rod(axes: Axes, rod: RodBranches) -> None:
     stability."""
     for stable, ranges in zip((1, 0), rod.straight_ranges(_drawn_parameter_range(rod)), strict=True):
         for low, high in ranges:
-            axes.plot([low, high], [0, 0], STABILITY_LINES[stable][0], color="k", lw=1.4)
+            axes.plot([low, high], [0, 0], STABILITY_LOOKS[stable][0], color="k", lw=1.4)
 
 
 def stability_entries(curves: Sequence[StoredBranch]) -> list[Line2D]:
     """Legend entries for the line styles of stable and unstable parts of branches, and of parts of unknown
     stability if there are any."""
     stabilities = {int(stability) for curve in curves for stability in curve.stable} | {1, 0}
-    looks = (STABILITY_LINES[stability] for stability in sorted(stabilities)[::-1])
+    looks = (STABILITY_LOOKS[stability] for stability in sorted(stabilities)[::-1])
     return [Line2D([], [], color="k", ls=line, label=word) for line, word in looks]
 
 
@@ -150,7 +150,7 @@ def _draw_pieces(
     """Draws a curve with line styles by stability. x, y: vertices, (n,) each. stable: stability between
     neighbouring vertices, (n - 1,). colour, marker: colour and marker of the curve, for matplotlib."""
     for vertices, kind in stability_runs(stable):
-        axes.plot(x[vertices], y[vertices], ls=STABILITY_LINES[kind][0], marker=marker, color=colour, lw=1.4)
+        axes.plot(x[vertices], y[vertices], ls=STABILITY_LOOKS[kind][0], marker=marker, color=colour, lw=1.4)
 
 
 def _mark_special_points(
@@ -182,9 +182,9 @@ def _draw_predicted_amplitudes(
             nearest.append(float(relative_distance[0]))
             distances.append(float(relative_distance[-1]))
     ends = np.array([min(nearest), max(distances)])
-    (law,) = axes.plot(ends, ends**0.5, ls=PREDICTION_LINE, color="0.4", lw=1.4, zorder=0)
+    (law,) = axes.plot(ends, ends**0.5, ls=PREDICTION_LINE_STYLE, color="0.4", lw=1.4, zorder=0)
     law.set_label(PREDICTION_WORD)
-    symbol = style.SYMBOLS[parameter_name]
+    symbol = style.TEX_SYMBOLS[parameter_name]
     axes.set(xscale="log", yscale="log", ylabel="largest $y/|a|$")
     symbol = f"({symbol})" if "/" in symbol else symbol
     ratio_symbol = rf"{symbol}/{symbol}^\mathrm{{H}}"

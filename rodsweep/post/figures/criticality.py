@@ -16,7 +16,7 @@ from ..summary.summary_lines import varied_parameters_at_points
 from . import style
 from .arm.quantities import set_heading
 from .cycle.maps import label_maps, map_panels
-from .cycle.point_map import PointMap, cell_edges, point_map, varies_two_parameters_on_grid
+from .cycle.point_map import PointGrid, cell_edges, point_map, varies_two_parameters_on_grid
 from .cycle.selection import shared_and_own_of_points
 from .grid_slices import left_out_clause
 from .layout.fitting import MAP_ASPECT
@@ -25,7 +25,11 @@ from .request import FigureRequest
 MAX_DRAWN_DISTANCE = 0.1
 """Predicted amplitudes are drawn up to this value of |F/F_H - 1| (F_H: Hopf point). At larger distances
 cycles deviate from the leading-order law."""
-CRITICALITY_LINES = {-1: ("-", "supercritical"), 1: ("--", "subcritical"), 0: (":", "criticality undecided")}
+PREDICTED_CYCLE_LOOKS = {
+    -1: ("-", "supercritical"),
+    1: ("--", "subcritical"),
+    0: (":", "criticality undecided"),
+}
 """(line style, legend entry) of the predicted cycles, by sign of Re c: -1 supercritical, 1 subcritical, 0
 undecided."""
 PREDICTION_POINT_COUNT = 60
@@ -47,7 +51,7 @@ CRITICALITY_CLASSES = (
 )
 """(legend entry, colour) of the classes of rods on a map, by the criticality of the Hopf points. Colour-blind
 readers can distinguish the colours, also in grey prints."""
-LINEAR_FRACTION = 0.1
+LINEAR_RANGE_QUANTILE = 0.1
 """Fraction of the Hopf points whose Re c lies in the linear range of a symmetric logarithmic axis."""
 
 
@@ -80,7 +84,7 @@ def _curves_figure(view: ResultView, name: str) -> Figure:
     keys = ("criticality", "amplitude_coefficient", "landau_real")
     criticality, amplitude_coefficient, landau_real = (view.by_point(key)[is_finite] for key in keys)
     style.require_content(view, np.isfinite(landau_real).any(), f"Hopf point with a finite {name}")
-    linear_limit = float(np.nanquantile(np.abs(landau_real), LINEAR_FRACTION))
+    linear_limit = float(np.nanquantile(np.abs(landau_real), LINEAR_RANGE_QUANTILE))
     lower.set_yscale("symlog", linthresh=10.0 ** floor(log10(linear_limit)))
     for axes, values in ((upper, amplitude_coefficient), (lower, landau_real)):
         handles = _draw_hopf_markers(axes, x[is_finite], values, criticality)
@@ -106,7 +110,7 @@ def _draw_hopf_markers(axes: Axes, x: Array, values: Array, criticality: Array) 
     return handles
 
 
-def _maps_figure(view: ResultView, points: PointMap, is_narrow: bool) -> Figure:
+def _maps_figure(view: ResultView, points: PointGrid, is_narrow: bool) -> Figure:
     """Figure with two maps: criticality of the first Hopf points, and amplitude coefficient |a|. Raises
     InputError if nothing can be drawn."""
     criticality = view.by_point("criticality")[points.point_indices]
@@ -160,13 +164,13 @@ def draw_predictions(view: ResultView) -> tuple[Figure, str]:
             if np.isfinite(kind) and np.isfinite(size):
                 # For a > 0 the cycles have a larger F than the Hopf point, for a < 0 a smaller F.
                 forces = hopf_force * (1 + np.sign(size) * distance)
-                line = CRITICALITY_LINES[int(kind)][0]
+                line = PREDICTED_CYCLE_LOOKS[int(kind)][0]
                 axes.plot(forces, abs(size) * np.sqrt(distance), line, color=colour, lw=1.4)
                 axes.plot(hopf_force, 0, "o", color=colour, ms=4, clip_on=False, zorder=3)
     axes.axhline(0, color="0.8", lw=0.6, zorder=0)
     axes.set(xlabel=style.LABELS["F"], ylabel="predicted largest $y/L$ of the tip")
     axes.set_ylim(bottom=0)
-    drawn_looks = (look for kind, look in CRITICALITY_LINES.items() if (kinds[drawn_rods] == kind).any())
+    drawn_looks = (look for kind, look in PREDICTED_CYCLE_LOOKS.items() if (kinds[drawn_rods] == kind).any())
     handles = [Line2D([], [], color="0.3", ls=line_style, label=word) for line_style, word in drawn_looks]
     handles.append(Line2D([], [], color="0.3", marker="o", ms=4, ls="", label="Hopf point"))
     pairs = zip(style.LINE_COLOURS, rod_texts, strict=False)

@@ -45,7 +45,7 @@ class ClassMap:
     crushing_ratio: Array
 
 
-CURVES_END_AT_RATIO = 1 - 3e-3
+END_CRUSHING_RATIO = 1 - 3e-3
 """Curves of a file may end at this ratio of force to crushing force; rods with larger ratios bound regions as
 curves do."""
 
@@ -152,7 +152,7 @@ def _draw_rows(view: ResultView, palette: Palette, line_parameter: str, row_para
     for separator in np.arange(len(y) - 1) + 0.5:
         axes.axhline(separator, color="white", lw=4)
     style.scale_axis(axes, "x", x)
-    texts = [f"${style.SYMBOLS[row_parameter]} = {style.number_in_tex(value)}$" for value in y]
+    texts = [f"${style.TEX_SYMBOLS[row_parameter]} = {style.number_in_tex(value)}$" for value in y]
     axes.set_yticks(np.arange(len(y)), texts)
     axes.tick_params("y", length=0)
     axes.set(xlim=(x[0], x[-1]), xlabel=style.LABELS[line_parameter])
@@ -190,5 +190,5 @@ def _class_of_pixels(
                 )
             )
     undecided = flag_number("undecided", palette.words)
-    pixels = pixel_classes(computed, row_points, curves, map_.crushing_ratio > CURVES_END_AT_RATIO, undecided)
+    pixels = pixel_classes(computed, row_points, curves, map_.crushing_ratio > END_CRUSHING_RATIO, undecided)
     return np.where(map_.crushing_ratio < 1, pixels, crushed_class)

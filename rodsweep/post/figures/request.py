@@ -21,7 +21,7 @@ ShapeFunction = Callable[[ResultView, Sequence[int]], ResultView]
 Returns a view with the shapes."""
 FigureClass = Figure
 """Class of the figures: matplotlib's `Figure`."""
-WIDTHS = {"single": 3.375, "double": 7.0}
+COLUMN_WIDTHS = {"single": 3.375, "double": 7.0}
 """Widths of the columns of a journal, in inches, by name."""
 ROOT_CHOICES = ("rightmost", "smallest", "all")
 """Choices of the roots in a figure of spectra along a line: the two rightmost, the two smallest, or all
@@ -50,9 +50,9 @@ MAX_WIDTH = 20.0
 class FigureLook:
     """Appearance of a figure.
 
-    title: whether the title of the config is shown. width: a name from WIDTHS, or a length with a unit; None
-    for the natural width. style: name or file of a matplotlib style. Raises InputError for an invalid width.
-    """
+    title: whether the title of the config is shown. width: a name from COLUMN_WIDTHS, or a length with a
+    unit; None for the natural width. style: name or file of a matplotlib style. Raises InputError for an
+    invalid width."""
 
     title: bool = False
     width: str | None = None
@@ -81,12 +81,13 @@ class FigureLook:
 
 
 def _width_in_inches(width: str) -> float:
-    """Width in inches, from a name in WIDTHS or a length with a unit. Raises InputError for another text, and
-    for a width outside MIN_WIDTH to MAX_WIDTH."""
-    if isinstance(width, str) and width in WIDTHS:
-        return WIDTHS[width]
+    """Width in inches, from a name in COLUMN_WIDTHS or a length with a unit. Raises InputError for another
+    text, and for a width outside MIN_WIDTH to MAX_WIDTH."""
+    if isinstance(width, str) and width in COLUMN_WIDTHS:
+        return COLUMN_WIDTHS[width]
     message = (
-        f"width = {short_repr(width)} is not allowed; choose {', '.join(WIDTHS)}, or a length such as '89 mm'"
+        f"width = {short_repr(width)} is not allowed; choose {', '.join(COLUMN_WIDTHS)}, "
+        "or a length such as '89 mm'"
     )
     try:
         inches = quantity_in_si("width", width, "m", "89 mm") / METRES_PER_INCH

@@ -22,7 +22,7 @@ from .request import FigureRequest
 from .spectra.eigenvalues import draw_eigenvalues, draw_list_of_spectra
 from .spectra.line import (
     ROOT_CHOICE_TEXTS,
-    THRESHOLD_LINE,
+    THRESHOLD_LINE_STYLE,
     THRESHOLD_LOOKS,
     draw_line,
     draw_roots,
@@ -207,7 +207,7 @@ def draw_panels(views: Sequence[ResultView], roots: str, is_narrow: bool) -> Fig
             handles.pop(threshold_text(threshold), None)
             word = THRESHOLD_WORDS[threshold.kind]
             _, dashes = THRESHOLD_LOOKS[threshold.kind]
-            handles[word] = Line2D([], [], ls=dashes, label=word, **THRESHOLD_LINE)
+            handles[word] = Line2D([], [], ls=dashes, label=word, **THRESHOLD_LINE_STYLE)
         threshold_texts = ", ".join(map(threshold_text, thresholds))
         text = style.heading_text(view, style.constant_parameters_text(view, name), threshold_texts)
         panel.set_title(f"({letter})  {text}", loc="left")

@@ -17,13 +17,13 @@ from ...results.file.view import ResultView
 from ...results.layouts.variables import MISSING_STATUS
 from ..material_texts import material_words
 
-SYMBOLS = {name: parameter.symbol for name, parameter in PARAMETERS.items()}
+TEX_SYMBOLS = {name: parameter.symbol for name, parameter in PARAMETERS.items()}
 """Symbols of the parameters in TeX, by name."""
 LABELS = {name: f"{p.meaning} ${p.symbol}$" for name, p in PARAMETERS.items()}
 """Labels of axes, by parameter. A tilde marks a dimensionless symbol, which needs no unit."""
-CRITICAL_FORCE_LABEL = f"critical force ${SYMBOLS['F']}$"
+CRITICAL_FORCE_LABEL = f"critical force ${TEX_SYMBOLS['F']}$"
 """Label of an axis of critical forces."""
-INVERSE_DRAG_LABEL = rf"inverse rotational drag $1/{SYMBOLS['gamma3']}$"
+INVERSE_DRAG_LABEL = rf"inverse rotational drag $1/{TEX_SYMBOLS['gamma3']}$"
 """Label of an axis of 1/gamma3."""
 BLUE = "#0072B2"
 """Blue of Okabe and Ito's palette, whose colours colour-blind readers can distinguish."""
@@ -117,7 +117,7 @@ def parameter_text(parameters: Mapping[str, float], digits: int = 6) -> str:
     """Parameters with their symbols and values, as one line of TeX. digits: largest number of significant
     digits."""
     return ", ".join(
-        f"${SYMBOLS[name]} = {number_in_tex(value, digits)}$" for name, value in parameters.items()
+        f"${TEX_SYMBOLS[name]} = {number_in_tex(value, digits)}$" for name, value in parameters.items()
     )
 
 

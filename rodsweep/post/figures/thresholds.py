@@ -16,7 +16,7 @@ from .point_lists import as_grid_if_possible
 from .request import FigureRequest
 from .stability.class_bars import BAR_ASPECT, draw_class_bars
 from .stability.threshold_lines import (
-    CRITICAL_FORCES,
+    CRITICAL_FORCE_LOOKS,
     FILE_COLOURS,
     MAX_LINES,
     draw_lines_of_files,
@@ -49,7 +49,7 @@ def draw_thresholds(request: FigureRequest) -> str:
         min_aspect = BAR_ASPECT if view.variables["status"].size == 1 else MIN_ASPECT
         return request.write(draw_class_bars(view), "behaviour of each rod over F", min_aspect)
     varied_names = style.varied_axes(view)
-    drawable_names = [name for name, *_ in CRITICAL_FORCES if np.isfinite(view.variables[name]).any()]
+    drawable_names = [name for name, *_ in CRITICAL_FORCE_LOOKS if np.isfinite(view.variables[name]).any()]
     style.require_content(view, drawable_names, "threshold")
     has_few_lines = min(len(view.parameter_values[name]) for name in varied_names) <= MAX_LINES
     if request.what == "map" or (len(varied_names) == 2 and not has_few_lines and request.what != "lines"):
@@ -106,7 +106,7 @@ def _threshold_maps(view: ResultView, names: list[str], is_narrow: bool) -> tupl
     figure, panels = map_panels(len(names), is_narrow)
     lacking = False
     edges = cell_edges(points.x), cell_edges(points.y)
-    forces = [force for force in CRITICAL_FORCES if force[0] in names]
+    forces = [force for force in CRITICAL_FORCE_LOOKS if force[0] in names]
     for axes, (name, word, *_) in zip(panels, forces, strict=True):
         values = view.variables[name].ravel()[points.point_indices]
         style.require_content(view, np.isfinite(values).any(), f"{name} of rods with finite parameters")

@@ -8,7 +8,7 @@ from ...arrays import Array
 from ...results.file.view import ResultView
 from ...results.layouts import layout_of
 from ...results.layouts.si_variables import si_variables_of
-from ..summary.errors import ABSOLUTE_ERRORS, RELATIVE_ERRORS, absolute_errors
+from ..summary.errors import ABSOLUTE_ERROR_NAMES, RELATIVE_ERROR_NAMES, absolute_errors
 from ..summary.number_texts import error_text, number_and_error, rounded_text
 from ..tables.column import Column
 from ..tables.table_names import POINTS_TABLE
@@ -53,7 +53,9 @@ class ColumnTexts:
         if name in self._other_errors:
             return self._other_errors[name]
         errors = absolute_errors(self._values, name)
-        has_error = any(table.get(name, "") in self.columns for table in (RELATIVE_ERRORS, ABSOLUTE_ERRORS))
+        has_error = any(
+            table.get(name, "") in self.columns for table in (RELATIVE_ERROR_NAMES, ABSOLUTE_ERROR_NAMES)
+        )
         return errors if has_error else np.where(errors > 0, errors, np.nan)
 
     def value_and_error_texts(self, name: str) -> list[tuple[str, str]]:
@@ -78,7 +80,7 @@ class ColumnTexts:
         relative if `error` is relative. If `error` belongs to several variables, the largest rounding error.
         """
         largest_rounding = np.zeros_like(self._values[error])
-        for table, relative in ((ABSOLUTE_ERRORS, False), (RELATIVE_ERRORS, True)):
+        for table, relative in ((ABSOLUTE_ERROR_NAMES, False), (RELATIVE_ERROR_NAMES, True)):
             for name in (
                 name_with_error
                 for name_with_error, own_error in table.items()

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from ...model.arm.quantities import SCALE_NAME
+from ...model.arm.quantities import SCALE_NAMES
 from ...results.file.view import ResultView
 from ..figures import style
 from ..range_unions import ParameterRange
@@ -84,12 +84,12 @@ class PortraitUnits:
         symbol, word = THRESHOLD_MARKS[kind]
         if self.load:
             return f"mode at {word},\n{self.force_title(F)}"
-        return rf"mode at ${style.SYMBOLS['F']}_{{{symbol}}} = {F:.6g}$"
+        return rf"mode at ${style.TEX_SYMBOLS['F']}_{{{symbol}}} = {F:.6g}$"
 
     def force_title(self, F: float) -> str:
         """The load at the dimensionless force F as the title of a panel."""
         text = f"{self.force.factor * F:.6g}"
-        return f"{text} {self.force.name}" if self.load else rf"${style.SYMBOLS['F']} = {text}$"
+        return f"{text} {self.force.name}" if self.load else rf"${style.TEX_SYMBOLS['F']} = {text}$"
 
 
 ROD_UNITS = PortraitUnits(
@@ -105,7 +105,7 @@ def portrait_units(view: ResultView, load_kind: str, largest: float) -> Portrait
         return ROD_UNITS
     force, length, tau2 = (
         float(view.quantities[quantity_name].ravel()[0])
-        for quantity_name in (SCALE_NAME[load_kind], "length", "tau2")
+        for quantity_name in (SCALE_NAMES[load_kind], "length", "tau2")
     )
 
     def unit(si: str, scale: float, largest: float) -> Unit:

@@ -25,12 +25,12 @@ OTHER_THRESHOLD_WORDS = {
     "restabilization": "the straight rod is stable again, as {name} grows, at {name}",
 }
 """Phrase for a threshold along any parameter other than F, by kind."""
-Threshold = LocatedThreshold | UnlocatedThreshold
-"""Threshold of the straight rod: located, or bracketed by two points of the file."""
+SummaryThreshold = LocatedThreshold | UnlocatedThreshold
+"""A threshold of the straight rod: located, or bracketed by two points of the file."""
 
 
 def stability_lines(
-    view: ResultView, name: str, thresholds_on: Callable[[ParameterLine], Sequence[Threshold]]
+    view: ResultView, name: str, thresholds_on: Callable[[ParameterLine], Sequence[SummaryThreshold]]
 ) -> tuple[list[str], list[str]]:
     """Returns (sentences, sentences in an arm's units), one for each kind of threshold along the parameter
     `name`. The second list is empty unless the parameter is F; both lists are empty if the parameter does not
@@ -66,7 +66,9 @@ def stability_lines(
     return texts, arm_sentences
 
 
-def _positions_text(by_line: Mapping[int, list[Threshold]], names: list[str], parameter_name: str) -> str:
+def _positions_text(
+    by_line: Mapping[int, list[SummaryThreshold]], names: list[str], parameter_name: str
+) -> str:
     """Positions of thresholds as text: one by one for a few lines of points, else as a range. by_line:
     thresholds by index of the line."""
     points = [point for line in by_line.values() for point in line]
@@ -94,7 +96,7 @@ def _positions_text(by_line: Mapping[int, list[Threshold]], names: list[str], pa
     return text
 
 
-def _position_text(threshold: Threshold) -> str:
+def _position_text(threshold: SummaryThreshold) -> str:
     """Position of a threshold as text, rounded according to its error; for a bracketed threshold, both
     ends."""
     if isinstance(threshold, UnlocatedThreshold):

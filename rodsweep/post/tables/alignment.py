@@ -13,7 +13,7 @@ MIN_PROSE_WIDTH = 24
 separate lines below the row."""
 NUMBER_PATTERN = re.compile(r"[-+]?(?:\d+\.?\d*(?:e[-+]?\d+)?|inf)")
 """Pattern for a number in decimal notation, or inf."""
-NO_BREAK = "\xa0"
+NO_BREAK_SPACE = "\xa0"
 """No-break space; a line is never broken at this character."""
 UNBREAKABLE_PATTERN = re.compile(r" = \S+| \(\+- [^)]*\)")
 """Pattern for the parts of a sentence that stay on one line: "= value" after a name, and an error in brackets
@@ -34,11 +34,11 @@ def rewrap_line(line: str, width: int = LINE_WIDTH) -> str:
     A name and its value stay on one line, as do a number and its error. File names are not broken.
     """
     indent = " " * (len(line) - len(line.lstrip()) + 2)
-    unbroken = UNBREAKABLE_PATTERN.sub(lambda group: group[0].replace(" ", NO_BREAK), line)
+    unbroken = UNBREAKABLE_PATTERN.sub(lambda group: group[0].replace(" ", NO_BREAK_SPACE), line)
     lines = textwrap.wrap(
         unbroken, width, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False
     )
-    return "\n".join(lines).replace(NO_BREAK, " ")
+    return "\n".join(lines).replace(NO_BREAK_SPACE, " ")
 
 
 def point_aligned(cells: Sequence[str]) -> list[str]:

@@ -10,7 +10,7 @@ from ...errors import EnvironmentIncomplete
 
 Table = dict[str, Sequence[str] | Sequence[float]]
 """Table of the measurements of a benchmark study: columns of equal length, by name."""
-UNITS = {"seconds": "s", "error": "1"}
+COLUMN_UNITS = {"seconds": "s", "error": "1"}
 """Unit of a column, by name of the column; all other columns have no unit."""
 
 
@@ -32,7 +32,7 @@ def write_measurements(path: Path, tables: Mapping[str, Table], attributes: Mapp
                     column = np.array(values, dtype=h5py.string_dtype() if is_text else float)
                     dataset = group.create_dataset(name, data=column)
                     dataset.dims[0].attach_scale(rows)
-                    if name in UNITS:
-                        dataset.attrs["units"] = UNITS[name]
+                    if name in COLUMN_UNITS:
+                        dataset.attrs["units"] = COLUMN_UNITS[name]
     except OSError as error:
         raise EnvironmentIncomplete(f"{path} cannot be written: {error}") from error

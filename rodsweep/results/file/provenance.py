@@ -27,7 +27,7 @@ line, named by `rodsweep.solve.backend.petsc.blas_description`."""
 FAILURE_REASONS_ATTRIBUTE = "failure_reasons"
 """Name of the attribute with one example point for each distinct reason of failure, in all runs; each line
 has parameters, status and reason."""
-NUMBER_PATTERN = re.compile(r"\d[\d.]*(?:e[+-]?\d+)?")
+MESSAGE_NUMBER_PATTERN = re.compile(r"\d[\d.]*(?:e[+-]?\d+)?")
 """Matches a number in a message. Messages that differ only in numbers are treated as the same reason of
 failure."""
 MAX_FAILURE_REASONS = 20
@@ -82,7 +82,7 @@ def failure_sentence(failure: str) -> str:
 
 def failure_kind(line: str) -> str:
     """Status and reason in a line "parameters: status reason", with every number replaced by #."""
-    return NUMBER_PATTERN.sub("#", line.partition(": ")[2])
+    return MESSAGE_NUMBER_PATTERN.sub("#", line.partition(": ")[2])
 
 
 def joined_failure_reasons(*reason_texts: str) -> dict[str, str]:

@@ -17,7 +17,7 @@ HOPF_POINT_DIMENSION = "crossing"
 ABSENT_FROM_HOPF_SEARCH = ("crossing_growth_rate", "solves")
 """Names of the variables of a search for crossings that are not stored for a search for Hopf points, where
 growth rates are 0."""
-CRITICALITY_WORDS = ((-1, "supercritical"), (0, "undecided"), (1, "subcritical"))
+CRITICALITY_CODES = ((-1, "supercritical"), (0, "undecided"), (1, "subcritical"))
 """(stored number, word) of each criticality. The number is the sign of Re c; nan is stored for an unknown
 c."""
 
@@ -30,7 +30,7 @@ def criticality_variable(name: str, decided_by: str) -> Variable:
         "unstable; subcritical: cycles exist where the pair is stable; "
         f"undecided: the sign of {decided_by} is within its error"
     )
-    return Variable(name, "<f8", nan, "1", meaning, flags=CRITICALITY_WORDS)
+    return Variable(name, "<f8", nan, "1", meaning, flags=CRITICALITY_CODES)
 
 
 NORMAL_FORM_VARIABLES = along_dimension(

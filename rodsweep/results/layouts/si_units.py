@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...config.arm.axes import LOAD_KEYS
-from ...model.arm.quantities import LOAD_OF_RATIO, LOADS, SCALE_NAME, UNITS
+from ...model.arm.quantities import LOAD_OF_RATIO, LOADS, SCALE_NAMES, UNITS
 from .variables import ANGULAR_UNIT
 
 HERTZ = "Hz"
@@ -45,7 +45,7 @@ SI_UNIT_BY_DIMENSIONLESS_UNIT = {
     "k3/(L tau2)": SIUnit("W", ("force_scale", "length"), ("tau2",)),
 }
 """SI units of the dimensionless units of time, length, energy and power."""
-FORCE_UNITS = {load: SIUnit(UNITS[load][0], (SCALE_NAME[load],)) for load in LOADS}
+FORCE_UNITS = {load: SIUnit(UNITS[load][0], (SCALE_NAMES[load],)) for load in LOADS}
 """SI unit in which the follower force is stored, by name of the arm's load, "pressure" or "force"."""
 
 

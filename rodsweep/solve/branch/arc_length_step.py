@@ -26,7 +26,7 @@ from .bordered.condition import BorderCondition, moved_orbit
 from .bordered.corrected_linearisation import linearisation_of
 from .bordered.scale import ArcLengthScale
 from .branch_errors import BranchCalibration, BranchDerivatives, branch_newton_tolerance
-from .branch_prediction import HermiteDatum, PreviousCycle, hermite_data, predicted_change
+from .branch_prediction import HermiteNode, PreviousCycle, hermite_nodes, predicted_change
 from .branch_tangent import branch_derivatives, tangent_at
 
 ARC_STEP_CONTROL = StepControl(
@@ -118,9 +118,9 @@ class BranchCycle:
         return BorderCondition.at_arc_length(self.scale, self.unit_tangent, self.orbit, length)
 
     @cached_property
-    def earlier_cycles(self) -> list[HermiteDatum]:
+    def earlier_cycles(self) -> list[HermiteNode]:
         """The last one or two cycles before this cycle, the nearest first, for predictions."""
-        return hermite_data(self.orbit, self.scale, self.unit_tangent, self.previous)
+        return hermite_nodes(self.orbit, self.scale, self.unit_tangent, self.previous)
 
     def predicted_orbit(self, length: float, max_earlier_cycles: int = 2) -> Orbit:
         """Predicted orbit at the arc length `length` ahead, by the polynomial through this cycle and at most

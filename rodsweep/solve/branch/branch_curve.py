@@ -161,7 +161,7 @@ class BranchCurve:
     """Whether the continuation stopped at the maximum number of cycles."""
     closed: bool = False
     """Whether the branch is closed: its last special point is its first special point, located again."""
-    are_crossings_explained: bool = True
+    are_circle_crossings_explained: bool = True
     """Whether special points explain every multiplier that crosses the unit circle along the branch."""
     start_passage: RangePassage | None = None
     """Place at an end of the range where the branch starts; None if it starts elsewhere."""
@@ -179,7 +179,7 @@ class BranchCurve:
         there."""
         for special in special_points:
             self.add_special_point(special)
-        self.are_crossings_explained &= are_complete
+        self.are_circle_crossings_explained &= are_complete
 
     def replace_last_cycles(self, points: Sequence[StoredBranchCycle]) -> None:
         """Replaces the last len(points) cycles by `points`, the same cycles with measured or interpolated
@@ -240,5 +240,6 @@ class BranchCurve:
             end_passage=forward.end_passage,
             complete=self.complete and forward.complete,
             list_full=self.list_full or forward.list_full,
-            are_crossings_explained=self.are_crossings_explained and forward.are_crossings_explained,
+            are_circle_crossings_explained=self.are_circle_crossings_explained
+            and forward.are_circle_crossings_explained,
         )

@@ -39,7 +39,7 @@ class BranchErrorSettings:
     """Lower limit of |d(deflection)/ds| in the parameter error at equal deflection, divided by
     |d(parameter)/ds|, s: arc length. Without this limit the error would be infinite where the deflection is
     stationary."""
-    interpolation_factor: float = 2.0
+    interpolation_safety_factor: float = 2.0
     """Safety factor on interpolated errors."""
     min_error: float = 1e-16
     """Lower limit of an error before its logarithm is interpolated; smaller errors are rounding errors."""
@@ -226,11 +226,11 @@ def _interpolated_at_equal_parameter(
 def _log_interpolated_errors(first_errors: Array, second_errors: Array, fraction: float) -> Array:
     """Geometric interpolation between the errors `first_errors` and `second_errors`, arrays of equal shape,
     at the fraction `fraction` of the distance from the first to the second; multiplied by
-    `interpolation_factor`, but not above the larger of the two errors."""
+    `interpolation_safety_factor`, but not above the larger of the two errors."""
     # Errors of a mesh change by factors along a branch, so their logarithms are interpolated.
     logarithms = np.log(np.maximum([first_errors, second_errors], BRANCH_ERROR_SETTINGS.min_error))
     means = np.exp(logarithms[0] + fraction * (logarithms[1] - logarithms[0]))
     bounded_errors: Array = np.minimum(
-        BRANCH_ERROR_SETTINGS.interpolation_factor * means, np.maximum(first_errors, second_errors)
+        BRANCH_ERROR_SETTINGS.interpolation_safety_factor * means, np.maximum(first_errors, second_errors)
     )
     return bounded_errors

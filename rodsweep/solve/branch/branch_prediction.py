@@ -42,7 +42,7 @@ class PreviousCycle:
     previous: "PreviousCycle | None" = None
 
 
-class HermiteDatum(NamedTuple):
+class HermiteNode(NamedTuple):
     """An earlier cycle on the mesh of the last cycle. position: arc length along the tangent at the last
     cycle, negative behind it. difference: orbit values and parameter coordinate minus those of the last
     cycle, (N + 1,). slope: their derivative with respect to the position, (N + 1,)."""
@@ -52,13 +52,13 @@ class HermiteDatum(NamedTuple):
     slope: Array
 
 
-def hermite_data(
+def hermite_nodes(
     orbit: Orbit, scale: ArcLengthScale, unit_tangent: Array, previous: PreviousCycle | None
-) -> list[HermiteDatum]:
+) -> list[HermiteNode]:
     """The last one or two cycles before the cycle `orbit`, the nearest first; empty if there is none behind
     this cycle. scale, unit_tangent: scale and tangent at `orbit`, the latter in components (deflection, log
     period, parameter), (3,)."""
-    data: list[HermiteDatum] = []
+    data: list[HermiteNode] = []
     for cycle in (previous, previous and previous.previous):
         if cycle is None:
             break
@@ -73,9 +73,9 @@ def hermite_data(
 
 def _hermite_datum(
     orbit: Orbit, scale: ArcLengthScale, unit_tangent: Array, cycle: PreviousCycle
-) -> HermiteDatum | None:
+) -> HermiteNode | None:
     """The earlier cycle `cycle` as a datum for predictions from `orbit`; None if the branch has turned too
-    far between the two. scale, unit_tangent: as in `hermite_data`, the latter (3,)."""
+    far between the two. scale, unit_tangent: as in `hermite_nodes`, the latter (3,)."""
     mesh = mesh_of(orbit)
     name = scale.parameter_name
     earlier = mesh.interpolated_orbit(cycle.orbit)
@@ -87,10 +87,10 @@ def _hermite_datum(
         return None
     position = float(unit_tangent @ (scale.components(earlier) - scale.components(orbit)))
     coordinate_change = earlier.form.rod.coordinate(name) - orbit.form.rod.coordinate(name)
-    return HermiteDatum(position, np.append(earlier.values - orbit.values, coordinate_change), slope / rate)
+    return HermiteNode(position, np.append(earlier.values - orbit.values, coordinate_change), slope / rate)
 
 
-def predicted_change(tangent: Array, data: Sequence[HermiteDatum], length: float) -> Array:
+def predicted_change(tangent: Array, data: Sequence[HermiteNode], length: float) -> Array:
     """Predicted change, (N + 1,), of orbit values and parameter coordinate over the arc length `length`.
     tangent: tangent with unit arc length at the last cycle, (N + 1,). data: earlier cycles."""
     positions = [0.0, *(datum.position for datum in data for _ in range(2))]
@@ -102,14 +102,12 @@ def predicted_change(tangent: Array, data: Sequence[HermiteDatum], length: float
 
 
 def parameter_polynomial(
-    tangent: Array, data: Sequence[HermiteDatum], ends: tuple[float, float]
+    tangent: Array, data: Sequence[HermiteNode], ends: tuple[float, float]
 ) -> Polynomial:
     """The predicted change of the parameter coordinate as a polynomial of the arc length between `ends`.
     tangent: as in `predicted_change`, (N + 1,)."""
     degree = 1 + 2 * len(data)
     lengths = np.linspace(*ends, degree + 1)
-    last_components = [
-        HermiteDatum(datum.position, datum.difference[-1:], datum.slope[-1:]) for datum in data
-    ]
+    last_components = [HermiteNode(datum.position, datum.difference[-1:], datum.slope[-1:]) for datum in data]
     changes = [predicted_change(tangent[-1:], last_components, length)[0] for length in lengths]
     return Polynomial.fit(lengths, changes, degree)

@@ -14,7 +14,7 @@ from .branch_continuation import follow_asymmetric_branch, follow_branch, follow
 from .branch_curve import BranchCurve, RangePassage
 from .branch_limits import BranchLimits
 from .computing_time import fractions_before_branches
-from .detached_branch import branch_through, lies_on_branch
+from .detached_branch import branch_through, lies_on_a_branch
 from .region_beyond import RegionBeyond
 from .special.special_point import SpecialKind, SpecialPoint
 from .symmetry_breaking import SymmetryBreaking, symmetry_breakings_in
@@ -138,7 +138,7 @@ class BranchSearch:
         branches of asymmetric cycles from symmetry breakings on these branches."""
         for start in starts:
             # Tested for each start anew, as the branch of one start may pass the next.
-            if lies_on_branch(start, self.curves):
+            if lies_on_a_branch(start, self.curves):
                 continue
             place = f"{_SPECIAL_POINT_NOUNS[start.kind]} at {self.name} = {start.parameter_value:.9g}"
             with solve_part(f"branch {len(self.curves) + 1}, through the {place}"):
@@ -225,7 +225,7 @@ class BranchSearch:
         """Whether a branch has a special point of a branch that was followed before."""
         # At an end of the range two branches may agree within tolerances; elsewhere they do not.
         inner_points = (point for point in curve.special_points if point.kind != SpecialKind.end)
-        return any(lies_on_branch(point, self.curves) for point in inner_points)
+        return any(lies_on_a_branch(point, self.curves) for point in inner_points)
 
 
 def _passages_of(curve: BranchCurve) -> list[RangePassage]:

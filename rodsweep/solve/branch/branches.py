@@ -175,7 +175,7 @@ def _status_and_message(
     # Special points are solved to their own accuracy even if less is asked of the branch.
     tolerance = max(request.accuracy, SPECIAL_POINT_SETTINGS.accuracy)
     is_inaccurate = any(point.error > tolerance * abs(point.parameter_value) for point in special_points)
-    if any(not curve.are_crossings_explained for curve in curves):
+    if any(not curve.are_circle_crossings_explained for curve in curves):
         messages.append("multipliers cross the unit circle where no special point was found")
     applies_by_status = {
         BranchStatus.stopped: bool(failures)
@@ -183,7 +183,7 @@ def _status_and_message(
         BranchStatus.list_full: any(curve.list_full for curve in curves)
         or len(special_points) > request.special,
         BranchStatus.special_undecided: is_inaccurate
-        or any(not curve.are_crossings_explained for curve in curves),
+        or any(not curve.are_circle_crossings_explained for curve in curves),
         BranchStatus.search_open: crossings.ended_early or (request.certify and not crossings.proved),
     }
     status = next((status for status, applies in applies_by_status.items() if applies), BranchStatus.ok)

@@ -89,7 +89,7 @@ def branch_through(
         else:
             if is_known(curve):
                 return None
-            if not must_pass_start or lies_on_branch(start, [curve]):
+            if not must_pass_start or lies_on_a_branch(start, [curve]):
                 if curve.complete or curve.list_full:
                     return curve
                 incomplete = incomplete or curve
@@ -113,7 +113,7 @@ def follow_in_both_directions(first_cycle: BranchCycle, limits: BranchLimits) ->
     return curve
 
 
-def lies_on_branch(special: SpecialPoint, curves: Iterable[BranchCurve]) -> bool:
+def lies_on_a_branch(special: SpecialPoint, curves: Iterable[BranchCurve]) -> bool:
     """Whether one of the branches `curves` has the special point `special`."""
     return any(special.is_same_as(other) for curve in curves for other in curve.special_points)
 

@@ -21,7 +21,7 @@ from .branch_continuation import follow_asymmetric_branch, follow_from_cycle, in
 from .branch_curve import BranchCurve, RangePassage, unstable_count_bounds
 from .branch_limits import BranchLimits
 from .branch_request import WORK_UNIT
-from .detached_branch import branch_through, lies_on_branch, reversed_cycle
+from .detached_branch import branch_through, lies_on_a_branch, reversed_cycle
 from .special.special_point import SpecialKind, SpecialPoint
 from .start.first_cycle import first_cycle
 from .start.hopf_point import HopfBranchStart, accuracy_near_hopf_points
@@ -86,7 +86,7 @@ class RegionBeyond:
         with solve_part(f"a branch beyond {self.path.text_at(self.range_end)}"), self._limited_work():
             start = self._with_step_into_region(passage)
             if start is not None:
-                return self._entry(BranchCurve(start_hopf=-1), start, passage.accuracy)
+                return self._follow(BranchCurve(start_hopf=-1), start, passage.accuracy)
         return None
 
     def entries_from_hopf_points(self) -> Iterator[RangePassage]:
@@ -156,7 +156,7 @@ class RegionBeyond:
         if moves_away and unstable_count_bounds(first)[0] > 1:
             return None
         if index_of_passed_range_end(first, self.limits.coordinate_range) != 1 - self.index:
-            return self._entry(BranchCurve(start_hopf=index), first, accuracy)
+            return self._follow(BranchCurve(start_hopf=index), first, accuracy)
         # The first cycle already lies within the range.
         limits = replace(self.range_limits, accuracy=accuracy, locates_special_points=False)
         passage = follow_from_cycle(BranchCurve(start_hopf=-1), reversed_cycle(first), limits).end_passage
@@ -165,7 +165,7 @@ class RegionBeyond:
             return None
         return replace(passage, cycle=reversed_cycle(passage.cycle) if passage.hopf is None else first)
 
-    def _entry(self, curve: BranchCurve, first_cycle: BranchCycle, accuracy: float) -> RangePassage | None:
+    def _follow(self, curve: BranchCurve, first_cycle: BranchCycle, accuracy: float) -> RangePassage | None:
         """Follows the branch `curve` from its first cycle `first_cycle` in the region; returns the place
         where it enters the range, or None."""
         limits = replace(self.limits, accuracy=accuracy, breakings=self.breakings)
@@ -216,7 +216,7 @@ class RegionBeyond:
 
     def _is_known(self, curve: BranchCurve) -> bool:
         """Whether a branch has a fold of a branch that was followed before in the region."""
-        return any(lies_on_branch(fold, [curve]) for fold in self.folds)
+        return any(lies_on_a_branch(fold, [curve]) for fold in self.folds)
 
     def has(self, start: SpecialPoint) -> bool:
         """Whether the special point `start` lies in the region, beyond the end of the range."""

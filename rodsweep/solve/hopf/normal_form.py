@@ -22,7 +22,7 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ...determinant.arm.determinant import eigenfunction_wave_number
-from ...discretization.elements.elements import Elements, equal_edges, halve_elements
+from ...discretization.elements.elements import Elements, equal_edges, halved_element_edges
 from ...discretization.elements.mesh import mesh_with_edges
 from ...discretization.elements.resolution import RESOLUTION_SETTINGS, resolution_for
 from ...discretization.straight.arm_resolution import arm_elements
@@ -177,7 +177,8 @@ def elements_with_third_more_unknowns(elements: Elements) -> Elements:
         return with_odd_order(Elements(elements.edges, order))
     return with_odd_order(
         Elements(
-            halve_elements(elements.edges), ceil(RESOLUTION_SETTINGS.refinement_ratio / 2 * elements.order)
+            halved_element_edges(elements.edges),
+            ceil(RESOLUTION_SETTINGS.refinement_ratio / 2 * elements.order),
         )
     )
 

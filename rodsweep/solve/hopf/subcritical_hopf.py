@@ -15,7 +15,7 @@ from .hopf_coefficients import hopf_coefficients
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SubcriticalHopfSettings:
+class SubcriticalHopfSearchSettings:
     """Settings for the search for a subcritical Hopf point near the force of a rod."""
 
     max_force_ratio: float = 1.5
@@ -27,7 +27,7 @@ class SubcriticalHopfSettings:
     normal form is too inaccurate."""
 
 
-SUBCRITICAL_HOPF_SETTINGS = SubcriticalHopfSettings()
+SUBCRITICAL_HOPF_SEARCH_SETTINGS = SubcriticalHopfSearchSettings()
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,8 +49,8 @@ def subcritical_hopf_near(rod: Rod) -> SubcriticalHopf | None:
     most `max_unstable_y`. The straight rod must be stable. Raises Unsolvable if the search for Hopf points or
     a coefficient fails.
     """
-    min_force = rod.F / SUBCRITICAL_HOPF_SETTINGS.max_force_ratio
-    max_force = end_below_crushing(rod, rod.F * SUBCRITICAL_HOPF_SETTINGS.max_force_ratio)
+    min_force = rod.F / SUBCRITICAL_HOPF_SEARCH_SETTINGS.max_force_ratio
+    max_force = end_below_crushing(rod, rod.F * SUBCRITICAL_HOPF_SEARCH_SETTINGS.max_force_ratio)
     if not 0 < min_force < max_force:
         return None
     crossings = find_axis_crossings(ParameterPath(rod, "F"), min_force, max_force, certify=False).thresholds
@@ -58,9 +58,11 @@ def subcritical_hopf_near(rod: Rod) -> SubcriticalHopf | None:
     crossings_below = [crossing for crossing in crossings if crossing.value <= rod.F]
     nearest_crossings = crossings_above[:1] + crossings_below[-1:]
     for hopf in sorted(nearest_crossings, key=lambda one: abs(one.value - rod.F)):
-        coefficients = hopf_coefficients(replace(rod, F=hopf.value), hopf, SUBCRITICAL_HOPF_SETTINGS.accuracy)
+        coefficients = hopf_coefficients(
+            replace(rod, F=hopf.value), hopf, SUBCRITICAL_HOPF_SEARCH_SETTINGS.accuracy
+        )
         unstable_y = abs(coefficients.amplitude_coefficient) * abs(rod.F / hopf.value - 1) ** 0.5
         # A positive criticality means subcritical.
-        if coefficients.criticality > 0 and unstable_y <= SUBCRITICAL_HOPF_SETTINGS.max_unstable_y:
+        if coefficients.criticality > 0 and unstable_y <= SUBCRITICAL_HOPF_SEARCH_SETTINGS.max_unstable_y:
             return SubcriticalHopf(hopf.value, unstable_y)
     return None

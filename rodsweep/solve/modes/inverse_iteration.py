@@ -22,7 +22,7 @@ from ...model.rod import Rod
 class ModeIterationSettings:
     """Settings of the inverse iteration that computes the right and left mode of an eigenvalue."""
 
-    iterations: int = 4
+    iteration_count: int = 4
     """Number of inverse iterations per eigenvalue; two suffice unless the eigenvalue is nearly double."""
     conjugate_tolerance: float = 1e-12
     """An eigenvalue w is the conjugate v* of its predecessor v if |w - v*|/|w| is at most this."""
@@ -145,7 +145,7 @@ def _null_vector(inverse: NDArray, B: NDArray) -> NDArray:
     x: NDArray = np.ones(len(B))
     previous_vector = x
     previous_growth = growth = 0.0
-    for _ in range(MODE_ITERATION_SETTINGS.iterations):
+    for _ in range(MODE_ITERATION_SETTINGS.iteration_count):
         previous_vector = x
         previous_growth = growth
         x = inverse @ (B * x)

@@ -29,7 +29,7 @@ from .time_scheme import TimeScheme
 class IntegratorSettings:
     """Settings of the time integration: tolerances, limits, and the run in `relax_fast_components`."""
 
-    stagnation_ratio: float = 1e-9
+    max_stagnation_ratio: float = 1e-9
     """Newton's method for a stage stops, as converged, if it stagnates at steps whose rms size, divided by
     the largest component of the initial state, is below this."""
     first_step_ratio: float = 1e-3
@@ -168,7 +168,7 @@ class Integrator:
         ts.setTolerances(rtol=0.0, atol=scheme.tolerance * state_size)
         tolerance = scheme.newton_tolerance_ratio * scheme.tolerance * state_size
         self.workspace.set_rod_and_tolerances(
-            system, tolerance, INTEGRATOR_SETTINGS.stagnation_ratio * state_size
+            system, tolerance, INTEGRATOR_SETTINGS.max_stagnation_ratio * state_size
         )
         ts.setTime(0.0)
         ts.setStepNumber(0)

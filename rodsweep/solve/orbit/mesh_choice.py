@@ -5,7 +5,7 @@ from math import ceil, log
 
 import numpy as np
 
-from ...discretization.elements.elements import halve_elements
+from ...discretization.elements.elements import halved_element_edges
 from ...discretization.elements.resolution import RESOLUTION_SETTINGS
 from .element_order_ratios import element_order_ratios
 from .orbit import Orbit, interval_lengths
@@ -43,7 +43,7 @@ def mesh_from_tails(orbit: Orbit, accuracy: float, stage_count: int) -> OrbitMes
     ratios = element_order_ratios(orbit, order, max_space_tail)
     while order > RESOLUTION_SETTINGS.max_order:
         order = ceil(ORBIT_MESH_SETTINGS.halving_order_ratio * order)
-        edges = halve_elements(edges)
+        edges = halved_element_edges(edges)
         ratios = ratios_of_halves(ratios)
     grading, interval_ratio = grading_and_interval_ratio(orbit, max_time_tail, stage_count)
     interval_count = ceil(current_mesh.interval_count * interval_ratio)

@@ -6,7 +6,7 @@ from math import ceil
 import numpy as np
 
 from ...arrays import Array
-from ...discretization.elements.elements import element_orders, halve_elements
+from ...discretization.elements.elements import element_orders, halved_element_edges
 from ...discretization.elements.mesh import Mesh, mesh_with_edges
 from ...discretization.elements.resolution import RESOLUTION_SETTINGS
 from ...discretization.state_layout import plane_layout
@@ -189,7 +189,7 @@ class OrbitMesh:
             return self.with_order(self.order + 2)
         return replace(
             self,
-            edges=halve_elements(self.edges),
+            edges=halved_element_edges(self.edges),
             order=ceil(ORBIT_MESH_SETTINGS.halving_order_ratio * self.order),
             order_ratios=ratios_of_halves(self.order_ratios),
         )

@@ -20,7 +20,7 @@ from ...discretization.elements.trigonometric import fourier_coefficients
 class TimeGradingSettings:
     """Settings for the grading of the time intervals of an orbit."""
 
-    step: float = 0.05
+    parameter_step: float = 0.05
     """The two numbers of a grading are multiples of this step, so that similar orbits share their meshes."""
     max_amplitude: float = 0.6
     """Largest amplitude of dt/dtau - 1: the longest interval is at most four times as long as the
@@ -31,7 +31,7 @@ class TimeGradingSettings:
     oversampling: int = 4
     """Number of equidistant times per node at which a function of the mesh time is evaluated to find its
     harmonics in time. A function of the time has fewer harmonics than the same function of the mesh time."""
-    bisections: int = 8
+    inversion_bisection_count: int = 8
     """Number of bisections that invert the map with an error of 0.002, from where Newton's method
     converges."""
     newton_step_count: int = 4
@@ -84,7 +84,7 @@ class TimeGrading:
         lower = np.zeros_like(times)
         upper = np.ones_like(times)
         # After a few bisections Newton's method converges for every allowed amplitude.
-        for _ in range(TIME_GRADING_SETTINGS.bisections):
+        for _ in range(TIME_GRADING_SETTINGS.inversion_bisection_count):
             middle = (lower + upper) / 2
             is_below = self.times(middle) < times
             lower = np.where(is_below, middle, lower)
@@ -116,7 +116,7 @@ def fitted_grading(tails: Array, edges: Array, stage_count: int, harmonic: int) 
     amplitude = float(np.hypot(cosine, sine))
     max_amplitude = TIME_GRADING_SETTINGS.max_amplitude
     amplitude_factor = max_amplitude / amplitude if amplitude > max_amplitude else 1.0
-    step = TIME_GRADING_SETTINGS.step
+    step = TIME_GRADING_SETTINGS.parameter_step
     return TimeGrading(
         step * round(amplitude_factor * cosine / step), step * round(amplitude_factor * sine / step), harmonic
     )

@@ -1,7 +1,7 @@
-"""One attempt at the leading eigenvalues of a rod on one mesh, and the comparison with a count.
+"""One solve for the leading eigenvalues of a rod on one mesh, and the comparison with a count.
 
 The mesh gives approximate eigenvalues, Newton's method on the determinant D refines them, and the winding
-number of D shows whether an eigenvalue is missing. `rodsweep.solve.spectrum.search` chooses the next attempt.
+number of D shows whether an eigenvalue is missing. `rodsweep.solve.spectrum.search` chooses the next solve.
 """
 
 from dataclasses import dataclass, replace

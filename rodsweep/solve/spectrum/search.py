@@ -1,8 +1,8 @@
 """Search for the leading eigenvalues of one rod: few unknowns, the requested accuracy, no missing eigenvalue.
 
-One attempt (`rodsweep.solve.spectrum.candidates`) solves for a number of eigenvalues nearest to a shift, on
+One solve (`rodsweep.solve.spectrum.candidates`) gives a number of eigenvalues nearest to a shift, on
 one mesh, and refines the eigenvalues by Newton's method on the determinant D. The mesh error, the error of
-the roots of D and the count of eigenvalues determine the next attempt. The search ends when mesh error, root
+the roots of D and the count of eigenvalues determine the next solve. The search ends when mesh error, root
 error and count are satisfactory.
 """
 
@@ -83,12 +83,12 @@ class SpectrumSearch:
         """Error message of SLEPc or LAPACK on the last mesh; empty if the last mesh was solved."""
 
     def outcome(self) -> Spectrum:
-        """The spectrum, from attempts on meshes until the candidates are accepted or no longer improve."""
-        for attempt in range(SEARCH_SETTINGS.max_meshes):
+        """The spectrum, from solves on meshes until the candidates are accepted or no longer improve."""
+        for solve_index in range(SEARCH_SETTINGS.max_meshes):
             is_too_fine = self.mesh.unknown_count > RESOLUTION_SETTINGS.max_unknowns
             if is_too_fine or self.failure_count > SEARCH_SETTINGS.max_failures:
                 break
-            to_rounding = self.needs_vectors or attempt > 0
+            to_rounding = self.needs_vectors or solve_index > 0
             candidates = candidates_on_mesh(
                 self.problem, self.mesh, self.requested_count, self.needs_vectors, to_rounding
             )
@@ -107,7 +107,7 @@ class SpectrumSearch:
         return self.best_spectrum()
 
     def check_candidates(self, candidates: Candidates) -> CheckedCandidates | None:
-        """The candidates with their count and error; None after a request for more eigenvalues or a mesh."""
+        """The candidates with their count and error; None if more eigenvalues or a finer mesh are needed."""
         if self.disagreement is not None:
             candidates = candidates.united_with(self.disagreement.candidates)
         if len(candidates.roots.w) < self.modes:
@@ -187,7 +187,7 @@ class SpectrumSearch:
         self.requested_count = requested_count
 
     def update_best(self, checked: CheckedCandidates) -> None:
-        """Stores the candidates if they are the best so far; counts successive attempts without progress."""
+        """Stores the candidates if they are the best so far; counts successive solves without progress."""
         best = self.best
         progress_limit = SEARCH_SETTINGS.max_progress_error_ratio * best.error_over_limit if best else 0.0
         is_better = best is None or checked.sort_key < (best.sort_key[0], progress_limit)

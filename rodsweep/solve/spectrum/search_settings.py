@@ -18,8 +18,7 @@ class SearchSettings:
     """If a mesh gives too few roots of D, but at least this fraction of the number of requested modes, the
     search requests more eigenvalues on a finer mesh; otherwise the search only refines the mesh."""
     max_meshes: int = 16
-    """Maximum number of meshes, counting a mesh again for each further solve. Only pulled rods of little
-    rotational drag need most."""
+    """Maximum number of solves, each on one mesh. Only pulled rods of little rotational drag need most."""
     max_failures: int = 3
     """Maximum number of solves that end with an error inside PETSc, SLEPc or LAPACK."""
     max_stalled_refinements: int = 2

@@ -12,7 +12,7 @@ from ...arrays import Array
 from ...config.arm.section import ArmConfig
 from ...config.arm.status import CRUSHED, FLUTTER_UNKNOWN, NO_FLUTTER, SLENDER, ArmOutsideModel
 from ...model.arm.arm import SlenderArm
-from ...model.arm.quantities import ARM_SCALES, LOAD_OF_RATIO, SCALE_NAME
+from ...model.arm.quantities import ARM_SCALES, LOAD_OF_RATIO, SCALE_NAMES
 from ...model.arm.refusals import CRUSHED_FORCE_RATIO
 from ...model.material.rod_material import DEFAULT_MATERIAL, RodMaterial
 from ...model.parameters import NONLINEAR_PARAMETERS, parameter_names_except
@@ -61,7 +61,7 @@ def grid_of_arms(
         # An arm that does not flutter has no load relative to flutter.
         table["F"] = np.where(np.isinf(unit_load_F), np.nan, unit_load_F) * _array_along(1, loads)
         if arm_config.load_key in LOAD_OF_RATIO:
-            units[arm_config.load] = table["F"] * units[SCALE_NAME[arm_config.load]]
+            units[arm_config.load] = table["F"] * units[SCALE_NAMES[arm_config.load]]
     table |= {name: _array_along(2, column.ravel()) for name, column in grid.items()}
     materials = _materials_of(arms) if arm_config.is_nonuniform else ()
     if "F" in table:
@@ -129,7 +129,7 @@ def _unit_load_force(
         return NO_FORCE
     if arm_config.load_key in LOAD_OF_RATIO:
         return find_force(arm, taper)
-    return FlutterForce(1.0 / getattr(arm, SCALE_NAME[arm_config.load]))
+    return FlutterForce(1.0 / getattr(arm, SCALE_NAMES[arm_config.load]))
 
 
 def _with_flutter_codes(status_codes: Array, flutter_F: Array) -> Array:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from .ranges import IndexRange, IndexSet, index_count, indices_along, merged_ranges
 
-GROUP_POINTS = 128
+MAX_GROUP_POINTS = 128
 """Maximum number of points in a group. The arms of a group share quantities that are computed once per group;
 longer groups would leave fewer work items to the ranks."""
 MIN_GROUP_AXIS_VALUES = 8
@@ -60,21 +60,21 @@ class PointGroups:
     def count(self) -> int:
         """Number of groups in the grid. Groups are ordered by position along the axis, at equal positions in
         row-major order of the remaining axes. Consecutive groups are therefore neighbours in the file."""
-        return self.line_count * -(-self.shape[self.axis] // GROUP_POINTS)
+        return self.line_count * -(-self.shape[self.axis] // MAX_GROUP_POINTS)
 
     def indices(self, group_number: int) -> NDArray[np.int64]:
         """Flat indices of the points of the group number `group_number`, (n,)."""
         position_of_group, line = divmod(group_number, self.line_count)
         positions = np.arange(
-            position_of_group * GROUP_POINTS,
-            min((position_of_group + 1) * GROUP_POINTS, self.shape[self.axis]),
+            position_of_group * MAX_GROUP_POINTS,
+            min((position_of_group + 1) * MAX_GROUP_POINTS, self.shape[self.axis]),
         )
         return indices_along(self.shape, self.axis, line, positions)
 
     def missing_counts(self, groups: IndexRange, missing: IndexSet) -> NDArray[np.int64]:
         """Number of points in `missing` of each group in a range of group numbers, (groups,)."""
         position_of_group, line = np.divmod(np.arange(*groups)[:, None], self.line_count)
-        positions = position_of_group * GROUP_POINTS + np.arange(GROUP_POINTS)
+        positions = position_of_group * MAX_GROUP_POINTS + np.arange(MAX_GROUP_POINTS)
         index = indices_along(self.shape, self.axis, line, positions)
         # Positions beyond the end of a line are indices of other points.
         return (missing[index] & (positions < self.shape[self.axis])).sum(axis=1)

@@ -8,7 +8,7 @@ from typing import Any
 from ...results.file.provenance import MAX_FAILURE_REASONS, failure_kind
 from ...results.layouts.variables import STATUS_VARIABLE
 from ...solve.status import PointStatus
-from ...sweep.loop import PointIndices
+from ...sweep.loop import ItemIndices
 from ...sweep.points.groups import GroupResult
 from ..protocol import SweepWideResult
 
@@ -30,7 +30,7 @@ class FailureReasons:
     point_text: Callable[[int], str]
     examples: dict[str, str] = field(default_factory=dict)
 
-    def add(self, index: PointIndices, result: Any) -> list[str]:
+    def add(self, index: ItemIndices, result: Any) -> list[str]:
         """Adds the reason why a point failed; returns a list with this example, or an empty list if the
         reason is known, the list of reasons is full, or no point failed.
 

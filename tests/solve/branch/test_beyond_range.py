@@ -323,7 +323,7 @@ def test_a_failure_beyond_the_range_leaves_the_branches_within(monkeypatch):
     def overflows(*_):
         raise ZeroDivisionError
 
-    monkeypatch.setattr(region_beyond.RegionBeyond, "_entry", overflows)
+    monkeypatch.setattr(region_beyond.RegionBeyond, "_follow", overflows)
     found = followed(FIG_2C, 0.0, 150.0)
     assert [kinds(curve) for curve in found.curves] == [["hopf", "end"]]
     assert found.followed_range == (0.0, 150.0)

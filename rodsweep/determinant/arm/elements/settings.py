@@ -36,7 +36,7 @@ class ArmElementSettings(KernelConstants):
     max_reuse_ratio: float = 1e3
     """Existing elements are reused at w if their W is at most this number times |w|. Making new elements
     costs as much as thirty evaluations of D on twice as many elements."""
-    max_compared_reuse_ratio: float = 1.5
+    max_reuse_ratio_if_compared: float = 1.5
     """Value of `max_reuse_ratio` for comparisons of D on different elements; near 1: the elements differ."""
     max_elements: int = 4000
     """Maximum number of elements of an arm. An arm that needs more elements is not resolved."""

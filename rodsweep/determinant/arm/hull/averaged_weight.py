@@ -31,7 +31,7 @@ class AveragedWeightSettings(KernelConstants):
     """Values of f in l = f |F| sqrt(c2 c3 gamma3/gamma2), the term with the load in the trial weight t."""
     half_widths: tuple[float, ...] = (0.01, 0.02, 0.04, 0.08, 0.16, 0.32)
     """Values of the half-width h of the window, in L."""
-    jump_distance: float = 1e-6
+    max_jump_distance: float = 1e-6
     """Two successive points closer than this distance, in L, lie on the two sides of a jump."""
     point_distance: float = 1e-12
     """Distance, in L, between the points added on both sides of u at which the slope of alpha jumps."""
@@ -87,7 +87,7 @@ def _with_points_where_window_ends_jump(u: Array, h: float) -> Array:
     count = len(u)
     points[:count] = u
     for i in range(len(u) - 1):
-        if u[i + 1] - u[i] < AVERAGED_WEIGHT_SETTINGS.jump_distance:
+        if u[i + 1] - u[i] < AVERAGED_WEIGHT_SETTINGS.max_jump_distance:
             for window_end in (-h, h):
                 for offset in (
                     -AVERAGED_WEIGHT_SETTINGS.point_distance,

@@ -26,7 +26,7 @@ from .. import style
 from ..cycle.point_map import cell_edges
 from ..request import FigureRequest
 from .panels import PANEL_MAKERS, Panel
-from .quantities import NO_BREAK, constant_quantities_text, in_typed_unit, quantity_text
+from .quantities import NO_BREAK_SPACE, constant_quantities_text, in_typed_unit, quantity_text
 
 MAP_KINDS = ("map", "maps")
 """Values of `--what` that request this figure."""
@@ -101,7 +101,7 @@ def _section_text(view: ResultView, indices: dict[str, int]) -> str:
         values = view.variables[name]
         if len(values) > 1:
             texts.append(f"{quantity_text(view, name, float(values[index]))} (of {len(values)} values)")
-    return f"; only for {' and '.join(texts).replace(NO_BREAK, ' ')}" if texts else ""
+    return f"; only for {' and '.join(texts).replace(NO_BREAK_SPACE, ' ')}" if texts else ""
 
 
 def can_draw_arm_map(request: FigureRequest) -> bool:
@@ -196,7 +196,7 @@ def _cover_invalid_cells(
     a value; returns legend entries. names: quantities on x and y."""
     x_name, y_name = names
     rods = view.variables["status"][index] < NOT_SLENDER
-    empty = [(rods & np.isnan(panel.values[index]), panel.empty_label, EMPTY_CELL_LOOK)] if y_name else []
+    empty = [(rods & np.isnan(panel.values[index]), panel.no_value_label, EMPTY_CELL_LOOK)] if y_name else []
     x_edges = cell_edges(_axis_values_and_label(view, x_name)[0])
     limits = axes.get_ylim()
     y_edges = cell_edges(_axis_values_and_label(view, y_name)[0]) if y_name else np.array(limits)

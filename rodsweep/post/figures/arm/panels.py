@@ -26,7 +26,7 @@ class Panel:
     zero_label: str = ""
     lines_label: str = ""
     """Label of the vertical axis if `threshold_lines` are drawn."""
-    empty_label: str = "nothing computed"
+    no_value_label: str = "nothing computed"
     """Legend entry for arms without a value."""
 
 
@@ -45,7 +45,7 @@ def _threshold_panels(view: ResultView) -> list[Panel]:
         Panel(
             f"{load} at flutter ({unit})", flutter, loads_by_threshold, "", f"{load} ({unit})", "no flutter"
         ),
-        Panel("frequency at flutter (Hz)", view.variables["frequency_hopf_hz"], empty_label="no flutter"),
+        Panel("frequency at flutter (Hz)", view.variables["frequency_hopf_hz"], no_value_label="no flutter"),
     ]
 
 
@@ -62,8 +62,8 @@ def _cycle_panels(view: ResultView) -> list[Panel]:
     """Panels of the task `limit_cycle`: frequency and amplitude of the cycle."""
     amplitude, unit = in_typed_unit(view, "length", view.variables["tip_y_max_si"])
     return [
-        Panel("frequency of the cycle (Hz)", view.variables["frequency_hz"], empty_label="no cycle"),
-        Panel(f"largest deflection of the tip ({unit})", amplitude, empty_label="no cycle"),
+        Panel("frequency of the cycle (Hz)", view.variables["frequency_hz"], no_value_label="no cycle"),
+        Panel(f"largest deflection of the tip ({unit})", amplitude, no_value_label="no cycle"),
     ]
 
 

@@ -18,7 +18,7 @@ from ....results.file.view import ResultView
 from ...summary.arm.arm import quantity_words
 from ..style import heading_text
 
-NO_BREAK = "\N{NO-BREAK SPACE}"
+NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
 """No-break space, used between a number and its unit; a line is never broken at this character."""
 SAME_NUMBER_TOLERANCE = 1e-9
 """A stored parameter equals the parameter computed from the arm if the relative difference is at most this
@@ -37,10 +37,12 @@ def quantity_text(view: ResultView, name: str, value: float) -> str:
     """Name and value of the quantity `name` in the unit typed by the user, such as "length 12 cm". value: in
     SI units; for a drag, index in DRAG_NAMES."""
     if name == "drag":
-        return f"{name}{NO_BREAK}{DRAG_NAMES[int(value)].replace('_', NO_BREAK)}"
+        return f"{name}{NO_BREAK_SPACE}{DRAG_NAMES[int(value)].replace('_', NO_BREAK_SPACE)}"
     converted, unit = in_typed_unit(view, name, np.array([value]))
-    unit = unit.replace("^3", "$^3$").replace("*", " ").replace(" ", NO_BREAK)
-    return f"{quantity_words(name)}{NO_BREAK}{converted[0]:.4g}{NO_BREAK}{unit}".rstrip(NO_BREAK)
+    unit = unit.replace("^3", "$^3$").replace("*", " ").replace(" ", NO_BREAK_SPACE)
+    return f"{quantity_words(name)}{NO_BREAK_SPACE}{converted[0]:.4g}{NO_BREAK_SPACE}{unit}".rstrip(
+        NO_BREAK_SPACE
+    )
 
 
 def given_quantities(view: ResultView) -> list[str]:

@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter, MaxNLocator, NullLocator
 
-from ....model.arm.quantities import SCALE_NAME, UNITS
+from ....model.arm.quantities import SCALE_NAMES, UNITS
 from ....results.file.view import ResultView
 from ..style import CRITICAL_FORCE_LABEL, LABELS
 from .quantities import shear_stiffness
@@ -40,7 +40,7 @@ def add_arm_scales(figure: Figure, views: Sequence[ResultView]) -> None:
 def _add_si_scales(figure: Figure, views: Sequence[ResultView]) -> None:
     """Adds a scale in SI units to every axis of the follower force, if all files belong to one arm."""
     load_word = "force" if all(view.load_kind == "force" for view in views) else "pressure"
-    factors = [view.quantities.get(SCALE_NAME[load_word]) for view in views]
+    factors = [view.quantities.get(SCALE_NAMES[load_word]) for view in views]
     units = {float(unit) for values in factors if values is not None for unit in np.ravel(values)}
     if len(units) != 1 or any(values is None for values in factors):
         return

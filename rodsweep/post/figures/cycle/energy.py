@@ -10,7 +10,7 @@ from matplotlib.ticker import MaxNLocator
 from ....results.file.view import ResultView
 from ...summary.errors import relative_power_error
 from ...summary.number_texts import rounded_text
-from ..arm.quantities import NO_BREAK
+from ..arm.quantities import NO_BREAK_SPACE
 from ..style import BLUE, GREEN, VERMILION, draw_legend_below
 from .selection import ENERGY_BUDGET_VARIABLE_NAMES, StoredCycle, chosen_cycles, power_in_tex
 
@@ -54,7 +54,7 @@ def _budget_words(cycle: StoredCycle) -> tuple[str, str]:
         rounded_text(cycle_values["injection_mean"], abs(cycle_values["injection_mean"]) * float(error))
     )
     unit = cycle.units.names[3]
-    power = f"mean power ${mean_text}$" + (f"{NO_BREAK}{unit}" if unit else "")
+    power = f"mean power ${mean_text}$" + (f"{NO_BREAK_SPACE}{unit}" if unit else "")
     return power, f"imbalance {cycle_values['energy_imbalance']:.1e}"
 
 

@@ -25,7 +25,7 @@ from ....sweep.points.points import ParameterLine
 from ...located_thresholds import LocatedThreshold, StoredThresholds
 from .. import style
 from .amplitudes.hopf_marks import HOPF_SYMBOL
-from .point_map import PointMap, axis_coordinates, cell_edges, point_map
+from .point_map import PointGrid, axis_coordinates, cell_edges, point_map
 from .selection import shared_and_own_of_arms
 from .units_and_labels import units_of_files
 
@@ -83,7 +83,7 @@ def draw_maps(view: ResultView, is_narrow: bool = False) -> tuple[Figure, str]:
     return figure, f"period and amplitude over {' and '.join(points.names)}{points.omissions}"
 
 
-def _common_parameters_text(view: ResultView, points: PointMap, is_in_si: bool) -> str:
+def _common_parameters_text(view: ResultView, points: PointGrid, is_in_si: bool) -> str:
     """Text of the parameters that are equal at all points; for an arm (`is_in_si`), of the quantities that
     are equal at all points."""
     if not is_in_si:
@@ -105,7 +105,7 @@ def map_panels(panel_count: int, is_narrow: bool) -> tuple[Figure, list[Axes]]:
     return figure, list(figure.subplots(*grid_shape, sharex=True, sharey=True, squeeze=False).ravel())
 
 
-def label_maps(panels: Sequence[Axes], points: PointMap) -> None:
+def label_maps(panels: Sequence[Axes], points: PointGrid) -> None:
     """Sets scales and labels of panels that share axes. Only panels at the left and at the bottom have
     labels."""
     for axes in panels:
@@ -114,7 +114,7 @@ def label_maps(panels: Sequence[Axes], points: PointMap) -> None:
         style.label_outer(axes, *(style.LABELS[name] for name in points.names))
 
 
-def _draw_statuses(axes: Axes, points: PointMap, statuses: NDArray[np.str_]) -> list[Artist]:
+def _draw_statuses(axes: Axes, points: PointGrid, statuses: NDArray[np.str_]) -> list[Artist]:
     """Fills the cells without a cycle with colours and hatches by status; returns legend entries. statuses:
     status of each cell, (ny, nx)."""
     unlisted_looks = cycle(UNLISTED_STATUS_LOOKS)
@@ -132,7 +132,7 @@ def _draw_statuses(axes: Axes, points: PointMap, statuses: NDArray[np.str_]) -> 
     return handles
 
 
-def _mark_unstable(axes: Axes, points: PointMap, unstable: NDArray[np.bool_]) -> list[Artist]:
+def _mark_unstable(axes: Axes, points: PointGrid, unstable: NDArray[np.bool_]) -> list[Artist]:
     """Draws an open marker in each cell of the mask `unstable`, (ny, nx); returns a list with the legend
     entry. The list is empty if no cell is marked."""
     if not unstable.any():
@@ -153,7 +153,7 @@ def _runs_of_cells(mask: NDArray[np.bool_], edges: Array) -> list[tuple[float, f
     return list(zip(starts.tolist(), (ends - starts).tolist(), strict=True))
 
 
-def _draw_hopf_lines(axes: Axes, points: PointMap, lines: Sequence[Array]) -> list[Artist]:
+def _draw_hopf_lines(axes: Axes, points: PointGrid, lines: Sequence[Array]) -> list[Artist]:
     """Draws lines of Hopf points; returns a list with the legend entry. lines: (x, y) of each line, (2, n).
     On these lines the leading growth rate is zero. Every zero is a Hopf point: no eigenvalue can pass through
     0, because the characteristic determinant is D(0) = 1."""
@@ -165,7 +165,7 @@ def _draw_hopf_lines(axes: Axes, points: PointMap, lines: Sequence[Array]) -> li
     return [Line2D([], [], label=f"Hopf points{symbol}", **keywords)] if lines else []
 
 
-def hopf_lines(points: PointMap, view: ResultView) -> list[Array]:
+def hopf_lines(points: PointGrid, view: ResultView) -> list[Array]:
     """Lines of Hopf points, (x, y) of shape (2, n) each, as contours of zero leading growth rate.
 
     Along each row the growth rate is interpolated linearly between the points of the file and the located
@@ -189,7 +189,7 @@ def hopf_lines(points: PointMap, view: ResultView) -> list[Array]:
     return [np.array([x_back(line[:, 0]), y_back(line[:, 1])]) for line in lines]
 
 
-def _hopf_points(points: PointMap, view: ResultView) -> Iterator[Array]:
+def _hopf_points(points: PointGrid, view: ResultView) -> Iterator[Array]:
     """Yields, for each row of a map, the positions of the located Hopf points, (n,)."""
     name, row_parameter = points.names
     stored_thresholds = StoredThresholds(view, name)

@@ -16,7 +16,7 @@ from ..style import is_logarithmic
 
 
 @dataclass(frozen=True, slots=True)
-class PointMap:
+class PointGrid:
     """Points of a file that form a grid over two parameters."""
 
     names: tuple[str, str]
@@ -33,7 +33,7 @@ class PointMap:
     """Clause on infinite values, which an axis cannot show; empty if all values are finite."""
 
 
-def point_map(view: ResultView) -> PointMap:
+def point_map(view: ResultView) -> PointGrid:
     """Points of a file as a map, without infinite values of the parameters. Raises InputError if the points
     do not form a grid over two parameters with at least two finite values each."""
     names = list(varied_parameters_at_points(view))
@@ -58,7 +58,7 @@ def point_map(view: ResultView) -> PointMap:
     omissions = left_out_clause(columns, names)
     constants = {name: float(values[0]) for name, values in columns.items() if name not in names}
     indices = indices[np.ix_(*finite[::-1])]
-    return PointMap((names[0], names[1]), x[finite[0]], y[finite[1]], indices, constants, omissions)
+    return PointGrid((names[0], names[1]), x[finite[0]], y[finite[1]], indices, constants, omissions)
 
 
 def varies_two_parameters_on_grid(view: ResultView) -> bool:

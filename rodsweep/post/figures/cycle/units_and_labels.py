@@ -11,7 +11,7 @@ from ....arrays import Array
 from ....model.units import value_in_unit, with_si_prefix
 from ....results.file.view import ResultView
 from ...tables.rows_and_columns import quantities_of_view
-from ..arm.quantities import NO_BREAK
+from ..arm.quantities import NO_BREAK_SPACE
 
 LENGTH_VARIABLE_NAMES = ("shape_x", "shape_y", "tip_x", "tip_y", "transient_x", "transient_y")
 """Names of variables that are lengths, with values over a period, along a shape, or over a transient."""
@@ -86,7 +86,7 @@ class CycleUnits:
 
     def time_text(self, time: float) -> str:
         """A time with its unit as text, such as `53.91 s`; only for SI units."""
-        return f"{time:.4g}{NO_BREAK}{self.names[1]}"
+        return f"{time:.4g}{NO_BREAK_SPACE}{self.names[1]}"
 
     def converted(self, values: dict[str, Array]) -> dict[str, Array]:
         """The variables `values` of a point, of any shape, by name, converted to these units."""

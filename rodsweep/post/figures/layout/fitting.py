@@ -25,7 +25,7 @@ STRIP_ASPECT = 0.25
 """Smallest ratio of height to width of a panel with a curve against time, in a figure with several panels."""
 MAX_FIGURE_HEIGHT = 9.5
 """Largest height of a figure, in inches: the printable height of a page."""
-MAX_PASSES = 6
+MAX_LAYOUT_PASSES = 6
 """Largest number of layouts. Several layouts are needed, because each change of the figure moves texts that
 have been measured."""
 MIN_PANEL_HEIGHT = 0.45
@@ -50,7 +50,7 @@ def fit_layout(figure: Figure, min_aspect: float = MIN_ASPECT) -> None:
     """
     width, height = figure.get_size_inches()
     figure.set_size_inches(width, height + SPARE_HEIGHT)
-    for _ in range(MAX_PASSES):
+    for _ in range(MAX_LAYOUT_PASSES):
         _position_panels(figure)
         changes = [_fit_legends(figure), _break_texts(figure), thin_ticks(figure)]
         if not any(changes):
@@ -58,7 +58,7 @@ def fit_layout(figure: Figure, min_aspect: float = MIN_ASPECT) -> None:
     # The texts fit; now remove the additional height. No text becomes longer by this.
     excess_height = _spare_height(figure, min_aspect)
     figure.set_size_inches(width, max(height, min(height + SPARE_HEIGHT - excess_height, MAX_FIGURE_HEIGHT)))
-    for _ in range(MAX_PASSES):
+    for _ in range(MAX_LAYOUT_PASSES):
         _position_panels(figure)
         if not thin_ticks(figure):
             break

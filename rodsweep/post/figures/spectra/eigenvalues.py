@@ -16,11 +16,11 @@ SPREAD_RATIO = 100.0
 this number."""
 LINEAR_RANGE_FRACTION = 1e-6
 """A symmetric logarithmic axis is linear at least up to this fraction of the largest modulus."""
-LINEAR_FRACTION = 0.1
+LINEAR_RANGE_QUANTILE = 0.1
 """Fraction of the eigenvalues that lie in the linear range of a symmetric logarithmic axis."""
 MODE_LOOKS = {True: (VERMILION, "s", "growing mode"), False: (BLUE, "o", "decaying mode")}
 """(colour, marker, legend entry) of growing modes (True) and decaying modes (False)."""
-MAX_NUMBERED = 8
+MAX_NUMBERED_MODES = 8
 """The first modes, up to this number, are labelled with their numbers."""
 
 
@@ -34,7 +34,7 @@ def draw_eigenvalues(view: ResultView) -> Figure:
     axes = figure.subplots()
     handles = _draw_markers(axes, growth, frequency, growth > 0)
     scale_if_spread(axes, growth, frequency)
-    for mode in range(min(mode_count, MAX_NUMBERED)):
+    for mode in range(min(mode_count, MAX_NUMBERED_MODES)):
         if np.isfinite(growth[mode]):
             eigenvalue = growth[mode], frequency[mode]
             axes.annotate(str(mode + 1), eigenvalue, (5, 5), textcoords="offset points", size=8)
@@ -83,5 +83,7 @@ def scale_if_spread(axes: Axes, x: np.ndarray | None, y: np.ndarray) -> None:
     for set_scale, values in ((axes.set_xscale, x), (axes.set_yscale, y)):
         moduli = np.abs(values[np.isfinite(values) & (values != 0)]) if values is not None else np.zeros(0)
         if moduli.size and moduli.max() > SPREAD_RATIO * moduli.min():
-            smallest = max(float(np.quantile(moduli, LINEAR_FRACTION)), moduli.max() * LINEAR_RANGE_FRACTION)
+            smallest = max(
+                float(np.quantile(moduli, LINEAR_RANGE_QUANTILE)), moduli.max() * LINEAR_RANGE_FRACTION
+            )
             set_scale("symlog", linthresh=10 ** np.floor(np.log10(smallest)))

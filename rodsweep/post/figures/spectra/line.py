@@ -14,7 +14,7 @@ from ....results.file.view import ResultView
 from ....sweep.points.points import lines_along
 from ...located_thresholds import LocatedThreshold, StoredThresholds
 from .. import style
-from ..arm.quantities import NO_BREAK, set_heading
+from ..arm.quantities import NO_BREAK_SPACE, set_heading
 from .eigenvalues import scale_if_spread
 
 ROOT_CHOICE_TEXTS = {
@@ -23,7 +23,7 @@ ROOT_CHOICE_TEXTS = {
     "all": "all stored roots",
 }
 """Description of each choice of roots, by name."""
-FOLLOWED_COUNT = 2
+FOLLOWED_ROOT_COUNT = 2
 """Number of roots that are followed along a line."""
 LOGARITHMIC_ROOT_RATIO = 10.0
 """If the ratio of the largest to the median modulus of the roots exceeds this number, the axis of the roots
@@ -31,12 +31,12 @@ is logarithmic except near 0."""
 THRESHOLD_DIGITS = 6
 """Number of significant digits of a threshold in the legend."""
 THRESHOLD_LOOKS = {
-    "onset": (rf"${style.SYMBOLS['F']}_*$", ":"),
-    "hopf": (rf"${style.SYMBOLS['F']}_{{**}}$", "--"),
+    "onset": (rf"${style.TEX_SYMBOLS['F']}_*$", ":"),
+    "hopf": (rf"${style.TEX_SYMBOLS['F']}_{{**}}$", "--"),
     "restabilization": ("restabilization", "--"),
 }
 """(symbol or word, line style) of each kind of threshold."""
-THRESHOLD_LINE: dict[str, Any] = {"color": "0.3", "lw": 0.9}
+THRESHOLD_LINE_STYLE: dict[str, Any] = {"color": "0.3", "lw": 0.9}
 """Colour and width of lines at thresholds."""
 SHADE_LOOK: dict[str, Any] = {"color": "0.92", "lw": 0, "zorder": 0}
 """Matplotlib style of the range in which the straight rod is unstable."""
@@ -81,7 +81,7 @@ def roots_to_follow(views: Sequence[ResultView], typed_roots: str | None) -> str
     If the numbers of gaps are equal, the smallest roots are followed, as in the paper. If a file stores only
     one root, the choice is "all".
     """
-    if any(len(view.variables["mode"]) < FOLLOWED_COUNT for view in views):
+    if any(len(view.variables["mode"]) < FOLLOWED_ROOT_COUNT for view in views):
         return "all"
     if typed_roots:
         return typed_roots
@@ -181,7 +181,7 @@ def _draw_direction_arrow(axes: Axes, w: Complex, colour: str) -> None:
 def threshold_text(threshold: LocatedThreshold) -> str:
     """Symbol and force of a threshold, as text."""
     word, _ = THRESHOLD_LOOKS[threshold.kind]
-    return f"{word} ={NO_BREAK}{threshold.position:#.{THRESHOLD_DIGITS}g}"
+    return f"{word} ={NO_BREAK_SPACE}{threshold.position:#.{THRESHOLD_DIGITS}g}"
 
 
 def mark_thresholds(axes: Axes, view: ResultView, name: str) -> list[LocatedThreshold]:
@@ -202,7 +202,7 @@ def mark_thresholds(axes: Axes, view: ResultView, name: str) -> list[LocatedThre
     thresholds = [threshold for threshold in located if isinstance(threshold, LocatedThreshold)]
     for threshold in thresholds:
         _, dashes = THRESHOLD_LOOKS[threshold.kind]
-        axes.axvline(threshold.position, ls=dashes, label=threshold_text(threshold), **THRESHOLD_LINE)
+        axes.axvline(threshold.position, ls=dashes, label=threshold_text(threshold), **THRESHOLD_LINE_STYLE)
     # The shaded range begins at the upper end of a bracketed Hopf point, and ends at the lower end of a
     # bracketed restabilization.
     starts, ends = list[float](), list[float]()

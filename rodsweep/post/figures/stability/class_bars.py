@@ -22,8 +22,8 @@ FURTHER_HOPF = "later"
 """Key in CROSSING_MARKS of a Hopf point at which a further pair of modes of an unstable rod becomes
 unstable."""
 CROSSING_MARKS = {
-    "onset": (style.BLUE, "o", rf"onset ${style.SYMBOLS['F']}_*$"),
-    "hopf": (style.VERMILION, "s", rf"Hopf ${style.SYMBOLS['F']}_{{**}}$"),
+    "onset": (style.BLUE, "o", rf"onset ${style.TEX_SYMBOLS['F']}_*$"),
+    "hopf": (style.VERMILION, "s", rf"Hopf ${style.TEX_SYMBOLS['F']}_{{**}}$"),
     FURTHER_HOPF: (style.VERMILION, "D", "further Hopf point"),
     "restabilization": (style.GREEN, "^", "restabilization"),
 }

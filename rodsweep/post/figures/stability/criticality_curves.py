@@ -7,7 +7,7 @@ from matplotlib.lines import Line2D
 
 from ....model.parameters import LINEAR_PARAMETERS
 from ....results.file.view import ResultView
-from ..style import SYMBOLS
+from ..style import TEX_SYMBOLS
 from ..style import number_in_tex as number_text
 
 CRITICALITY_LOOKS = {
@@ -40,7 +40,7 @@ def draw_hopf_curves_by_criticality(
     for i in range(len(variables["bautin_curve"])):
         x = variables[f"bautin_{line_parameter}"][i]
         y = variables[f"bautin_{row_parameter}"][i]
-        symbols = SYMBOLS[line_parameter], SYMBOLS[row_parameter]
+        symbols = TEX_SYMBOLS[line_parameter], TEX_SYMBOLS[row_parameter]
         label = rf"generalised Hopf point: ${symbols[0]}$ = {x:.6g}, ${symbols[1]}$ = {y:.6g}"
         handles += axes.plot(x, y, "kD", mfc="white", ls="", ms=5, label=label)
     return handles + (
@@ -69,7 +69,7 @@ def _draw_bautin_curves(
         lowest_text, highest_text = (
             number_text(float(end), 3) for end in (third_values.min(), third_values.max())
         )
-        label = rf"generalised Hopf points, ${SYMBOLS[third]}$ = ${lowest_text}$ to ${highest_text}$"
+        label = rf"generalised Hopf points, ${TEX_SYMBOLS[third]}$ = ${lowest_text}$ to ${highest_text}$"
         x, y = (variables[f"bautin_along_{name}"][mask] for name in (line_parameter, row_parameter))
         curves += axes.plot(x, y, "-.", color="tab:red", lw=1.2, label=label)
     return curves

@@ -10,7 +10,7 @@ from ....arrays import Array
 from ....results.file.view import ResultView
 from ....results.layouts.branch import SPECIAL_KINDS
 from ...stability_curves import curves_bounding_stability
-from ..style import GREEN, SYMBOLS
+from ..style import GREEN, TEX_SYMBOLS
 from .criticality_curves import draw_hopf_curves_by_criticality
 from .curve_labels import label_longest_curve, parts_at_lowest_force
 from .regions import DrawnPlane
@@ -112,7 +112,8 @@ def _mark_curve_folds(axes: Axes, view: ResultView, line_parameter: str, row_par
             row_value = variables[f"fold_{row_parameter}"][i]
             axes.plot(F, row_value, "ko", ms=4)
             label = (
-                rf"fold ${SYMBOLS[line_parameter]} = {F:.6g}$, ${SYMBOLS[row_parameter]} = {row_value:.6g}$"
+                rf"fold ${TEX_SYMBOLS[line_parameter]} = {F:.6g}$, "
+                rf"${TEX_SYMBOLS[row_parameter]} = {row_value:.6g}$"
             )
             handles.append(Line2D([], [], color="k", marker="o", ls="", ms=4, label=label))
     if "partial_beam_k1" in variables:

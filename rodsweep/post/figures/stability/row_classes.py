@@ -16,12 +16,12 @@ from ...crushing import material_of_rods
 
 CLASS_WORDS = {"class": STABILITY_CLASSES, "stable_states": STABLE_STATES}
 """(code, word) of the values of the variables `class` and `stable_states`, by variable."""
-ONSET = CROSSING_KINDS.index("onset")
+ONSET_CODE = CROSSING_KINDS.index("onset")
 """Code of an onset of oscillations."""
 CHANGE_TOLERANCE = 1e-9
 """A point closer to a change of class than this relative distance is not used, because its class is
 uncertain."""
-STABLE_CLASS = {
+STABLE_CLASS_ABOVE = {
     "onset": "oscillatory",
     "restabilization": "oscillatory",
     "real_again": "monotone",
@@ -54,7 +54,7 @@ def classes_between_crossings(
         low, high = _uncrushed_row(view, material, line_parameter, int(index))
         ends = [low, *positions[index, stored_indices].tolist(), high]
         crossings = [(int(kinds[index, i]), int(unstable_counts[index, i])) for i in stored_indices]
-        curve_words = ["monotone" if crossings[0] == (ONSET, 0) else ""]
+        curve_words = ["monotone" if crossings[0] == (ONSET_CODE, 0) else ""]
         curve_words += [class_above_crossing(*crossing) for crossing in crossings]
         if len(stored_indices) < counts[index] or np.isfinite(undecided_from[index]):
             curve_words[-1] = ""
@@ -77,7 +77,7 @@ def _uncrushed_row(
 def class_above_crossing(kind: int, unstable: int) -> str:
     """Class of a rod at F just above a crossing. unstable: number of unstable modes above the crossing; -1 if
     unknown."""
-    stable = STABLE_CLASS.get(CROSSING_KINDS[kind], "undecided")
+    stable = STABLE_CLASS_ABOVE.get(CROSSING_KINDS[kind], "undecided")
     if unstable > 0:
         return "flutter"
     return stable if unstable == 0 else "undecided"

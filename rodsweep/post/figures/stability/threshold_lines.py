@@ -15,7 +15,7 @@ from ....results.file.view import ResultView
 from .. import style
 from ..arm.quantities import set_heading
 
-CRITICAL_FORCES = (
+CRITICAL_FORCE_LOOKS = (
     ("F_onset", r"onset $\tilde F_*$", style.BLUE, "o", ":"),
     ("F_hopf", r"Hopf $\tilde F_{**}$", style.VERMILION, "s", "-"),
     ("F_restabilization", "restabilization", style.GREEN, "^", "--"),
@@ -56,7 +56,7 @@ def draw_lines_of_grid(view: ResultView, names: list[str], search: str) -> tuple
     if second_name:
         handles = _kind_entries(table)
         for value, shade in zip(view.parameter_values[second_name].tolist(), shades, strict=True):
-            label = f"${style.SYMBOLS[second_name]} = {style.number_in_tex(value)}$"
+            label = f"${style.TEX_SYMBOLS[second_name]} = {style.number_in_tex(value)}$"
             handles.append(Line2D([], [], color=shade, lw=2, label=label))
     _label_axes(axes, view, x_name, table)
     axes.set_ylabel(style.CRITICAL_FORCE_LABEL)
@@ -108,7 +108,7 @@ def draw_selected_lines(
             panel.set_ylabel(style.CRITICAL_FORCE_LABEL)
     handles = [
         Line2D([], [], color=colour, marker=marker, ms=3, lw=1.2, label=word)
-        for name, word, colour, marker, _ in CRITICAL_FORCES
+        for name, word, colour, marker, _ in CRITICAL_FORCE_LOOKS
         if np.isfinite(view.variables[name]).any()
     ]
     style.draw_legend_below(figure, handles, column_count=3)
@@ -128,7 +128,9 @@ def _draw_some_lines(panel: Axes, view: ResultView, x_name: str, second_name: st
         _draw_threshold_lines(panel, _abscissa_values(view, x_name), table[group[0]], {"ls": line, "ms": 2})
         values_of_group = view.parameter_values[second_name][group]
         values_text = ", ".join(style.number_in_tex(float(value), 3) for value in values_of_group)
-        text = f"${style.SYMBOLS[second_name]} = {values_text}$" + (" (one line)" if len(group) > 1 else "")
+        text = f"${style.TEX_SYMBOLS[second_name]} = {values_text}$" + (
+            " (one line)" if len(group) > 1 else ""
+        )
         panel.plot([], [], line, color="0.3", label=text)
     _label_axes(panel, view, x_name, table[indices])
     panel.legend(frameon=False, loc="lower left", bbox_to_anchor=(0.0, 1.0))
@@ -142,7 +144,7 @@ def _first_force_table(view: ResultView, x_name: str, second_name: str | None) -
     kept_axes = [names.index(name) for name in (second_name, x_name) if name]
     other_axes = tuple(axis for axis in range(len(names)) if axis not in kept_axes)
     tables = []
-    for force, *_ in CRITICAL_FORCES:
+    for force, *_ in CRITICAL_FORCE_LOOKS:
         values = view.variables[force].squeeze(other_axes)
         values = values if second_name and kept_axes[0] < kept_axes[1] else values.T
         tables.append(np.atleast_2d(values))
@@ -159,10 +161,10 @@ def _abscissa_values(view: ResultView, x_name: str) -> Array:
 def _draw_threshold_lines(axes: Axes, x: Array, values: Array, look: dict[str, Any]) -> list[Line2D]:
     """Draws lines of the three kinds of thresholds; returns legend entries of the kinds with a finite force.
     x: (n,); points at an infinite x are left out. values: first forces, (3, n), with NaN at gaps. look:
-    keywords for matplotlib that replace the look in CRITICAL_FORCES."""
+    keywords for matplotlib that replace the look in CRITICAL_FORCE_LOOKS."""
     is_finite = np.isfinite(x)
     handles = []
-    for forces, (_, word, colour, marker, line) in zip(values, CRITICAL_FORCES, strict=True):
+    for forces, (_, word, colour, marker, line) in zip(values, CRITICAL_FORCE_LOOKS, strict=True):
         style: dict[str, Any] = {"marker": marker, "ms": 3, "lw": 1.2, "color": colour, "ls": line} | look
         axes.plot(x[is_finite], forces[is_finite], **style)
         if np.isfinite(forces).any():
@@ -186,7 +188,7 @@ def _kind_entries(table: Array) -> list[Line2D]:
     has_force = np.isfinite(table).any(axis=(0, 2))
     return [
         Line2D([], [], color="0.3", marker=marker, ls=line, ms=3, lw=1.2, label=word)
-        for is_drawn, (_, word, _, marker, line) in zip(has_force, CRITICAL_FORCES, strict=True)
+        for is_drawn, (_, word, _, marker, line) in zip(has_force, CRITICAL_FORCE_LOOKS, strict=True)
         if is_drawn
     ]
 

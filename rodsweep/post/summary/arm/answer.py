@@ -7,7 +7,7 @@ import numpy as np
 
 from ....config.arm.status import NOT_SLENDER
 from ....model.arm.neglected import Validity
-from ....model.arm.quantities import SCALE_NAME, UNITS
+from ....model.arm.quantities import SCALE_NAMES, UNITS
 from ....results.file.view import ResultView
 from ....results.layouts.si_variables import VALIDITY_VARIABLES
 from ....results.layouts.thresholds import CROSSING_KINDS
@@ -217,7 +217,7 @@ def _branch_lines(view: ResultView, rods: np.ndarray) -> tuple[Lines, Lines]:
 def _row_lines(view: ResultView, rods: np.ndarray) -> tuple[Lines, Lines]:
     """Returns (lines about loads and frequencies at the first Hopf points, [])."""
     variables = view.variables
-    scale = np.broadcast_to(variables[SCALE_NAME[view.load_kind]], rods.shape)[rods]
+    scale = np.broadcast_to(variables[SCALE_NAMES[view.load_kind]], rods.shape)[rods]
     forces, frequency = _at_first_hopf(view, rods, "crossing_at")
     last_force = np.minimum(variables["F"][-1], view.point_columns["k1"].reshape(rods.shape)[rods])
     return _flutter_lines(view, forces * scale, last_force * scale, frequency), []

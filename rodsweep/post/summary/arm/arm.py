@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ....model.arm.drag import DRAG_NAMES
-from ....model.arm.quantities import ALL_QUANTITIES, ARM_SCALES, LOAD_OF_RATIO, SCALE_NAME, UNITS
+from ....model.arm.quantities import ALL_QUANTITIES, ARM_SCALES, LOAD_OF_RATIO, SCALE_NAMES, UNITS
 from ....model.parameters import OPTIONAL_PARAMETERS
 from ....model.units import value_in_unit, with_si_prefix
 from ....results.file.view import ResultView
@@ -197,7 +197,7 @@ def load_range_text(view: ResultView, F: np.ndarray, points: np.ndarray) -> str:
     """Range of the loads for the dimensionless forces F, (n,), as text. points: index of the point of each
     force, (n,)."""
     load = view.load_kind
-    return range_in_unit(view, F * _values_at(view.quantities[SCALE_NAME[load]], points), UNITS[load][0])
+    return range_in_unit(view, F * _values_at(view.quantities[SCALE_NAMES[load]], points), UNITS[load][0])
 
 
 def crossings_of_arm(view: ResultView) -> list[str]:

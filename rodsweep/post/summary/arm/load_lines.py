@@ -4,7 +4,7 @@ that compress an arm beyond the limit of the model."""
 import numpy as np
 
 from ....model.arm.neglected import COMPRESSION_LIMIT, DOUBTFUL_RATIO
-from ....model.arm.quantities import SCALE_NAME, UNITS
+from ....model.arm.quantities import SCALE_NAMES, UNITS
 from ....results.file.view import ResultView
 from ...crushing import material_of_rods
 from .arm import range_in_unit, region_of_arms
@@ -24,7 +24,7 @@ def flutter_force_line(view: ResultView, rods: np.ndarray) -> list[str]:
 
     Of two arms with tips of different size, the larger flutter pressure may be the smaller force.
     """
-    forces = (view.variables["F_hopf"] * view.variables[SCALE_NAME["force"]])[rods]
+    forces = (view.variables["F_hopf"] * view.variables[SCALE_NAMES["force"]])[rods]
     if view.load_kind == "force" or not np.isfinite(forces).any():
         return []
     extremes_text = extreme_arms_text(view, rods, forces, "smallest")
@@ -59,7 +59,7 @@ def compression_lines(view: ResultView, rods: np.ndarray) -> list[str]:
     largest = COMPRESSION_LIMIT * columns["k1"] * material_of_rods(view).relative_crushing_forces(tapers)
     limits = largest.reshape(rods.shape)[rods]
     kind = view.load_kind
-    scale = np.broadcast_to(view.variables[SCALE_NAME[kind]], rods.shape)[rods]
+    scale = np.broadcast_to(view.variables[SCALE_NAMES[kind]], rods.shape)[rods]
     lines = []
     for max_fraction, verdict in COMPRESSION_VERDICTS.items():
         if max_fraction * limits.min() < view.variables["F"].max():

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ....arrays import Array
 from ....config.document.reading import config_from_resolved
 from ....errors import InputError
-from ....sweep.points.groups import GROUP_POINTS, groups_along_longest_axis
+from ....sweep.points.groups import MAX_GROUP_POINTS, groups_along_longest_axis
 from ....sweep.points.points import Points
 from ....wording import enumeration
 from ...layouts import EXTENSION_RULES
@@ -208,10 +208,10 @@ def _is_stretch_unchanged(positions: Indices, new_length: int) -> NDArray[np.boo
     """Whether the group of each old value, (n,), is unchanged on the new axis. positions: new position of
     each old value, (n,). new_length: number of values on the new axis."""
     indices = np.arange(len(positions))
-    stretch_ends = (indices // GROUP_POINTS + 1) * GROUP_POINTS
+    stretch_ends = (indices // MAX_GROUP_POINTS + 1) * MAX_GROUP_POINTS
     same_length = np.minimum(stretch_ends, len(positions)) == np.minimum(stretch_ends, new_length)
-    has_moved = np.logical_or.reduceat(positions != indices, np.arange(0, len(positions), GROUP_POINTS))
-    return same_length & ~has_moved[indices // GROUP_POINTS]
+    has_moved = np.logical_or.reduceat(positions != indices, np.arange(0, len(positions), MAX_GROUP_POINTS))
+    return same_length & ~has_moved[indices // MAX_GROUP_POINTS]
 
 
 def _positions_in_list(header: ResultHeader, old: Points, new: Points) -> Indices:

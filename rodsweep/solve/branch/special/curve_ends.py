@@ -27,7 +27,7 @@ class CurveEndSettings:
 
 
 END_SETTINGS = CurveEndSettings()
-ROW_EDGE_MARGINS = (2, 3)
+ROW_EDGE_MARGIN_INDICES = (2, 3)
 """Indices, in `SpecialCurveProblem.margins`, of the two edges that are parallel to the rows."""
 END_REASON_BY_MARGIN = (
     *4 * (CurveEndReason.edge,),

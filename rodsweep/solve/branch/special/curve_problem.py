@@ -17,7 +17,7 @@ from ...orbit.orbit_mesh import mesh_of
 from ...unsolvable import Unsolvable, WorkLimitReached
 from ..bordered.matrix import BorderedMatrix
 from .augmented.fold_and_torus_functions import pair_nearest_unit_circle
-from .curve_ends import END_REASON_BY_MARGIN, END_SETTINGS, ROW_EDGE_MARGINS
+from .curve_ends import END_REASON_BY_MARGIN, END_SETTINGS, ROW_EDGE_MARGIN_INDICES
 from .curve_prediction import (
     length_before_crushing,
     orbit_with_parameters,
@@ -165,10 +165,10 @@ class SpecialCurveProblem:
         ends = float(self.margins(inner)[margin]), float(self.margins(outer)[margin])
         if ends[0] <= END_SETTINGS.max_edge_distance:
             return None
-        if margin not in ROW_EDGE_MARGINS:
+        if margin not in ROW_EDGE_MARGIN_INDICES:
             point = self.zero_between(inner, outer, lambda point: float(self.margins(point)[margin]), ends)
         else:
-            point = self.point_on_row(inner, outer, float(margin - ROW_EDGE_MARGINS[0]))
+            point = self.point_on_row(inner, outer, float(margin - ROW_EDGE_MARGIN_INDICES[0]))
             if self.roles.are_exchanged_at(outer):
                 # The error measured at `outer`, of the other parameter, does not apply.
                 return self.family(point).corrected_point_with_error(

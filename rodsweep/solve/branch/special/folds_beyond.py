@@ -33,7 +33,8 @@ class FoldsBeyondRange:
         return self.first_item + len(self.row_values)
 
     def items_to_solve(self, results: Mapping[int, dict[str, Array]]) -> list[int]:
-        """Numbers of the rows without a result. results: arrays `FOLDS_ARRAY`, (folds, 3), by number."""
+        """Numbers of the rows without a result. results: arrays with the name FOLDS_ARRAY, (folds, 3),
+        by number."""
         return [item for item in range(self.first_item, self.end_item) if item not in results]
 
     def row_of(self, item: int) -> int:
@@ -53,8 +54,8 @@ class FoldsBeyondRange:
         self, item: int, known_points: Callable[[int], tuple[SpecialPoint, ...]], limits: tuple[float, float]
     ) -> dict[str, Array]:
         """Folds of the row of a work item beyond the range `limits` of the parameter along the rows, as the
-        array `FOLDS_ARRAY`, (folds, 3). known_points: function from the index of a row to its special points,
-        within the range and beyond."""
+        array with the name FOLDS_ARRAY, (folds, 3). known_points: function from the index of a row to its
+        special points, within the range and beyond."""
         folds = [
             (point.parameter_value, point.period, point.tip_y_max)
             for point in known_points(self.row_of(item))
@@ -64,7 +65,8 @@ class FoldsBeyondRange:
         return {FOLDS_ARRAY: np.array(folds, dtype=float).reshape(-1, 3)}
 
     def special_points(self, results: Mapping[int, dict[str, Array]]) -> list[RowSpecialPoint]:
-        """The folds of all rows. results: arrays `FOLDS_ARRAY`, (folds, 3), of all work items, by number."""
+        """The folds of all rows. results: arrays with the name FOLDS_ARRAY, (folds, 3), of all work items,
+        by number."""
         return [
             RowSpecialPoint(
                 row_index=self.row_of(item),

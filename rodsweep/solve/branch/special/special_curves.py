@@ -42,7 +42,7 @@ class CurveIdentitySettings:
     max_interpolated_points: int = 4
     """Maximum number of points of the interpolating polynomial that predicts the next point, or the Hopf
     point where the cycles vanish."""
-    extrapolation_factor: float = 10.0
+    extrapolation_safety_factor: float = 10.0
     """Safety factor on the error of an extrapolated Hopf point. The errors of the points do not include the
     displacement of the Hopf point along the curve that is caused by the mesh."""
     max_hopf_distance: float = 0.01
@@ -244,5 +244,5 @@ def extrapolated_hopf_end(points: Sequence[CurvePoint]) -> HopfEnd | None:
     )
     # Both polynomials share the errors of the points, which their difference would not show.
     difference = abs(values[0] - values_of_lower_order[0]) + max(point.error for point in last_points)
-    error = CURVE_IDENTITY_SETTINGS.extrapolation_factor * difference
+    error = CURVE_IDENTITY_SETTINGS.extrapolation_safety_factor * difference
     return HopfEnd(float(values[0]), float(values[1]), float(error), float(values[2]))

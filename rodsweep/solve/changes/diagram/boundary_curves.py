@@ -26,7 +26,7 @@ from .boundary_problem import (
 
 
 @dataclass(frozen=True, slots=True)
-class Fold:
+class CurveFold:
     """Extremum of the coordinate `axis` (0 or 1) on a curve: values and errors of both parameters, and the
     eigenvalue at the extremum."""
 
@@ -51,7 +51,7 @@ class BoundaryCurve:
     values: Array
     frequency: Array
     growth_rate: Array
-    folds: tuple[Fold, ...]
+    folds: tuple[CurveFold, ...]
     end_reasons: tuple[BoundaryEndReason, BoundaryEndReason]
     scaled_points: Array
     """Scaled coordinates x, y and h = log|eigenvalue| of each point, (points, 3)."""
@@ -130,7 +130,7 @@ def _curve_with_folds(
 
 def _fold_between(
     problem: BoundaryCurveProblem, a: BoundaryPoint, b: BoundaryPoint, axis: int
-) -> Fold | None:
+) -> CurveFold | None:
     """The fold between the points a and b, where the tangent is normal to `axis`; None if not found."""
     boundary = problem.boundary
     tangent_error = _tangent_error(problem.boundary)
@@ -169,7 +169,9 @@ def _tangent_error(boundary: StabilityBoundary) -> float:
     return settings.double_tangent_error if boundary.eigenvalue_sign else settings.hopf_tangent_error
 
 
-def _fold_at(boundary: StabilityBoundary, solution: BoundarySolution, axis: int, curve_error: float) -> Fold:
+def _fold_at(
+    boundary: StabilityBoundary, solution: BoundarySolution, axis: int, curve_error: float
+) -> CurveFold:
     """The fold of coordinate `axis` at a point of a boundary. curve_error: error of its position along the
     curve."""
     axes = boundary.plane.axes
@@ -180,4 +182,4 @@ def _fold_at(boundary: StabilityBoundary, solution: BoundarySolution, axis: int,
         unit * (solution.error if i == axis else solution.error + curve_error) for i, unit in enumerate(units)
     ]
     growth_rate, frequency = boundary.eigenvalue(solution.v[2])
-    return Fold(axis, (first, second), frequency, growth_rate, (errors[0], errors[1]))
+    return CurveFold(axis, (first, second), frequency, growth_rate, (errors[0], errors[1]))

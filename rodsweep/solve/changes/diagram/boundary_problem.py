@@ -53,7 +53,7 @@ class BoundaryCurveSettings:
 
 
 BOUNDARY_CURVE_SETTINGS = BoundaryCurveSettings()
-CRUSHED_MARGIN = 4
+CRUSHED_MARGIN_INDEX = 4
 """Index of the margin that is negative for a crushed rod; the four edges of the plane have indices 0 to 3."""
 
 
@@ -119,7 +119,7 @@ class BoundaryCurveProblem:
     ) -> BoundaryPoint | None:
         """The point on the edge `margin` crossed by the step from the last of `previous` to `outer`; None for
         a crushed rod. Raises Unsolvable if the point is not found or lies beyond a second edge."""
-        if margin == CRUSHED_MARGIN:
+        if margin == CRUSHED_MARGIN_INDEX:
             return None
         # The margins are x, 1 - x, y and 1 - y: the quotient is the axis, the remainder the edge.
         axis, limit = divmod(margin, 2)
@@ -153,12 +153,15 @@ class BoundaryCurveProblem:
         if curve.end_reason is StopReason.max_solutions:
             return BoundaryEndReason.list_full
         if curve.end_reason is StopReason.zero_margin:
-            if curve.margin_index == CRUSHED_MARGIN:
+            if curve.margin_index == CRUSHED_MARGIN_INDEX:
                 return BoundaryEndReason.crushed
             return BoundaryEndReason.edge
         v, tangent = curve.solutions[-1]
-        if self.margins(curve.solutions[-1])[:CRUSHED_MARGIN].min() <= BOUNDARY_CURVE_SETTINGS.edge_tolerance:
+        if (
+            self.margins(curve.solutions[-1])[:CRUSHED_MARGIN_INDEX].min()
+            <= BOUNDARY_CURVE_SETTINGS.edge_tolerance
+        ):
             return BoundaryEndReason.edge
         next_point = BoundaryPoint(v + 2 * BOUNDARY_STEP_CONTROL.min_length * tangent, tangent)
-        is_crushed = self.margins(next_point)[CRUSHED_MARGIN] < 0
+        is_crushed = self.margins(next_point)[CRUSHED_MARGIN_INDEX] < 0
         return BoundaryEndReason.crushed if is_crushed else BoundaryEndReason.not_followed

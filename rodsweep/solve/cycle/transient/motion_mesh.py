@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from math import ceil
 
-from ....discretization.elements.elements import halve_elements
+from ....discretization.elements.elements import halved_element_edges
 from ....discretization.elements.mesh import Mesh, mesh_with_edges, uniform_mesh
 from ....discretization.elements.resolution import (
     RESOLUTION_SETTINGS,
@@ -93,7 +93,7 @@ def motion_meshes(rod: Rod, is_stored: bool) -> Iterator[Mesh]:
         edges = mesh.edges
         # The order of an element is limited; half the order on halved elements has as many unknowns.
         if order > RESOLUTION_SETTINGS.max_order:
-            edges = halve_elements(edges)
+            edges = halved_element_edges(edges)
             order = ceil(order / 2)
         mesh = mesh_with_edges(edges, order)
         if mesh.node_count > MOTION_MESH_SETTINGS.max_refined_nodes:

@@ -223,7 +223,7 @@ class TransientIntegration:
 
     def _newton_start_distance(self) -> float:
         """The relative distance between two returns below which Newton's method starts."""
-        distance = TRANSIENT_SETTINGS.max_newton_distance / TRANSIENT_SETTINGS.newton_divisor**self.attempts
+        distance = TRANSIENT_SETTINGS.max_newton_distance / TRANSIENT_SETTINGS.distance_divisor**self.attempts
         may_settle = self.record and self.returns < self.max_returns // 2
         return min(distance, TRANSIENT_SETTINGS.max_newton_distance_with_path) if may_settle else distance
 

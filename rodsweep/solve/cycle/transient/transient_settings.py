@@ -21,7 +21,7 @@ class TransientSettings:
     growth and decay are recognised only after later runs."""
     max_newton_distance: float = 0.1
     """Relative distance between two returns, below which Newton's method starts."""
-    newton_divisor: int = 10
+    distance_divisor: int = 10
     """After each attempt of Newton's method, `max_newton_distance` is divided by this number."""
     max_newton_distance_with_path: float = 1e-3
     """Upper limit of `max_newton_distance` for a motion with a stored path, in the first half of the allowed

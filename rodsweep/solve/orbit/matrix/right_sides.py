@@ -178,7 +178,7 @@ def write_variation_sides(
 @compiled_for_vectors
 def _write_stage_slope(points: Array, i: int, d: Array, out: Array) -> None:
     """Writes sum_j d_ij x_j for stage i into `out`, (n,). points: states x_j at the start and at the stages
-    of an interval, (s + 1, n). d: (s, s + 1)."""
+    of an interval, (s + 1, n). d: matrix from these states to derivatives at the stages, (s, s + 1)."""
     out[:] = 0.0
     for j in range(len(points)):
         for r in range(len(out)):

@@ -116,8 +116,8 @@ def _legend_entries_of_files(views: Sequence[ResultView], name: str) -> dict[int
     if not followed or len(set(directions)) < len(views):
         return {id(view): (style.escape_dollar_signs(view.path.stem), None) for view in views}
     entries = {
-        "up": (f"${style.SYMBOLS[name]}$ rising", True),
-        "down": (f"${style.SYMBOLS[name]}$ falling", False),
+        "up": (f"${style.TEX_SYMBOLS[name]}$ rising", True),
+        "down": (f"${style.TEX_SYMBOLS[name]}$ falling", False),
     }
     return {id(view): entries[direction] for view, direction in zip(views, directions, strict=True)}
 

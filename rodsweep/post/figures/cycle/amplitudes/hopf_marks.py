@@ -9,10 +9,10 @@ from matplotlib.lines import Line2D
 
 from ....located_thresholds import LocatedThreshold
 from ....summary.number_texts import rounded_text
-from ...style import SYMBOLS
+from ...style import TEX_SYMBOLS
 from .square_root import SquareRootLaw
 
-HOPF_SYMBOL = rf"{SYMBOLS['F']}_{{**}}"
+HOPF_SYMBOL = rf"{TEX_SYMBOLS['F']}_{{**}}"
 """Symbol F** in TeX, without dollar signs."""
 HOPF_WORDS = {"hopf": f"${HOPF_SYMBOL}$", "restabilization": "restabilization"}
 """Legend entry of a Hopf point by kind: as F grows, the straight rod becomes unstable, or stable again."""

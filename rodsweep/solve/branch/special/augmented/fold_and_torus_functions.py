@@ -38,7 +38,7 @@ class MinimallyAugmentedSettings:
     """The contraction rate assumed for the next cycle is the measured rate times this factor."""
     max_correction_ratio: float = 0.3
     """A new matrix is assembled if the ratio of the sizes of successive corrections exceeds this number."""
-    rounding_correction: float = 1e-8
+    max_rounding_correction: float = 1e-8
     """The iteration stops if a correction has at most this relative size but is not much smaller than the
     previous correction (ratio above `max_correction_ratio`; for a test function at a fixed cycle, above
     `converging_step_ratio` of `SPECIAL_POINT_SETTINGS`): the correction is then rounding error."""
@@ -165,7 +165,7 @@ def correct_until_converged(function: FoldTestFunction | TorusTestFunction, orbi
         change = abs(value - previous_value)
         if change <= SPECIAL_POINT_SETTINGS.test_function_tolerance or (
             change > SPECIAL_POINT_SETTINGS.converging_step_ratio * previous_change
-            and change <= MINIMALLY_AUGMENTED_SETTINGS.rounding_correction
+            and change <= MINIMALLY_AUGMENTED_SETTINGS.max_rounding_correction
         ):
             return
         # The iteration converges linearly, so a change that grows will not decrease later.

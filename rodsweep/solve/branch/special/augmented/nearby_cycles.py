@@ -103,7 +103,7 @@ class NearbyCycleSolver:
                 return orbit, value
             if previous_change and correction_ratio > MINIMALLY_AUGMENTED_SETTINGS.max_correction_ratio:
                 # Corrections that stall at this size are rounding, which a new matrix would not reduce.
-                if change_after_step <= MINIMALLY_AUGMENTED_SETTINGS.rounding_correction:
+                if change_after_step <= MINIMALLY_AUGMENTED_SETTINGS.max_rounding_correction:
                     return orbit, value
                 self._assemble_matrix(orbit)
                 # With a new matrix no ratio to the last change is known.
