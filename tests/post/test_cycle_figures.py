@@ -18,7 +18,7 @@ from rodsweep.discretization.elements.trigonometric import interpolate_samples, 
 from rodsweep.errors import EnvironmentIncomplete, InputError
 from rodsweep.post.figures import draw
 from rodsweep.post.figures.cycle.amplitudes.amplitude import draw_amplitude
-from rodsweep.post.figures.cycle.amplitudes.branches import amplitude_series
+from rodsweep.post.figures.cycle.amplitudes.amplitude_series import amplitude_series
 from rodsweep.post.figures.cycle.amplitudes.square_root import square_root_laws
 from rodsweep.post.figures.cycle.animation import prepared_animation
 from rodsweep.post.figures.cycle.energy import draw_energy

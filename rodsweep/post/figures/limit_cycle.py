@@ -7,7 +7,7 @@ from ...errors import InputError
 from ...results.file.view import ResultView
 from ..summary.summary_lines import varied_parameters_at_points
 from .cycle.amplitudes.amplitude import SERIES_LOOKS, draw_amplitude
-from .cycle.amplitudes.branches import abscissa_parameter
+from .cycle.amplitudes.amplitude_series import abscissa_parameter
 from .cycle.animation import FILM_SUFFIXES, write_animation
 from .cycle.energy import draw_energy
 from .cycle.maps import draw_maps

@@ -17,7 +17,7 @@ from ... import style
 from ...grid_slices import left_out_clause
 from ..selection import shared_and_own_of_arms, shared_and_own_texts
 from ..units_and_labels import units_of_files
-from .branches import AmplitudeSeries, abscissa_parameter, amplitude_series
+from .amplitude_series import AmplitudeSeries, abscissa_parameter, amplitude_series
 from .hopf_marks import draw_square_root_laws, mark_hopf_points
 from .square_root import square_root_laws
 
@@ -39,32 +39,32 @@ def draw_amplitude(views: Sequence[ResultView], is_narrow: bool = False) -> tupl
     name = abscissa_parameter(first_view)
     units = units_of_files(views, [np.arange(view.variables["status"].size) for view in views])
     pairs = zip(views, units, strict=True)
-    branches = [branch for view, own_units in pairs for branch in amplitude_series(view, name, own_units)]
-    if len(branches) > len(SERIES_LOOKS):
+    all_series = [series for view, own_units in pairs for series in amplitude_series(view, name, own_units)]
+    if len(all_series) > len(SERIES_LOOKS):
         raise InputError(
-            f"{first_view.path} gives {len(branches)} lines over {name}, and a figure has room for "
+            f"{first_view.path} gives {len(all_series)} lines over {name}, and a figure has room for "
             f"{len(SERIES_LOOKS)}: choose lines with --at, such as --at k1=150, or draw a full grid over two "
             "parameters as maps (--what maps)"
         )
-    has_amplitude = any(np.isfinite(branch.amplitude_y).any() for branch in branches)
+    has_amplitude = any(np.isfinite(series.amplitude_y).any() for series in all_series)
     style.require_content(first_view, has_amplitude, "amplitude")
     figure = Figure(figsize=(4.4, 8.4) if is_narrow else (8.6, 5.6), layout="constrained")
     panels = figure.subplots(*((4, 1) if is_narrow else (2, 2)), sharex=True).T.ravel()
-    common_text, branch_texts = _common_and_own_texts(branches, name)
-    handles = _draw_branches(panels, branches, branch_texts, _legend_entries_of_files(views, name))
+    common_text, series_texts = _common_and_own_texts(all_series, name)
+    handles = _draw_series(panels, all_series, series_texts, _legend_entries_of_files(views, name))
     colours = (colour for colour, _ in SERIES_LOOKS)
-    coloured = zip(branches, colours, strict=False)
-    marks = [(point, colour) for branch, colour in coloured for point in branch.hopf]
+    coloured = zip(all_series, colours, strict=False)
+    marks = [(point, colour) for series, colour in coloured for point in series.hopf]
     handles += mark_hopf_points(panels, marks)
     laws = [
         law
-        for branch_of_file in branches
-        for law in square_root_laws(branch_of_file.x, branch_of_file.amplitude_y, branch_of_file.hopf)
+        for series_of_file in all_series
+        for law in square_root_laws(series_of_file.x, series_of_file.amplitude_y, series_of_file.hopf)
     ]
     handles += draw_square_root_laws(panels[1], laws, units[0].names[0] * units[0].in_si)
     _label_axes(panels, name, units[0].panel_labels)
     for panel in panels:
-        style.scale_axis(panel, "x", np.unique(branches[0].x))
+        style.scale_axis(panel, "x", np.unique(all_series[0].x))
     if legend := [handle for handle in handles if handle.get_label()]:
         style.draw_legend_below(figure, legend, column_count=min(2, len(legend)))
     figure.suptitle(style.heading_text(first_view, common_text))
@@ -72,9 +72,9 @@ def draw_amplitude(views: Sequence[ResultView], is_narrow: bool = False) -> tupl
     return figure, f"amplitudes of the tip, period and power against {name}{max(omissions, key=len)}"
 
 
-def _draw_branches(
+def _draw_series(
     panels: Sequence[Axes],
-    branches: Sequence[AmplitudeSeries],
+    all_series: Sequence[AmplitudeSeries],
     texts: Sequence[str],
     direction_labels: dict[int, tuple[str, bool | None]],
 ) -> list[Line2D]:
@@ -82,17 +82,17 @@ def _draw_branches(
     `_legend_entries_of_files`."""
     handles = []
     unknown_statuses = set[str]()
-    for branch, text, (colour, marker) in zip(branches, texts, SERIES_LOOKS, strict=False):
+    for series, text, (colour, marker) in zip(all_series, texts, SERIES_LOOKS, strict=False):
         keywords: dict[str, Any] = {"color": colour, "marker": marker, "lw": 1.2, "ms": 3.5}
         # Open, larger markers do not hide the markers of the first file.
-        if branch.view is not branches[0].view:
+        if series.view is not all_series[0].view:
             keywords |= {"mfc": "none", "ms": 6.5, "ls": "--"}
-        word, upward = direction_labels[id(branch.view)]
+        word, upward = direction_labels[id(series.view)]
         handles.append(Line2D([], [], label=", ".join(filter(None, (word, text))), **keywords))
-        unknown_statuses |= _draw_branch(panels, branch, keywords)
+        unknown_statuses |= _draw_branch(panels, series, keywords)
         if upward is not None:
-            _draw_direction_arrow_on_line(panels, branch, upward, colour)
-    if any("unstable" in branch.status_names for branch in branches):
+            _draw_direction_arrow_on_line(panels, series, upward, colour)
+    if any("unstable" in series.status_names for series in all_series):
         handles.append(Line2D([], [], color="0.3", marker="o", label="unstable cycle", **UNSTABLE_LOOK))
     if unknown_statuses:
         label = ", ".join(sorted(unknown_statuses)) + " (at the top)"
@@ -123,33 +123,33 @@ def _legend_entries_of_files(views: Sequence[ResultView], name: str) -> dict[int
 
 
 def _draw_direction_arrow_on_line(
-    panels: Sequence[Axes], branch: AmplitudeSeries, upward: bool, colour: str
+    panels: Sequence[Axes], series: AmplitudeSeries, upward: bool, colour: str
 ) -> None:
     """Draws an arrow of the colour `colour` on a line, in each panel, in the direction of continuation.
     upward: whether the parameter increased."""
     arrow = {"arrowstyle": "-|>", "color": colour, "lw": 1.2, "mutation_scale": 14}
-    for axes, values in zip(panels, branch.measures, strict=True):
+    for axes, values in zip(panels, series.measures, strict=True):
         finite_indices = np.flatnonzero(np.isfinite(values))
         if len(finite_indices) < MIN_ARROW_POINTS:
             continue
         place = len(finite_indices) * 3 // 4
         ends = finite_indices[place - 1], finite_indices[place]
-        tail, head = ((branch.x[i], values[i]) for i in (ends if upward else ends[::-1]))
+        tail, head = ((series.x[i], values[i]) for i in (ends if upward else ends[::-1]))
         axes.annotate("", head, tail, arrowprops=arrow, zorder=4)
 
 
-def _common_and_own_texts(branches: Sequence[AmplitudeSeries], name: str) -> tuple[str, list[str]]:
+def _common_and_own_texts(all_series: Sequence[AmplitudeSeries], name: str) -> tuple[str, list[str]]:
     """Returns (text of the parameters that are equal for all lines, text of the other parameters of each
     line); for an arm, of the quantities in the units typed by the user. name: parameter on the horizontal
     axis."""
-    view = branches[0].view
-    if branches[0].units.in_si and all(branch.view is view for branch in branches):
+    view = all_series[0].view
+    if all_series[0].units.in_si and all(series.view is view for series in all_series):
         axis_names = [
             quantity for quantity, changed_name in PARAMETER_CHANGED_ALONG.items() if changed_name == name
         ]
-        numbers = [branch.first_number for branch in branches]
+        numbers = [series.first_number for series in all_series]
         return shared_and_own_of_arms(view, numbers, {name, *axis_names})
-    return shared_and_own_texts([branch.parameters for branch in branches])
+    return shared_and_own_texts([series.parameters for series in all_series])
 
 
 def _label_axes(panels: Sequence[Axes], name: str, labels: Sequence[str]) -> None:
@@ -168,23 +168,23 @@ def _label_axes(panels: Sequence[Axes], name: str, labels: Sequence[str]) -> Non
             axes.set_xlabel(style.LABELS[name])
 
 
-def _draw_branch(panels: Sequence[Axes], branch: AmplitudeSeries, keywords: dict[str, Any]) -> set[str]:
+def _draw_branch(panels: Sequence[Axes], series: AmplitudeSeries, keywords: dict[str, Any]) -> set[str]:
     """Draws a line in all panels, with open markers for unstable cycles; returns the statuses of points
     without a known amplitude."""
-    unstable = branch.status_names == "unstable"
+    unstable = series.status_names == "unstable"
     unknown_statuses: set[str] = set()
-    for axes, values in zip(panels, branch.measures, strict=True):
-        axes.plot(*branch.with_gap_at_onset(values), **keywords)
+    for axes, values in zip(panels, series.measures, strict=True):
+        axes.plot(*series.with_gap_at_onset(values), **keywords)
         if unstable.any():
-            axes.plot(branch.x[unstable], values[unstable], **keywords | UNSTABLE_LOOK)
-        unknown_statuses |= _mark_unknown_amplitudes(axes, branch, keywords["color"])
+            axes.plot(series.x[unstable], values[unstable], **keywords | UNSTABLE_LOOK)
+        unknown_statuses |= _mark_unknown_amplitudes(axes, series, keywords["color"])
     return unknown_statuses
 
 
-def _mark_unknown_amplitudes(axes: Axes, branch: AmplitudeSeries, colour: str) -> set[str]:
-    """Marks points without a known amplitude at the top of a panel, in the colour of the branch; returns the
+def _mark_unknown_amplitudes(axes: Axes, series: AmplitudeSeries, colour: str) -> set[str]:
+    """Marks points without a known amplitude at the top of a panel, in the colour of the series; returns the
     statuses of these points. Points with status missing are not marked."""
-    is_unknown = ~np.isin(branch.status_names, (*CYCLE_STATUSES, "straight", "missing"))
-    for x in branch.x[is_unknown]:
+    is_unknown = ~np.isin(series.status_names, (*CYCLE_STATUSES, "straight", "missing"))
+    for x in series.x[is_unknown]:
         axes.plot(x, 1.0, "x", color=colour, ms=5, clip_on=False, transform=axes.get_xaxis_transform())
-    return {str(word).replace("_", " ") for word in branch.status_names[is_unknown]}
+    return {str(word).replace("_", " ") for word in series.status_names[is_unknown]}

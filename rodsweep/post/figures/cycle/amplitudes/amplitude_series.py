@@ -80,7 +80,7 @@ def amplitude_series(
     )
     period = units.time * np.where(cycle, variables["period"].ravel(), np.nan)
     power = units.power * np.where(cycle, variables["injection_mean"].ravel(), np.nan)
-    branches = []
+    all_series = []
     stored_thresholds = StoredThresholds(view, "F")
     for line in lines_along(view.point_columns, name):
         changes = stored_thresholds.thresholds_on(line) if name == "F" else []
@@ -88,7 +88,7 @@ def amplitude_series(
         hopf_points = [
             change for change in changes if isinstance(change, LocatedThreshold) and change.changes_stability
         ]
-        branches.append(
+        all_series.append(
             AmplitudeSeries(
                 view=view,
                 parameters=line.parameters,
@@ -103,4 +103,4 @@ def amplitude_series(
                 first_number=int(indices[0]) + 1,
             )
         )
-    return branches
+    return all_series
