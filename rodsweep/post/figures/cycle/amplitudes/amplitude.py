@@ -89,7 +89,7 @@ def _draw_series(
             keywords |= {"mfc": "none", "ms": 6.5, "ls": "--"}
         word, upward = direction_labels[id(series.view)]
         handles.append(Line2D([], [], label=", ".join(filter(None, (word, text))), **keywords))
-        unknown_statuses |= _draw_branch(panels, series, keywords)
+        unknown_statuses |= _draw_one_series(panels, series, keywords)
         if upward is not None:
             _draw_direction_arrow_on_line(panels, series, upward, colour)
     if any("unstable" in series.status_names for series in all_series):
@@ -168,7 +168,7 @@ def _label_axes(panels: Sequence[Axes], name: str, labels: Sequence[str]) -> Non
             axes.set_xlabel(style.LABELS[name])
 
 
-def _draw_branch(panels: Sequence[Axes], series: AmplitudeSeries, keywords: dict[str, Any]) -> set[str]:
+def _draw_one_series(panels: Sequence[Axes], series: AmplitudeSeries, keywords: dict[str, Any]) -> set[str]:
     """Draws a line in all panels, with open markers for unstable cycles; returns the statuses of points
     without a known amplitude."""
     unstable = series.status_names == "unstable"
