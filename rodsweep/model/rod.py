@@ -89,20 +89,22 @@ class Rod:
             raise NotUniform(f"{self} is not a uniform rod of linear material")
         return self._coefficients
 
-    def local_coefficients(self, u: Array) -> LocalCoefficients:
-        """Coefficients of the transverse operator at points u, (points,), away from breaks of the profile."""
-        return self.material.local_coefficients(self.F, stiffnesses_and_drags_at_base(self.values), u)
+    def local_coefficients(self, u: Array, remainder: Array | None = None) -> LocalCoefficients:
+        """`RodMaterial.local_coefficients` of this rod at points u, (points,), away from breaks."""
+        at_base = stiffnesses_and_drags_at_base(self.values)
+        return self.material.local_coefficients(self.F, at_base, u, remainder)
 
     @staticmethod
-    def local_coefficients_of_rods(rods: Sequence["Rod"], u: Array) -> LocalCoefficients:
+    def local_coefficients_of_rods(
+        rods: Sequence["Rod"], u: Array, remainder: Array | None = None
+    ) -> LocalCoefficients:
         """Results of `local_coefficients` at points u of n rods with the same material, (n, *u.shape)."""
         if len(rods) == 1:
-            return LocalCoefficients(*(x[None] for x in rods[0].local_coefficients(u)))
+            return LocalCoefficients(*(x[None] for x in rods[0].local_coefficients(u, remainder)))
         shape = (len(rods), *(1,) * u.ndim)
         values = {name: np.array([getattr(rod, name) for rod in rods]).reshape(shape) for name in PARAMETERS}
-        coefficients = rods[0].material.local_coefficients(
-            values["F"], stiffnesses_and_drags_at_base(values), u
-        )
+        at_base = stiffnesses_and_drags_at_base(values)
+        coefficients = rods[0].material.local_coefficients(values["F"], at_base, u, remainder)
         full = (len(rods), *u.shape)
         return LocalCoefficients(*(x if x.shape == full else np.broadcast_to(x, full) for x in coefficients))
 
@@ -226,8 +228,7 @@ class Rod:
     ) -> CrossSections:
         """Derivatives of `sections(u)` with respect to the coordinate of a parameter; u: (points,). sections:
         `sections(u)`, if known."""
-        is_taper = parameter_name == "taper"
-        slopes = {"taper": 1.0} if is_taper else self._derivatives_by_coordinate(parameter_name)
+        slopes = self._derivatives_by_coordinate(parameter_name)
         known = self.sections(u) if sections is None else sections
         return self.material.section_derivatives(known, self.F, self.taper, slopes, u)
 
@@ -240,11 +241,10 @@ class Rod:
         return BalanceCoefficients(compliance, drag, F, axial_vector(nu, 3))
 
     def _derivatives_by_coordinate(self, parameter_name: str) -> dict[str, float]:
-        """Nonzero derivatives of force, compliances and drags with respect to the coordinate of a parameter.
+        """Nonzero derivatives of force, compliances, drags and taper by the coordinate of a parameter.
 
-        Keys are F, k1, k2, gamma1 and gamma3; keys of stiffnesses contain derivatives of compliances. Force,
-        compliances and drags are products of coordinates: a derivative is the product of all other factors.
-        """
+        Keys are F, k1, k2, gamma1, gamma3, taper; keys of stiffnesses contain derivatives of compliances.
+        Each quantity is a product of coordinates: a derivative is the product of all other factors."""
         unit_values = stiffnesses_and_drags_at_base({**self.values, parameter_name: 1.0})
         keys = PARAMETERS[parameter_name].scaled_names or (parameter_name,)
         return {key: float(1 / unit_values[key] if key in STIFFNESSES else unit_values[key]) for key in keys}

@@ -5,6 +5,8 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+from rodsweep.determinant.arm.elements.edges import sum_and_remainder
+from rodsweep.model.material.factors import factors_along
 from rodsweep.model.material.profile import FACTOR_NAMES, Profile
 from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
@@ -130,3 +132,26 @@ def test_coefficients_do_not_depend_on_those_computed_before(table):
     by_point = [rod.local_coefficients(u[i : i + 1]) for i in range(len(u))]
     for a, *each in zip(first, *by_point, strict=True):
         assert a == pytest.approx(np.concatenate(each), rel=1e-15)
+
+
+@pytest.mark.parametrize("taper", [0.015, 0.0268, 0.3, 0.999999, 1.0001, 60.0])
+def test_factors_of_a_cone_keep_their_digits(taper):
+    """Against rational numbers: at given u, and at positions u + remainder that no double holds."""
+    start = np.array([0.0, 0.3, 0.97, 1 - 1e-9, 0.1])
+    offset = np.array([1e-9, 0.1 / 3, 0.01 / 7, 1e-10 / 3, 0.9 - 1e-9 / 3])
+    u, remainder = sum_and_remainder(start, offset)
+    for position, exact in (((u, None), u), ((u, remainder), None)):
+        radii = np.sqrt(factors_along(None, taper, *position)["k1"])
+        for i, radius in enumerate(radii.tolist()):
+            point = Fraction(start[i]) + Fraction(offset[i]) if exact is None else Fraction(exact[i])
+            assert radius == pytest.approx(float(1 - (1 - Fraction(taper)) * point), rel=1e-15, abs=0)
+
+
+def test_factors_keep_their_digits_close_to_a_row():
+    """A factor that falls to 1e-6 of its value at the tip changes by the rounding of u itself."""
+    table = profile([0.0, 1.0], [1.0, 1e-6])
+    u, remainder = sum_and_remainder(np.array([0.999999]), np.array([1e-6 / 3]))
+    exact = 1 + (Fraction(1e-6) - 1) * (Fraction(0.999999) + Fraction(1e-6 / 3))
+    factor = factors_along(table, 1.0, u, remainder)["k3"][0]
+    assert factor == pytest.approx(float(exact), rel=1e-14, abs=0)
+    assert factors_along(table, 1.0, u)["k3"][0] != pytest.approx(float(exact), rel=1e-12, abs=0)

@@ -16,7 +16,7 @@ from ...model.dispersion import sampled_arm
 from ...model.material.rod_material import LocalCoefficients
 from ...model.rod import Rod
 from ..value import DeterminantValue, newton_correction_and_scales
-from .elements.edges import element_edges, halved_where_coarse
+from .elements.edges import element_edges, halved_where_coarse, sum_and_remainder
 from .elements.propagators import element_propagators, gauss_method
 from .elements.settings import ARM_ELEMENT_SETTINGS
 from .local_waves import ExponentSamples, exponent_samples, mean_wave_number_and_w_scale
@@ -126,7 +126,9 @@ def elements_for(rods: list[Rod], samples: CoefficientSamples, W: float) -> Prop
             break
         lengths = edges[1:] - edges[:-1]
         coefficients = np.array(
-            Rod.local_coefficients_of_rods(rods, edges[:-1, None] + lengths[:, None] * points)
+            Rod.local_coefficients_of_rods(
+                rods, *sum_and_remainder(edges[:-1, None], lengths[:, None] * points)
+            )
         )
         halved_edges = halved_where_coarse(edges, W, forces, coefficients)
         if halved_edges is edges:

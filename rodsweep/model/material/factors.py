@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ...arrays import Array
-from .profile import FACTOR_NAMES, RADIUS_POWERS, Profile
+from .profile import FACTOR_NAMES, RADIUS_POWERS, Profile, relative_radius
 
 FACTOR_SAMPLE_COUNT = 256
 """Number of samples between two neighbouring breaks of a profile in the search for the smallest factor."""
@@ -26,35 +26,41 @@ class FactorCacheSettings:
 FACTOR_CACHE_SETTINGS = FactorCacheSettings()
 
 
-def factors_along(profile: Profile | None, taper: Any, u: Array) -> dict[str, Array]:
+def factors_along(
+    profile: Profile | None, taper: Any, u: Array, remainder: Array | None = None
+) -> dict[str, Array]:
     """Stiffnesses and drags at points u, divided by their values at the base, by name: arrays of the shape of
     u. Callers must not write into these arrays, because they may be shared through the cache. taper: a
     number, or an array for n arms, (n, 1, ...), with which factors that depend on the taper have the shape
-    (n, *u.shape)."""
+    (n, *u.shape). remainder: exact coordinates of the points minus u, (*u.shape); None: u is exact."""
+    if remainder is None:
+        remainder = np.zeros(u.shape)
     if isinstance(taper, np.ndarray) or u.size > FACTOR_CACHE_SETTINGS.max_points:
-        return _factors_along(profile, taper, u)
+        return _factors_along(profile, taper, u, remainder)
     # Arrays cannot be keys of a cache, but their bytes can.
-    return _cached_factors(profile, float(taper), u.tobytes(), u.shape)
+    return _cached_factors(profile, float(taper), (u.tobytes(), remainder.tobytes()), u.shape)
 
 
 @lru_cache(maxsize=FACTOR_CACHE_SETTINGS.max_entries)
 def _cached_factors(
-    profile: Profile | None, taper: float, point_bytes: bytes, shape: tuple[int, ...]
+    profile: Profile | None, taper: float, point_bytes: tuple[bytes, bytes], shape: tuple[int, ...]
 ) -> dict[str, Array]:
     """The result of `factors_along`, cached by the bytes of the points, because the arms of a sweep over F
-    are evaluated at the same points. point_bytes, shape: bytes and shape of the array of points."""
-    return _factors_along(profile, taper, np.frombuffer(point_bytes).reshape(shape))
+    are evaluated at the same points. point_bytes: bytes of the arrays u and `remainder`. shape: their
+    shape."""
+    u, remainder = (np.frombuffer(values).reshape(shape) for values in point_bytes)
+    return _factors_along(profile, taper, u, remainder)
 
 
-def _factors_along(profile: Profile | None, taper: Any, u: Array) -> dict[str, Array]:
+def _factors_along(profile: Profile | None, taper: Any, u: Array, remainder: Array) -> dict[str, Array]:
     """The result of `factors_along`, computed anew."""
     if profile is None:
         factors = dict.fromkeys(FACTOR_NAMES, np.ones(u.shape))
     else:
-        factors = dict(zip(FACTOR_NAMES, profile.factors_at(u), strict=True))
+        factors = dict(zip(FACTOR_NAMES, profile.factors_at(u, remainder), strict=True))
     # A uniform rod skips the products with 1, the most frequent case.
     if isinstance(taper, np.ndarray) or taper != 1:
-        radius = 1 - (1 - taper) * u
+        radius = relative_radius(taper, u, remainder)
         square = radius * radius  # a power of NumPy takes as long as ten products
         radius_to_power = {2: square, 4: square * square}
         for name, exponent in RADIUS_POWERS.items():
@@ -75,11 +81,11 @@ def smallest_factor_along(profile: Profile | None, taper: float, name: str) -> f
         return smallest_end_factor
     column = FACTOR_NAMES.index(name)
     row_factors = [
-        (1 - (1 - taper) * u) ** exponent * row[column]
+        relative_radius(taper, u) ** exponent * row[column]
         for u, row in zip(profile.u, profile.rows, strict=True)
     ]
     # The product of a cubic and a power may have a minimum between rows, which only samples find.
     fractions = (np.arange(FACTOR_SAMPLE_COUNT) + 0.5) / FACTOR_SAMPLE_COUNT
     points = (profile.breaks[:-1, None] + np.diff(profile.breaks)[:, None] * fractions).ravel()
-    factors_between_rows = (1 - (1 - taper) * points) ** exponent * profile.factors_at(points)[column]
+    factors_between_rows = relative_radius(taper, points) ** exponent * profile.factors_at(points)[column]
     return min(*row_factors, float(factors_between_rows.min()))

@@ -8,6 +8,7 @@ logarithms in the drags gamma1 and gamma2 of a cone are not part of the taper.
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -105,16 +106,18 @@ class Profile:
         rows = []
         for u, row in zip(self.u, self.rows, strict=True):
             # The radius to its power multiplies the factor later, so it is divided out here.
-            factor = max(row[column], min_factor / (1 - (1 - taper) * u) ** exponent)
+            factor = max(row[column], min_factor / relative_radius(taper, u) ** exponent)
             rows.append(row[:column] + (factor,) + row[column + 1 :])
         return Profile(self.u, tuple(rows))
 
-    def factors_at(self, u: Array) -> Array:
-        """Factors at points u, in the order of `FACTOR_NAMES`, (factors, *u.shape). No u may be a break."""
+    def factors_at(self, u: Array, remainder: Array | float = 0.0) -> Array:
+        """Factors at points u, in the order of `FACTOR_NAMES`, (factors, *u.shape). No u may be a break.
+        remainder: exact coordinates of the points minus u, (*u.shape)."""
         breaks = self.breaks
         # At u = 1 the search returns one interval too many.
         interval = np.minimum(np.searchsorted(breaks[1:], u, side="right"), len(breaks) - 2)
-        from_left, from_right = u - breaks[interval], breaks[interval + 1] - u
+        from_left = u - breaks[interval] + remainder
+        from_right = breaks[interval + 1] - u - remainder
         # Powers of the distance from the nearer end keep the digits of a factor that falls to a small part of
         # its value at the other end.
         nearer_end = (from_right < from_left).astype(int)
@@ -122,6 +125,20 @@ class Profile:
         cubic, square, linear, constant = self._cubic_coefficients[:, :, nearer_end, interval]
         factors: Array = ((cubic * t + square) * t + linear) * t + constant
         return factors
+
+
+def relative_radius(taper: Any, u: Any, remainder: Any = 0.0) -> Any:
+    """Radius of a cone at points u, divided by the radius at the base, to nearly all digits.
+
+    taper: tip radius over base radius. remainder: exact coordinates of the points minus u; near a thin tip
+    the rounding of u itself changes the radius. All are numbers or arrays that broadcast.
+    """
+    # Both formulas add positive numbers only: the radius is summed from the thinner end.
+    from_tip = taper + (1 - taper) * (1 - u - remainder)
+    from_base = 1 + (taper - 1) * u
+    return (
+        np.where(taper < 1, from_tip, from_base) if np.ndim(taper) else from_tip if taper < 1 else from_base
+    )
 
 
 def _hermite_cubics(first: Array, last: Array, first_slope: Array, last_slope: Array) -> Array:

@@ -11,7 +11,7 @@ import numpy as np
 from ...arrays import Array
 from .factors import factors_along, smallest_factor_along
 from .laws import LAWS, LINEAR, Law, law_of
-from .profile import RADIUS_POWERS, Profile
+from .profile import RADIUS_POWERS, Profile, relative_radius
 
 
 class LocalCoefficients(NamedTuple):
@@ -118,11 +118,13 @@ class RodMaterial:
         forces = [self.relative_crushing_force(taper) for taper in tapers.ravel().tolist()]
         return np.array(forces).reshape(tapers.shape)
 
-    def local_coefficients(self, F: Any, at_base: Mapping[str, Any], u: Array) -> LocalCoefficients:
+    def local_coefficients(
+        self, F: Any, at_base: Mapping[str, Any], u: Array, remainder: Array | None = None
+    ) -> LocalCoefficients:
         """Coefficients at points u, (...,), under the force F. No point may be a break of the profile.
         at_base: stiffnesses and drags at u = 0, and taper, by name. F and at_base contain numbers, or arrays
-        for n arms, (n, 1, ...)."""
-        factors = factors_along(self.profile, at_base["taper"], u)
+        for n arms, (n, 1, ...). remainder: exact coordinates of the points minus u; None: u is exact."""
+        factors = factors_along(self.profile, at_base["taper"], u, remainder)
         law = self.constitutive_law
         # No load acts along the arm, so the force in every section is F.
         nu = 1 - law.shortening(F / (at_base["k1"] * factors["k1"]))
@@ -168,7 +170,7 @@ class RodMaterial:
                 drag[i] = slopes[name] * factors[name]
         if "taper" in slopes:
             # Derivative of log(radius).
-            growth = slopes["taper"] * u / (1 - (1 - taper) * u)
+            growth = slopes["taper"] * u / relative_radius(taper, u)
             for i, name in enumerate(("k1", "k2", "k3")):
                 compliance[i] -= sections.compliance[i] * RADIUS_POWERS.get(name, 0) * growth
             for i, name in enumerate(("gamma1", "gamma2", "gamma3")):

@@ -73,6 +73,15 @@ def _elements_per_length(W: float, squares: Array, tapers: Array, points: Array)
     return density
 
 
+def sum_and_remainder(a: Array, b: Array) -> tuple[Array, Array]:
+    """Returns (a + b rounded to doubles, rounding error of this sum), whose sum is a + b exactly (Knuth's
+    two-sum). a, b: of any shapes that broadcast. Near a thin tip the rounding of u alone would change the
+    radius, and with it D, by more than all products."""
+    total = a + b
+    rounded_b = total - a
+    return total, (a - (total - rounded_b)) + (b - rounded_b)
+
+
 def halved_where_coarse(edges: Array, W: float, forces: Array, coefficients: Array) -> Array:
     """Boundaries after halving every element that does not resolve the coefficients or, for |w| <= W, the
     exponentials of an arm; `edges` itself if none is halved. forces: F of n arms, (n,). coefficients:
