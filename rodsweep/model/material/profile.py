@@ -136,9 +136,9 @@ def relative_radius(taper: Any, u: Any, remainder: Any = 0.0) -> Any:
     # Both formulas add positive numbers only: the radius is summed from the thinner end.
     from_tip = taper + (1 - taper) * (1 - u - remainder)
     from_base = 1 + (taper - 1) * u
-    return (
-        np.where(taper < 1, from_tip, from_base) if np.ndim(taper) else from_tip if taper < 1 else from_base
-    )
+    if np.ndim(taper):
+        return np.where(taper < 1, from_tip, from_base)
+    return from_tip if taper < 1 else from_base
 
 
 def _hermite_cubics(first: Array, last: Array, first_slope: Array, last_slope: Array) -> Array:
