@@ -343,6 +343,7 @@ def beyond(diagram):
     return diagram
 
 
+@pytest.mark.long
 def test_a_narrow_diagram_has_the_stable_states_of_a_wide_one(beyond):
     beyond.write("wider.yaml", BEYOND.format(forces=[50, 100, 110, 120]))
     assert beyond("run", "wider.yaml", "-o", "wider.h5").returncode == 0
