@@ -80,8 +80,32 @@ def most_amplified_local_waves(rod: Rod) -> tuple[Array, Array]:
 def largest_growth_at_ends(rod: Rod) -> float:
     """The larger growth rate, in 1/tau2, of the most amplified local waves at the two ends of an arm: the
     points of `sampled_arm` are too far apart for a thin tip."""
-    ends = np.nextafter([0.0, 1.0], [1.0, 0.0])
-    return float(_most_amplified_waves(rod.F, rod.local_coefficients(ends))[0].max())
+    return float(_most_amplified_waves(rod.F, end_coefficients(rod))[0].max())
+
+
+def end_coefficients(rod: Rod) -> LocalCoefficients:
+    """Local coefficients at the clamp and at the tip of an arm, each (2,)."""
+    return rod.local_coefficients(np.nextafter([0.0, 1.0], [1.0, 0.0]))
+
+
+def local_wave_numbers(w: Any, F: float, coefficients: LocalCoefficients) -> Array:
+    """Bound (|sqrt z+| + |sqrt z-|)/2 of |q| in the exponentials exp(+-q u) at the rate w of a rod with the
+    local coefficients, z+- = (q1 +- q2)^2, in 1/L. w, coefficients: arrays of shapes that broadcast."""
+    nu, c2, c3, gamma2, gamma3, g = coefficients
+    shear, rotation = c2 * gamma2, c3 * gamma3
+    w = np.asarray(w, complex)
+    P = np.sqrt(w * (g * nu * gamma2 * c3 + shear * rotation * w))
+    middle = (shear + rotation) * w - F * c3 * g
+    bound: Array = (np.sqrt(np.abs(middle + 2 * P)) + np.sqrt(np.abs(middle - 2 * P))) / 2
+    return bound
+
+
+def wave_numbers_of_growth_at_ends(rod: Rod) -> Array:
+    """Wave numbers |q| of the exponentials at the two ends of an arm that grow at the largest rate of the
+    local waves there, (2,); 0 at an end at which all local waves decay."""
+    coefficients = end_coefficients(rod)
+    growth, _ = _most_amplified_waves(rod.F, coefficients)
+    return np.where(growth > 0, local_wave_numbers(growth, rod.F, coefficients), 0.0)
 
 
 def _most_amplified_waves(F: float, coefficients: LocalCoefficients) -> tuple[Array, Array]:

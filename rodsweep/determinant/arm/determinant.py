@@ -37,6 +37,9 @@ class ArmDeterminant:
         points, weights, coefficients = sampled_arm(rod)
         self.samples = exponent_samples(float(rod.F), coefficients, weights)
         with_arm_dimension = LocalCoefficients(*(x[None] for x in coefficients))
+        # The mean of c2 gamma2 + c3 gamma3 is the square of an exponent per w: a large drag slows all motion.
+        mean_drag = float(self.samples.squares[0] @ weights)
+        self._smallest_W = ARM_ELEMENT_SETTINGS.min_W / max(1.0, mean_drag)
         self._coefficient_samples = CoefficientSamples(
             points, with_arm_dimension, self.samples.squares[:, None]
         )
@@ -77,7 +80,7 @@ class ArmDeterminant:
         Existing propagators with the smallest such W are reused if W <= max_ratio * min_W; otherwise new
         propagators are made. max_ratio: by default `ARM_ELEMENT_SETTINGS.max_reuse_ratio`."""
         max_ratio = ARM_ELEMENT_SETTINGS.max_reuse_ratio if max_ratio is None else max_ratio
-        min_W = max(min_W, ARM_ELEMENT_SETTINGS.min_W)
+        min_W = max(min_W, self._smallest_W)
         for known_set in self._known_propagators:
             if min_W <= known_set[0] <= max_ratio * min_W:
                 return known_set

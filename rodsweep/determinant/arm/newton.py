@@ -28,6 +28,9 @@ class ArmRootSettings(KernelConstants):
 
     residual: float = 2.0
     """Factor of |D|, the residual after Newton's method, in the error of D at a root."""
+    min_remaining_ratio: float = 1e-8
+    """If a Newton step leaves at most this fraction of |w|, the next step starts from w = 0: the remainder
+    has lost half of its digits. The leading eigenvalue of a strongly pulled arm is exponentially small."""
     max_w_ratio: float = 16.0
     """If D is needed later at a larger |w|, at most this number times |w| of the roots, the roots use the
     elements for the larger |w|: at most four times as many. Rounding errors grow with their number."""
@@ -88,7 +91,8 @@ def _newton_from_guess(guess: complex, level: PropagatorsUpToW, last: float) -> 
         if not abs(step) < ROOT_NEWTON_SETTINGS.converging_step_ratio * last:
             return w, _root_error_from_value(w, value, level), last
         last = abs(step)
-        w -= step
+        # D(0) = 1 and D'(0) are exact where the digits of w are lost.
+        w = w - step if abs(w - step) > ARM_ROOT_SETTINGS.min_remaining_ratio * abs(w) else 0j
         if abs(w.imag) <= ROOT_NEWTON_SETTINGS.real_tolerance * abs(w):
             w = complex(w.real, 0.0)
         # The error needs D' at w + h too, which must also lie within W.

@@ -10,8 +10,10 @@ from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
+from ...model.dispersion import end_coefficients, local_wave_numbers
 from ..exponents import EXPONENT_SETTINGS
 from ..roots.roots import Roots
 from ..roots.settings import ROOT_NEWTON_SETTINGS, ROOT_SETTINGS
@@ -26,24 +28,32 @@ from .newton import (
     taylor_parabola_roots,
 )
 
+NOT_RESOLVED_AT_ENDS: Array = np.full(2, -math.inf)
+"""Largest wave numbers at the ends of an arm for a mesh that resolves waves by their mean only, (2,)."""
+
 
 def refine_mesh_eigenvalues(
-    mesh_w: Complex, determinant: ArmDeterminant, hull: EigenvalueHull, max_q: float, largest_w: float = 0.0
+    mesh_w: Complex,
+    determinant: ArmDeterminant,
+    hull: EigenvalueHull,
+    max_q: float,
+    largest_w: float = 0.0,
+    max_end_q: Array = NOT_RESOLVED_AT_ENDS,
 ) -> Roots:
     """Roots of an arm's D, refined from the eigenvalues in `mesh_w`, (n,), that approximate a root of D.
 
-    mesh_w: eigenvalues of a mesh. max_q: largest wave number |q| that the mesh resolves. largest_w: |w| at
-    which D will be needed afterwards. Infinite eigenvalues, which rounding makes finite, are dropped: they
-    lie outside the hull, have too large a |q|, or are far from every root.
+    mesh_w: eigenvalues of a mesh. max_q: largest wave number |q|, averaged along the arm, that the mesh
+    resolves. largest_w: |w| at which D will be needed afterwards. max_end_q: largest |q| that the elements at
+    the clamp and at the tip resolve, (2,); by default none. Infinite eigenvalues, which rounding makes
+    finite, are dropped: they lie outside the hull, have too large a |q|, or are far from every root.
     """
     settings = ROOT_NEWTON_SETTINGS
     guesses = [w.real + 0j if abs(w.imag) <= settings.real_tolerance * abs(w) else w for w in mesh_w.tolist()]
     in_box = [i for i, w in enumerate(guesses) if _is_in_eigenvalue_box(w, hull)]
-    wave_numbers, w_scales = mean_wave_numbers_and_w_scales(
-        np.array([guesses[i] for i in in_box], complex), determinant.samples
-    )
+    guesses_in_box: Complex = np.array([guesses[i] for i in in_box], complex)
+    w_scales, is_resolved = _scales_and_resolved(guesses_in_box, determinant, max_q, max_end_q)
     scale = dict(zip(in_box, w_scales.tolist(), strict=True))
-    resolved = [i for i, q in zip(in_box, wave_numbers.tolist(), strict=True) if q <= max_q]
+    resolved = np.array(in_box, int)[is_resolved].tolist()
     starts = [guesses[i] for i in resolved]
     _prepare_elements(determinant, max(map(abs, starts), default=0.0), largest_w)
     errors = dict(zip(resolved, root_errors(starts, determinant).tolist(), strict=True))
@@ -71,6 +81,22 @@ def refine_mesh_eigenvalues(
     # An eigenvalue inside the hull that approximates no root is spurious, or hides one that leads.
     spurious_count = sum(mesh_w[i].real > leading_growth for i in in_box if i not in near)
     return Roots(mesh_indices, w, error, displacement, wave_number, is_on_axis, spurious_count)
+
+
+def _scales_and_resolved(
+    w: Complex, determinant: ArmDeterminant, max_q: float, max_end_q: Array
+) -> tuple[Array, NDArray[np.bool_]]:
+    """Returns (w_scales, mask), (n,) each. w_scales: change of w over which an exponent of D changes by about
+    one, at each rate w, (n,). mask: whether the wave number at w is at most `max_q` in the mean or, where an
+    eigenfunction is confined to an end of the arm, at most `max_end_q`, (2,), at the clamp or at the tip."""
+    mean_wave_numbers, w_scales = mean_wave_numbers_and_w_scales(w, determinant.samples)
+    is_resolved = mean_wave_numbers <= max_q
+    others = np.flatnonzero(~is_resolved)
+    if len(others):
+        rod = determinant.rod
+        end_wave_numbers = local_wave_numbers(w[others, None], float(rod.F), end_coefficients(rod))
+        is_resolved[others] = (end_wave_numbers <= max_end_q).any(axis=1)
+    return w_scales, is_resolved
 
 
 def _prepare_elements(determinant: ArmDeterminant, needed_w: float, later_w: float) -> None:

@@ -31,6 +31,9 @@ class ResolutionSettings:
     """Mode n of a rod without load has |q| near (n - 1/2) pi; (n - mode_offset) pi is an upper estimate."""
     start_accuracy: float = 1e-4
     """Relative accuracy of a mesh if its eigenvalues are then refined to roots of D."""
+    max_waves_per_node: float = 2.0
+    """A mesh represents eigenvalues with wave number |q| <= `max_waves_per_node` * (elements * order), where
+    |q| is averaged along the rod; an element, with |q| <= `max_waves_per_node` * order / length."""
     max_order: int = 32
     """Maximum order of an element. A further element costs less than a higher order."""
     min_order: int = 6

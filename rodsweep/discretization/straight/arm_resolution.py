@@ -6,7 +6,7 @@ from math import ceil, hypot, log, pi
 import numpy as np
 
 from ...arrays import Array
-from ...model.dispersion import most_amplified_local_waves, sampled_arm
+from ...model.dispersion import most_amplified_local_waves, sampled_arm, wave_numbers_of_growth_at_ends
 from ...model.rod import Rod
 from ..elements.elements import Elements
 from ..elements.resolution import RESOLUTION_SETTINGS, max_element_count, required_order
@@ -20,6 +20,8 @@ class ArmResolutionSettings:
     """Maximum ratio of the radii at both ends of an element of a cone: order 12 gives eigenvalues to 1e-4."""
     profile_order_increase: int = 2
     """Increase of the order if coefficients vary within an element."""
+    end_length_ratio: float = 3.0
+    """Ratio of the lengths of successive elements towards an end of the arm at which a wave grows."""
 
 
 ARM_RESOLUTION_SETTINGS = ArmResolutionSettings()
@@ -43,6 +45,28 @@ def arm_mesh(rod: Rod, mode_count: int, accuracy: float) -> ArmMesh:
     wave_numbers = np.hypot(RESOLUTION_SETTINGS.wave_safety_factor * amplified_q, unloaded_q)
     elements = _elements_for_wave(rod, wave_numbers * weights, accuracy, RESOLUTION_SETTINGS.max_order)
     return ArmMesh(elements.edges, elements.order)
+
+
+def graded_towards_ends(rod: Rod, mesh: ArmMesh) -> ArmMesh:
+    """The mesh with elements graded towards an end of the arm, if the mesh does not represent the most
+    amplified local wave of this end; else `mesh` itself. The leading eigenfunctions of an arm with a thin
+    end, where g < 0, are confined to a small fraction of the last element."""
+    wave_numbers = wave_numbers_of_growth_at_ends(rod)
+    edges = np.array(mesh.edges)
+    first = _inner_edges(float(edges[1]), mesh.order, float(wave_numbers[0]))
+    last = _inner_edges(float(edges[-1] - edges[-2]), mesh.order, float(wave_numbers[1]))
+    if not len(first) and not len(last):
+        return mesh
+    return ArmMesh((0.0, *first, *mesh.edges[1:-1], *(1 - last[::-1]), 1.0), mesh.order)
+
+
+def _inner_edges(length: float, order: int, wave_number: float) -> Array:
+    """Distances from an end of the arm, increasing, at which the element of this end is divided, (n,): none
+    if elements of the order `order` and the length `length` represent the wave number."""
+    ratio = ARM_RESOLUTION_SETTINGS.end_length_ratio
+    wave_count = wave_number * length / (RESOLUTION_SETTINGS.max_waves_per_node * order)
+    count = ceil(log(max(wave_count, 1.0), ratio))
+    return length * ratio ** -np.arange(count, 0, -1.0)
 
 
 def arm_elements(rod: Rod, wave_number: float, accuracy: float, max_order: int | None = None) -> Elements:

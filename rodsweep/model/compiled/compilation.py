@@ -35,9 +35,13 @@ def compiled_for_vectors(function: Callable[P, R]) -> Callable[P, R]:
 def c_callback(function: Callable, signature: Any) -> Any:
     """A callback for C code: `function`, compiled at once for numba's signature `signature`. The attribute
     `address` of the callback is the C function pointer."""
-    callback: Any = CFunc(function, numba.core.sigutils.normalize_signature(signature), locals={}, options={})
+    # An exception could not pass through C: division by zero gives inf or nan, which the caller tests.
+    options = {"error_model": "numpy"}
+    callback: Any = CFunc(
+        function, numba.core.sigutils.normalize_signature(signature), locals={}, options=options
+    )
     # The key names the calling convention, as the same function may be compiled as a kernel too.
-    callback._cache = KernelCache(function, {"signature": "C"}, cache_directories())
+    callback._cache = KernelCache(function, {"signature": "C", **options}, cache_directories())
     callback.compile()
     return callback
 

@@ -25,8 +25,6 @@ from .problem import TransverseProblem
 class CandidateSettings(KernelConstants):
     """Settings for the eigenvalues of a mesh, and for the lines right of which eigenvalues are counted."""
 
-    max_waves_per_node: float = 2.0
-    """A mesh represents eigenvalues with wave number |q| <= `max_waves_per_node` * (elements * order)."""
     wide_gap_ratio: float = 0.2
     """Gaps between successive real parts, in which a line for a count may lie, are treated as equally wide if
     their width, divided by |Re w| of the left eigenvalue, exceeds this (stable rods)."""
@@ -73,12 +71,20 @@ class Candidates:
         if self.vectors is not None:
             return self
         own, other = self.roots, earlier.roots
-        nearest = np.abs(other.w[:, None] - own.w).min(axis=1, initial=np.inf)
-        is_new = nearest > CANDIDATE_SETTINGS.same_root_ratio * np.abs(other.w)
+        distances = np.abs(other.w[:, None] - own.w)
+        same_distances = CANDIDATE_SETTINGS.same_root_ratio * np.abs(other.w) + other.error
+        is_new = (distances > np.maximum(same_distances[:, None], own.error)).all(axis=1)
         united = [np.append(mine, more[is_new]) for mine, more in zip(own[:-1], other[:-1], strict=True)]
         w = united[Roots._fields.index("w")]
         order = np.lexsort((-w.imag, -w.real))
         return replace(self, roots=Roots._make([*(values[order] for values in united), own.unmatched_count]))
+
+    @property
+    def do_others_decay_faster(self) -> bool:
+        """Whether some eigenvalues are found, all of which grow, and none right of them is unresolved: the
+        others are then far left of the shift."""
+        w = self.roots.w
+        return len(w) > 0 and bool((w.real > 0).all()) and not self.roots.unmatched_count
 
     def worst_error(self, mode_count: int) -> float:
         """Largest relative error estimate among the first `mode_count` roots."""
@@ -103,6 +109,22 @@ class CountComparison:
         return self.is_line_clear and self.count.number == self.found_count
 
 
+@dataclass(frozen=True, slots=True)
+class CheckedCandidates:
+    """Candidates, with the comparison with a count if requested, and with their largest error."""
+
+    candidates: Candidates
+    comparison: CountComparison | None
+    error_over_limit: float
+    """Largest ratio of an error to the allowed error; a ratio of at most
+    `SearchSettings.max_error_over_limit` ends the search."""
+
+    @property
+    def sort_key(self) -> tuple[bool, float]:
+        """Sort key, best candidates first: those with an undecided count last; then by increasing error."""
+        return self.comparison is not None and self.comparison.count.number is None, self.error_over_limit
+
+
 def candidates_on_mesh(
     problem: TransverseProblem, mesh: AnyMesh, requested_count: int, needs_vectors: bool, to_rounding: bool
 ) -> Candidates:
@@ -124,9 +146,7 @@ def candidates_on_mesh(
         # After an error inside PETSc its objects are unusable.
         destroy_pooled_solvers()
         failure = cause_of(error)
-    kept_roots = problem.refined_roots(
-        mesh_eigenvalues, CANDIDATE_SETTINGS.max_waves_per_node * mesh.element_count * mesh.order
-    )
+    kept_roots = problem.refined_roots(mesh_eigenvalues, mesh)
     vectors = vectors[:, kept_roots.mesh_indices] if vectors is not None else None
     return Candidates(mesh, kept_roots, vectors, failure)
 

@@ -29,7 +29,7 @@ from ...discretization.elements.resolution import (
     finer_resolution,
     resolution_for,
 )
-from ...discretization.straight.arm_resolution import ArmMesh, arm_mesh
+from ...discretization.straight.arm_resolution import ArmMesh, arm_mesh, finer_arm_mesh, graded_towards_ends
 from ...discretization.straight.transverse_mesh import AnyMesh, finer_mesh
 from ...model.dispersion import largest_growth_at_ends, most_amplified_local_waves, most_amplified_wave
 from ...model.rod import Rod
@@ -57,6 +57,11 @@ class TransverseProblem(ABC):
         """
         return
 
+    def move_shift_left(self, leftmost: float) -> None:
+        """Moves the shift to the left of the leftmost eigenvalue found, whose real part is `leftmost`. The
+        shift of a uniform rod stays."""
+        return
+
     @abstractmethod
     def mesh_for(self, mode_count: int, accuracy: float) -> Any:
         """The mesh expected to give `mode_count` leading eigenvalues with relative error below `accuracy`."""
@@ -75,9 +80,9 @@ class TransverseProblem(ABC):
         return uniform_solver(mesh) if isinstance(mesh, Resolution) else arm_solver(mesh)
 
     @abstractmethod
-    def refined_roots(self, mesh_eigenvalues: Complex, max_q: float) -> Roots:
-        """Roots of D refined from the eigenvalues `mesh_eigenvalues` of a mesh, (n,). max_q: largest wave
-        number |q| that the mesh represents."""
+    def refined_roots(self, mesh_eigenvalues: Complex, mesh: Any) -> Roots:
+        """Roots of D refined from the eigenvalues `mesh_eigenvalues` of `mesh`, (n,); eigenvalues whose wave
+        numbers the mesh does not represent are dropped."""
 
     @abstractmethod
     def count(self, line: float, roots: Roots | KnownRoots | None = None) -> EigenvalueCount:
@@ -116,9 +121,10 @@ class UniformProblem(TransverseProblem):
         requested_mesh = resolution_for(float(waves.max()), accuracy)
         return max(requested_mesh, finer_resolution(mesh), key=lambda each: each.unknown_count)
 
-    def refined_roots(self, mesh_eigenvalues: Complex, max_q: float) -> Roots:
+    def refined_roots(self, mesh_eigenvalues: Complex, mesh: Any) -> Roots:
         """Roots of D refined from the eigenvalues `mesh_eigenvalues`, (n,), as in
         `TransverseProblem.refined_roots`."""
+        max_q = RESOLUTION_SETTINGS.max_waves_per_node * mesh.element_count * mesh.order
         return refined_roots(mesh_eigenvalues, self.rod.coefficients, self._sqrt_frequency_bound, max_q)
 
     def count(self, line: float, roots: Roots | KnownRoots | None = None) -> EigenvalueCount:
@@ -152,17 +158,28 @@ class ArmProblem(TransverseProblem):
         growth = KRYLOV_SETTINGS.shift_over_growth_rate * largest_growth_at_ends(self.rod)
         self.shift = max(self.shift, min(max(2 * self.shift, growth), right_end))
 
+    def move_shift_left(self, leftmost: float) -> None:
+        left = KRYLOV_SETTINGS.shift_over_leftmost * leftmost
+        self.shift = left if left < self.shift else KRYLOV_SETTINGS.shift_reduction * self.shift
+
     def mesh_for(self, mode_count: int, accuracy: float) -> ArmMesh:
         return arm_mesh(self.rod, mode_count, accuracy)
 
-    def refined_roots(self, mesh_eigenvalues: Complex, max_q: float) -> Roots:
+    def finer_mesh(self, mesh: Any) -> ArmMesh:
+        return graded_towards_ends(self.rod, finer_arm_mesh(self.rod, mesh))
+
+    def refined_roots(self, mesh_eigenvalues: Complex, mesh: Any) -> Roots:
         """Roots of D refined from `mesh_eigenvalues`, (n,); if a proof is requested, and until one fails,
         only from the eigenvalues that the proof needs."""
         needed_mask, max_abs_w = self._eigenvalues_for_proof(mesh_eigenvalues)
-        # Infinite values are dropped by the refinement; all others keep their indices.
-        return roots_of_arm(
-            np.where(needed_mask, mesh_eigenvalues, np.inf), self._determinant, self._hull, max_q, max_abs_w
+        max_q = (
+            RESOLUTION_SETTINGS.max_waves_per_node
+            * mesh.order
+            * np.append(mesh.element_count, 1 / mesh.lengths[[0, -1]])
         )
+        # Infinite values are dropped by the refinement; all others keep their indices.
+        w = np.where(needed_mask, mesh_eigenvalues, np.inf)
+        return roots_of_arm(w, self._determinant, self._hull, max_q[0], max_abs_w, max_q[1:])
 
     def _eigenvalues_for_proof(self, mesh_eigenvalues: Complex) -> tuple[NDArray[np.bool_], float]:
         """Returns (mask, max_abs_w). mask: True for each of the `mesh_eigenvalues` that the proof will need,

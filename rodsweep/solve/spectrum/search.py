@@ -6,13 +6,13 @@ the roots of D and the count of eigenvalues determine the next solve. The search
 error and count are satisfactory.
 """
 
-from dataclasses import dataclass, replace
-from math import inf
+from dataclasses import replace
 from typing import Any
 
 from ...discretization.elements.resolution import RESOLUTION_SETTINGS, mesh_accuracy
 from ...model.rod import Rod
-from .candidates import Candidates, CountComparison, candidates_on_mesh, compare_with_count
+from .candidates import Candidates, CheckedCandidates, candidates_on_mesh, compare_with_count
+from .candidates import CountComparison as Comparison
 from .problem import TransverseProblem, meshes_text, transverse_problem
 from .search_settings import SEARCH_SETTINGS
 from .spectrum import (
@@ -26,22 +26,6 @@ from .spectrum import (
 from .status import SpectrumStatus
 
 __all__ = ["SpectrumSearch", "Spectrum", "SpectrumRequest", "solve_spectrum", "warm_up"]
-
-
-@dataclass(frozen=True, slots=True)
-class CheckedCandidates:
-    """Candidates, with the comparison with a count if requested, and with their largest error."""
-
-    candidates: Candidates
-    comparison: CountComparison | None
-    error_over_limit: float
-    """Largest ratio of an error to the allowed error; a ratio of at most
-    `SEARCH_SETTINGS.max_error_over_limit` ends the search."""
-
-    @property
-    def sort_key(self) -> tuple[bool, float]:
-        """Sort key, best candidates first: those with an undecided count last; then by increasing error."""
-        return self.comparison is not None and self.comparison.count.number is None, self.error_over_limit
 
 
 def solve_spectrum(rod: Rod, request: SpectrumRequest) -> Spectrum:
@@ -68,6 +52,8 @@ class SpectrumSearch:
         self.request = request
         self.modes = request.modes
         self.needs_vectors = request.vector_node_count > 0
+        # Eigenvectors of two meshes cannot be united, and without a count nothing shows what is missing.
+        self.can_unite = request.certify and self.problem.is_count_slow and not self.needs_vectors
         has_bound = self.problem.has_bound
         self.accuracy = mesh_accuracy(request.accuracy, self.needs_vectors) if has_bound else request.accuracy
         self.mesh = self.problem.mesh_for(request.modes, self.accuracy)
@@ -75,8 +61,10 @@ class SpectrumSearch:
         self.requested_count = default_count if requested_count is None else requested_count
         self.best: CheckedCandidates | None = None
         self.stalled_refinements = self.failure_count = 0
-        self.disagreement: CheckedCandidates | None = None
-        """The last candidates that disagree with a count of eigenvalues."""
+        self.incomplete: Candidates | None = None
+        """The last candidates that lack eigenvalues; later candidates are united with them."""
+        self.disagreement: Comparison | None = None
+        """The comparison of the last count that disagrees with the eigenvalues found."""
         self.is_leader_unresolved = False
         """Whether on one of the meshes neither the eigenvalues nor a count showed which eigenvalue leads."""
         self.last_failure = ""
@@ -108,9 +96,12 @@ class SpectrumSearch:
 
     def check_candidates(self, candidates: Candidates) -> CheckedCandidates | None:
         """The candidates with their count and error; None if more eigenvalues or a finer mesh are needed."""
-        if self.disagreement is not None:
-            candidates = candidates.united_with(self.disagreement.candidates)
+        if self.incomplete is not None:
+            candidates = candidates.united_with(self.incomplete)
         if len(candidates.roots.w) < self.modes:
+            if self.can_unite and candidates.do_others_decay_faster:
+                self.request_decaying_modes(candidates)
+                return None
             # Too few eigenvalues converged to roots of D, or SLEPc failed: a finer mesh.
             self.failure_count += bool(candidates.failure)
             # If few eigenvalues are roots, the mesh is too coarse: further eigenvalues would be no roots.
@@ -119,7 +110,7 @@ class SpectrumSearch:
             self.mesh = self.problem.finer_mesh(self.mesh)
             return None
         if self.count_needs_decaying_modes(candidates):
-            self.request_decaying_modes(len(candidates.roots.w))
+            self.request_decaying_modes(candidates)
             return None
         certify = self.request.certify
         comparison = compare_with_count(self.problem, candidates.roots, self.modes) if certify else None
@@ -128,12 +119,13 @@ class SpectrumSearch:
             self.mesh = self.problem.finer_mesh(self.mesh)
             return None
         if comparison is not None and comparison.count.number is not None and not comparison.agrees:
-            self.disagreement = CheckedCandidates(candidates, comparison, inf)
+            self.disagreement = comparison
+            self.incomplete = candidates
             self.request_missing_eigenvalues(comparison.count.number, comparison.found_count)
             return None
         return CheckedCandidates(candidates, comparison, self.error_over_limit(candidates, comparison))
 
-    def error_over_limit(self, candidates: Candidates, comparison: CountComparison | None) -> float:
+    def error_over_limit(self, candidates: Candidates, comparison: Comparison | None) -> float:
         """The largest ratio of an error of the candidates to the allowed error. Eigenvectors, and eigenvalues
         without a proof, also need a mesh whose eigenvalues are close to the roots of D."""
         ratio = candidates.worst_error(self.modes) / self.request.accuracy
@@ -168,14 +160,21 @@ class SpectrumSearch:
             return False
         return len(candidates.roots.w) < SEARCH_SETTINGS.max_unproved_modes or self.problem.is_countable
 
-    def request_decaying_modes(self, found_count: int) -> None:
-        """Requests more eigenvalues, because all `found_count` eigenvalues grow and a count also needs
-        decaying modes; refines the mesh if fewer eigenvalues were found than requested."""
+    def request_decaying_modes(self, candidates: Candidates) -> None:
+        """Requests eigenvalues left of `candidates`, which all grow, because a count also needs decaying
+        modes: with the shift at the left of `candidates` or, if the last shift or mesh gave no further
+        eigenvalue, more eigenvalues; refines the mesh if fewer were found than requested."""
         self.is_leader_unresolved = True
+        found_count = len(candidates.roots.w)
         if found_count < self.requested_count:
             self.mesh = self.problem.finer_mesh(self.mesh)
-        min_count = 2 * found_count + SEARCH_SETTINGS.spare_mode_count
-        self.request_eigenvalues(max(self.requested_count, min_count))
+        earlier_count = 0 if self.incomplete is None else len(self.incomplete.roots.w)
+        self.incomplete = candidates
+        if not self.can_unite or (found_count == earlier_count and found_count >= self.modes):
+            min_count = 2 * found_count + SEARCH_SETTINGS.spare_mode_count
+            self.request_eigenvalues(max(self.requested_count, min_count))
+        else:
+            self.problem.move_shift_left(float(candidates.roots.w.real.min()))
 
     def request_eigenvalues(self, requested_count: int) -> None:
         """Requests eigenvalues, and refines the mesh until it has enough unknowns for their number."""
@@ -203,10 +202,11 @@ class SpectrumSearch:
         """The spectrum of the best candidates; without candidates, a failed spectrum with the reason."""
         if self.best is not None:
             return _best_spectrum(self.best, self.problem, self.request)
-        if self.disagreement is not None and (comparison := self.disagreement.comparison) is not None:
+        if self.disagreement is not None:
+            counted = self.disagreement.count.number
             reason = (
-                f"the winding number counts {comparison.count.number} eigenvalues right of a vertical line, "
-                f"but the meshes give {comparison.found_count}"
+                f"the winding number counts {counted} eigenvalues right of a vertical line, but the meshes "
+                f"give {self.disagreement.found_count}"
             )
             return failed_spectrum(SpectrumStatus.modes_missing, self.request, reason)
         if self.is_leader_unresolved:

@@ -27,6 +27,11 @@ class KrylovSettings:
 
     shift_over_growth_rate: float = 1.05
     """Shift divided by the growth rate of the most amplified wave. This growth rate is above most spectra."""
+    shift_over_leftmost: float = 0.5
+    """Shift divided by the smallest growth rate found, if smaller ones are missing: below 1, because the next
+    eigenvalue lies to the left, and not 0, where growth rates are far apart."""
+    shift_reduction: float = 0.01
+    """The shift is multiplied by this number if the previous shift gave no further eigenvalue."""
     max_dense_unknowns: int = 300
     """Matrices with up to this number of unknowns are factorised as dense: as fast as the sparse
     factorisation, with smaller rounding errors."""

@@ -205,3 +205,61 @@ def test_eigenvalues_right_of_the_line_of_a_count_are_found(rod):
     assert found.unstable_count == int((dense.real > 0).sum())
     leading = dense[np.lexsort((-dense.imag, -dense.real))][:4]
     np.testing.assert_allclose(found.eigenvalues, leading, rtol=1e-5)
+
+
+SWELLING = RodMaterial(law="neo_hookean", section="swelling")
+STRONG_PULLS = {
+    "growth rates over five decades": (
+        Rod(F=-0.752, k1=4801.0, k2=18.14, gamma3=6.78e-6, taper=0.0517, material=SWELLING),
+        10,
+        [29921141.960089818, 14394371.418672776, 6230379.630984758, 1353824.499039975],
+    ),
+    "one eigenvalue far right of all others": (
+        Rod(F=-0.2617, k1=295.4, k2=5.134, gamma3=2.227e-6, taper=0.09488),
+        2,
+        [3319221.8558797245, 74.07515813467127, -3.540543462128108, -30.263508137510172],
+    ),
+    "a leading eigenvalue of 2e-203": (
+        Rod(
+            F=-71.53477942927429,
+            k1=150.97883954970362,
+            k2=290.0504936618152,
+            gamma3=2.6396053647370833e-05,
+            taper=0.06857019025471348,
+        ),
+        0,
+        [-2.177006998066638e-203, -143.7971269693847, -582.5761179259405, -1317.3592142786076],
+    ),
+    "entries of propagators of very different sizes": (
+        Rod(F=-2.08e4, k1=2420.0, k2=34.13, gamma3=0.2225, taper=30.63, material=RUBBER),
+        18,
+        [19837558.42620787, 19082939.80988208, 13491190.195591455, 12925343.798193436],
+    ),
+}
+
+
+@pytest.mark.parametrize(("rod", "unstable_count", "expected"), STRONG_PULLS.values(), ids=STRONG_PULLS)
+def test_strongly_pulled_cones_have_all_eigenvalues(rod, unstable_count, expected):
+    """References: a propagator in 80-bit arithmetic that shares no code with this one."""
+    found = solve_spectrum(rod, SpectrumRequest(4, 1e-10, certify=True))
+    assert (found.status, found.certified) == (SpectrumStatus.ok, True)
+    assert found.unstable_count == unstable_count
+    assert (np.abs(found.eigenvalues - expected) <= found.error_estimate).all()
+
+
+def test_a_large_rotational_drag_slows_the_modes_of_a_cone():
+    """gamma3 = 1e6 and 1e10: all motion is slow, and w gamma3 tends to a limit. With elements for |w| = 16
+    there was no eigenvalue at all."""
+    slow, slower = (
+        solve_spectrum(
+            Rod(F=10.0, k1=1e4, k2=1e3, gamma3=g, taper=0.5), SpectrumRequest(3, 1e-10, certify=False)
+        )
+        for g in (1e6, 1e10)
+    )
+    assert slow.status == slower.status == SpectrumStatus.ok
+    expected = [
+        4.345917035039398e-06 + 1.4023332100043779e-05j,
+        -3.102618750971156e-05 + 9.233420547358184e-06j,
+    ]
+    assert (np.abs(slow.eigenvalues[[0, 2]] - expected) <= slow.error_estimate[[0, 2]]).all()
+    np.testing.assert_allclose(1e10 * slower.eigenvalues, 1e6 * slow.eigenvalues, rtol=1e-4)

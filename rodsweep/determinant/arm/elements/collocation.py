@@ -100,6 +100,7 @@ def fill_propagator_terms(
     shape = (ARM_ELEMENT_SETTINGS.stages, ARM_ELEMENT_SETTINGS.width)
     values = np.empty((MINORS, *shape))
     rates = np.empty((MINORS, *shape))
+    largest_terms = np.empty((MINORS, shape[1]))
     repeated = np.empty((6, *shape))
     matrices = np.empty((shape[0], 1 + shape[0], shape[1]))
     for arm in range(len(F)):
@@ -111,7 +112,7 @@ def fill_propagator_terms(
                 _copy_to_simd_lane(matrix, lane, matrices)
             start = b * ARM_ELEMENT_SETTINGS.lane_count
             batch = terms[arm, start : start + ARM_ELEMENT_SETTINGS.lane_count]
-            work = values, rates
+            work = values, rates, largest_terms
             count = max(count, _fill_batch_terms((F[arm], W), repeated, (method, matrices), work, batch))
     return count
 
@@ -141,7 +142,7 @@ def _fill_batch_terms(
     load: tuple[float, float],
     coefficients: Array,
     method: tuple[IntegrationMatrices, Array],
-    work: tuple[Array, Array],
+    work: tuple[Array, Array, Array],
     terms: Array,
 ) -> int:
     """Fills `terms`, the coefficients of propagators, for one batch of elements; returns the number of terms
@@ -149,13 +150,14 @@ def _fill_batch_terms(
 
     terms: (LANES, MAX_TERMS, PADDED). load: (F, W). coefficients: (6, STAGES, WIDTH). method: integrals, and
     `elimination_matrix` of each lane's element. work: values and rates of the minors, (MINORS, STAGES,
-    WIDTH) each.
+    WIDTH) each, and the largest terms of the propagators, (MINORS, WIDTH).
     """
     F, W = load
     (Q, weights), matrices = method
-    values, rates = work
+    values, rates, largest_terms = work
     values[:] = 0.0
     rates[:] = 0.0
+    largest_terms[:] = 0.0
     for n in range(terms.shape[1]):
         start = 1.0 if n == 0 else 0.0  # the initial values belong to the term of w^0
         fill_drag_rates(W, coefficients, values, rates)
@@ -179,7 +181,7 @@ def _fill_batch_terms(
         add_start_value(YM, start, values)
         # The rates are needed once more, with the complete y^m, for the value at the end of the element.
         fill_y_theta_rates(coefficients, values, rates)
-        if _write_end_terms(weights, rates, n, terms):
+        if _write_end_terms(weights, rates, n, largest_terms, terms):
             return n + 1
     return terms.shape[1] + 1
 
@@ -208,23 +210,25 @@ def _integrate_eliminated(matrices: Array, rates: Array, out: Array) -> None:
 
 
 @compiled
-def _write_end_terms(weights: Array, rates: Array, n: int, terms: Array) -> bool:
-    """Writes the propagators' coefficients of w^n into terms[:, n]; returns whether all are negligible.
-    terms: (LANES, MAX_TERMS, PADDED). rates: rates of minors, (MINORS, STAGES, WIDTH). weights: (STAGES,)."""
+def _write_end_terms(weights: Array, rates: Array, n: int, largest_terms: Array, terms: Array) -> bool:
+    """Writes the propagators' coefficients of w^n into terms[:, n]; returns whether all are negligible, each
+    compared with the largest coefficient of the same entry of the propagator: entries have different units,
+    and at a strong pull their sizes differ by many powers of ten.
+
+    terms: (LANES, MAX_TERMS, PADDED). rates: rates of minors, (MINORS, STAGES, WIDTH). weights: (STAGES,).
+    largest_terms: largest modulus of the coefficients of lower powers of w, (MINORS, WIDTH), updated here."""
     integrals = np.empty((MINORS, ARM_ELEMENT_SETTINGS.width))
     _integrate_to_end(weights, rates, integrals)
     is_negligible = True
     for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
-        size = 0.0
-        constant_size = 0.0
         for row in range(MINORS):
             for k in range(MINORS):
-                entry = integrals[row, k * ARM_ELEMENT_SETTINGS.lane_count + lane]
-                entry += 1.0 if n == 0 and k == row else 0.0
+                column = k * ARM_ELEMENT_SETTINGS.lane_count + lane
+                entry = integrals[row, column] + (1.0 if n == 0 and k == row else 0.0)
                 terms[lane, n, MINORS * k + row] = entry
-                size = max(size, abs(entry))
-                constant_size = max(constant_size, abs(terms[lane, 0, MINORS * k + row]))
-        is_negligible = is_negligible and size <= ARM_ELEMENT_SETTINGS.negligible_term_ratio * constant_size
+                max_size = ARM_ELEMENT_SETTINGS.negligible_term_ratio * largest_terms[row, column]
+                is_negligible = is_negligible and abs(entry) <= max_size
+                largest_terms[row, column] = max(largest_terms[row, column], abs(entry))
     return is_negligible
 
 

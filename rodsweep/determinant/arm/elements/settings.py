@@ -30,7 +30,7 @@ class ArmElementSettings(KernelConstants):
     million times between two rows has its pole a millionth of their distance away."""
     min_W: float = 16.0
     """Smallest W, the bound of |w| up to which elements are valid; for smaller |w| the load and the taper,
-    not w, determine the length of elements."""
+    not w, determine the length of elements. A mean of c2 gamma2 + c3 gamma3 above 1 divides it."""
     w_bound_ratio: float = 1.1
     """New elements are valid up to W = w_bound_ratio |w|: the reserve is for slightly larger |w|."""
     max_reuse_ratio: float = 1e3
@@ -38,7 +38,7 @@ class ArmElementSettings(KernelConstants):
     costs as much as thirty evaluations of D on twice as many elements."""
     max_reuse_ratio_if_compared: float = 1.5
     """Value of `max_reuse_ratio` for comparisons of D on different elements; near 1: the elements differ."""
-    max_elements: int = 4000
+    max_elements: int = 16000
     """Maximum number of elements of an arm. An arm that needs more elements is not resolved."""
     stages: int = 12
     """Number of Gauss points of an element. Eleven integrate exp(3.2) to 3e-17, twelve to 1e-19: the twelfth
@@ -48,7 +48,8 @@ class ArmElementSettings(KernelConstants):
     max_terms: int = 28
     """Maximum number of powers of w in a propagator; 24 suffice for exp(3.2)."""
     negligible_term_ratio: float = 1e-18
-    """The series of a propagator in w ends at the first term below this fraction of the leading term."""
+    """The series of a propagator in w ends at the first term that is, in every entry of the propagator, below
+    this fraction of the largest earlier term of the entry."""
     max_cached_arms: int = 16
     """Maximum number of arms whose propagators are cached. It limits the memory and changes no result."""
 
