@@ -25,6 +25,7 @@ from .branch_errors import (
     BranchDerivatives,
     branch_newton_tolerance,
 )
+from .multiplier_sensitivity import MultiplierSensitivity
 
 
 def measured_branch_calibration(
@@ -53,10 +54,21 @@ def measured_branch_calibration(
             FINER_MESH_SETTINGS.max_matrix_distance,
         )
         difference[:] = _differences_between_meshes(rough, multipliers, fine_orbit, derivatives)
+    sensitivity = MultiplierSensitivity.of_cycle(solved)
+    multiplier_errors = [
+        sensitivity.measured_error(float(difference[MULTIPLIER_ERROR_INDEX]), removed)
+        for difference, removed in zip(differences, (1.0, fraction), strict=True)
+    ]
     # The mesh that is finer in time removes only a fraction of the error in time.
     differences[1] /= fraction
+    differences[:, MULTIPLIER_ERROR_INDEX] = multiplier_errors
     calibration = calibration_of(mesh, differences[0, :-1], differences[1, :-1], orbit, previous_calibration)
-    return BranchCalibration(calibration, differences[:, -1], relative_tip_y_sensitivity(rough, derivatives))
+    return BranchCalibration(
+        calibration,
+        differences[:, -1],
+        relative_tip_y_sensitivity(rough, derivatives),
+        sensitivity,
+    )
 
 
 def _border_of_comparison(orbit: Orbit, derivatives: BranchDerivatives) -> Array:

@@ -16,14 +16,15 @@ import numpy as np
 
 from ...arrays import Array
 from ...determinant.exponents import EXPONENT_SETTINGS
-from ..cycle.accuracy.calibration import Calibration
+from ..cycle.accuracy.calibration import ERROR_COUNT, Calibration
 from ..cycle.accuracy.calibration_settings import CALIBRATION_SETTINGS
 from ..cycle.accuracy.cheapest_mesh import cheapest_mesh
-from ..cycle.accuracy.cycle_errors import CYCLE_ERROR_SETTINGS, CycleErrors
+from ..cycle.accuracy.cycle_errors import CYCLE_ERROR_SETTINGS, MULTIPLIER_ERROR_INDEX, CycleErrors
 from ..cycle.accuracy.refinement import newton_tolerance
 from ..orbit.orbit_mesh import OrbitMesh
 from ..orbit.path_differences import EXTREMUM_INDEX, PATH_INDEX, PERIOD_INDEX, Y_INDEX
 from .bordered.scale import ArcLengthScale
+from .multiplier_sensitivity import MultiplierSensitivity
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -106,11 +107,13 @@ class BranchDerivatives:
 class BranchCalibration:
     """Measured errors of a mesh at a cycle of a branch. at_equal_parameter: errors at equal parameter.
     parameter_errors: relative errors of the parameter at equal deflection, caused by the mesh in space and by
-    the mesh in time, (2,). sensitivity: |(p/y) dy/dp|, p: parameter, y: largest tip y."""
+    the mesh in time, (2,). sensitivity: |(p/y) dy/dp|, p: parameter, y: largest tip y.
+    multiplier_sensitivity: sensitivity of the largest multiplier at this cycle."""
 
     at_equal_parameter: Calibration
     parameter_errors: Array
     sensitivity: float
+    multiplier_sensitivity: MultiplierSensitivity
 
     @property
     def mesh(self) -> OrbitMesh:
@@ -182,45 +185,54 @@ class BranchCalibration:
         return replace(self, at_equal_parameter=calibration, parameter_errors=growth * self.parameter_errors)
 
     def interpolate(
-        self, other: "BranchCalibration", fraction: float, sensitivity: float
+        self,
+        other: "BranchCalibration",
+        fraction: float,
+        sensitivity: float,
+        multiplier_sensitivity: MultiplierSensitivity,
     ) -> "BranchCalibration":
         """Interpolated errors of a cycle on the branch between two measured cycles with the same mesh. other:
         errors of the second measured cycle. fraction: fraction of the arc length from the first measured
-        cycle to the second at which the interpolated cycle lies. sensitivity: |(p/y) dy/dp| of the
-        interpolated cycle."""
-        sensitivities = np.maximum([self.sensitivity, other.sensitivity, sensitivity], 1.0)
+        cycle to the interpolated one. sensitivity, multiplier_sensitivity: of the interpolated cycle."""
         first, second = self.at_equal_parameter, other.at_equal_parameter
-        calibration = replace(
-            first,
-            space_errors=_interpolated_at_equal_parameter(
-                first.space_errors, second.space_errors, fraction, sensitivities
-            ),
-            time_errors=_interpolated_at_equal_parameter(
-                first.time_errors, second.time_errors, fraction, sensitivities
-            ),
-            # The interpolated errors contain their growth since the last measurement.
-            error_growth=np.ones(2),
-        )
         parameter_errors = _log_interpolated_errors(self.parameter_errors, other.parameter_errors, fraction)
-        return BranchCalibration(calibration, parameter_errors, sensitivity)
+        # The interpolated errors contain their growth since the last measurement.
+        start = replace(first, error_growth=np.ones(2))
+        interpolated = BranchCalibration(start, parameter_errors, sensitivity, multiplier_sensitivity)
+        sensitivities = self._sensitivities, other._sensitivities
+        parts = [
+            interpolated._errors_between(errors, sensitivities, fraction)
+            for errors in ((first.space_errors, second.space_errors), (first.time_errors, second.time_errors))
+        ]
+        calibration = replace(interpolated.at_equal_parameter, space_errors=parts[0], time_errors=parts[1])
+        return replace(interpolated, at_equal_parameter=calibration)
 
+    @property
+    def _sensitivities(self) -> Array:
+        """Factors, (5,), by which errors of the cycle at equal parameter grow: `sensitivity`, at least 1; for
+        the multiplier times the factor of `multiplier_sensitivity`."""
+        factors = np.full(ERROR_COUNT, max(self.sensitivity, 1.0))
+        factors[MULTIPLIER_ERROR_INDEX] *= self.multiplier_sensitivity.factor
+        return factors
 
-def _interpolated_at_equal_parameter(
-    first_errors: Array, second_errors: Array, fraction: float, sensitivities: Array
-) -> Array:
-    """Errors at equal parameter, (n,), interpolated between the errors of two measured cycles, (n,) each.
-    fraction: as in `BranchCalibration.interpolate`. sensitivities: |(p/y) dy/dp|, at least 1, of the first,
-    the second and the interpolated cycle, (3,).
+    def _errors_between(
+        self, errors: tuple[Array, Array], sensitivities: tuple[Array, Array], fraction: float
+    ) -> Array:
+        """Errors at equal parameter of this cycle, (5,), interpolated between the errors of two measured
+        cycles, (5,) each. sensitivities: `_sensitivities` of both. fraction: as in `interpolate`.
 
-    Near a fold or a Hopf point these errors are the error of the parameter times the sensitivity, which
-    changes by factors between two cycles; their quotients are interpolated. Errors that do not depend on the
-    sensitivity are not below the smaller of the two measured errors.
-    """
-    quotients = _log_interpolated_errors(
-        first_errors / sensitivities[0], second_errors / sensitivities[1], fraction
-    )
-    errors: Array = np.maximum(sensitivities[2] * quotients, np.minimum(first_errors, second_errors))
-    return errors
+        Near a fold or a Hopf point these errors are proportional to the sensitivity, which changes by factors
+        between two cycles; their quotients are interpolated. The errors are not below the smaller of the two
+        measured errors, which need not depend on the sensitivity.
+        """
+        quotients = _log_interpolated_errors(
+            errors[0] / sensitivities[0], errors[1] / sensitivities[1], fraction
+        )
+        own_errors = max(self.sensitivity, 1.0) * quotients
+        index = MULTIPLIER_ERROR_INDEX
+        own_errors[index] = self.multiplier_sensitivity.error(float(own_errors[index]))
+        limited_errors: Array = np.maximum(own_errors, np.minimum(*errors))
+        return limited_errors
 
 
 def _log_interpolated_errors(first_errors: Array, second_errors: Array, fraction: float) -> Array:

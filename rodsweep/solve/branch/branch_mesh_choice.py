@@ -26,6 +26,7 @@ from .branch_errors import BranchCalibration, branch_newton_tolerance
 from .branch_mesh_ahead import expected_error_growth, mesh_ahead
 from .branch_mesh_settings import BRANCH_MESH_SETTINGS
 from .branch_tangent import branch_derivatives, tangent_at
+from .multiplier_sensitivity import MultiplierSensitivity
 
 
 def first_measured_cycle(
@@ -226,7 +227,10 @@ def _with_interpolated_errors(
     if is_slow or growth.max() > BRANCH_MESH_SETTINGS.max_growth_since_measurement:
         return with_measured_errors(point, accuracy)
     calibration = start.calibration.interpolate(
-        end.calibration, fraction, relative_tip_y_sensitivity(point.cycle.motion, point.derivatives)
+        end.calibration,
+        fraction,
+        relative_tip_y_sensitivity(point.cycle.motion, point.derivatives),
+        MultiplierSensitivity.of_cycle(point.cycle.converged_orbit),
     )
     if growth.max() > BRANCH_MESH_SETTINGS.max_tail_growth:
         calibration = calibration.grown(growth)

@@ -9,6 +9,7 @@ from rodsweep.solve.branch.branch_end_reason import BranchEndReason
 from rodsweep.solve.branch.branch_errors import BranchCalibration
 from rodsweep.solve.branch.branch_request import WORK_UNIT, BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
+from rodsweep.solve.branch.multiplier_sensitivity import MultiplierSensitivity
 from rodsweep.solve.branch.special import locating
 from rodsweep.solve.branch.special.augmented.fold_and_torus_functions import correct_until_converged
 from rodsweep.solve.branch.special.special_point import SpecialKind
@@ -96,7 +97,7 @@ def test_further_stages_replace_time_intervals_on_the_first_mesh_of_a_special_po
         np.array([1e-4, 1e-4, 1.0]),
         0.0,
     )
-    branch = BranchCalibration(known, np.full(2, 1e-8), 1.0)
+    branch = BranchCalibration(known, np.full(2, 1e-8), 1.0, MultiplierSensitivity(1.0, 1.0))
     mesh = first_mesh(branch, 1e-9)
     assert mesh.stage_count == 5
     assert mesh.interval_count < 2 * known.mesh.interval_count
