@@ -216,7 +216,7 @@ def quantities_told(d, view):
     found, each = [], quantities_at_points(view) if view.quantities else []
     if not each:
         return found
-    for line, match in read(d.page, r"drag ([a-z ]+?)(?: \(of NUMBER values\))?(?=,|$)"):
+    for line, match in read(d.page, r"drag ([a-z ]+?)(?: \(of NUMBER values\))?(?=,| and |$)"):
         names = {DRAG_NAMES[int(q["drag"])].replace("_", " ") for q in each if "drag" in q}
         found.append((line, "" if match[1] in names else f"drags {names}"))
     for line, match in read(

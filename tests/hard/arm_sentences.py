@@ -23,6 +23,7 @@ from rodsweep.model.arm.neglected import (
     worst_validity,
 )
 from rodsweep.model.rod import Rod
+from rodsweep.solve.cycle.status import CycleStatus
 
 from .page import NUMBER, Page, as_stated, parameter_lines, range_as_stated, read
 from .truths import changes_on_lines, changes_over_force, leading, rods_of, time_is_known
@@ -582,6 +583,10 @@ def _motion(view, fine, i):
     if view.task == "limit_cycle":
         v = fine.variables
         frequency, y = float(v["frequency"].ravel()[i]), float(v["tip_y_max"].ravel()[i])
+        linear_frequency = float(v["linear_frequency"].ravel()[i])
+        # An arm that becomes straight moves in its leading mode.
+        if int(v["status"].ravel()[i]) == int(CycleStatus.straight) and linear_frequency > 0:
+            frequency = linear_frequency
         return frequency, float(columns["F"][i]), y if np.isfinite(y) else 0.0, True
     if view.task == "branch":
         v, rows = view.variables, view.variables["status"].size

@@ -129,7 +129,7 @@ def _branch_line(view, page, line, own, true):
     cycles = own.cycles
     for _, match in read(page, r": NUMBER cycles?, F = RANGE, largest tip y RANGE L", only=line):
         why = [] if int(match[1]) == cycles.sum() else [f"there are {cycles.sum()} cycles"]
-        why.append(range_as_stated(match[2], own.at[cycles]))
+        why.append(range_as_stated(match[2], own.parameter[cycles]))
         why += [
             _size(true, own, text, pick)
             for text, pick in zip(_ends(match[3]), (np.argmin, np.argmax), strict=True)
@@ -147,7 +147,7 @@ def _ends(text):
 def _size(true, own, text, pick):
     """Why the smallest or the largest of the stored sizes is not that of the true branch at its place."""
     i = pick(np.where(own.cycles, own.y, np.inf if pick is np.argmin else -np.inf))
-    at, y = float(own.at[i]), float(own.y[i])
+    at, y = float(own.parameter[i]), float(own.y[i])
     s = np.concatenate(
         [
             [0.0],

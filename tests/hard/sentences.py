@@ -249,7 +249,8 @@ ALONG = {
     "the straight rod starts to flutter, as": "hopf",
     "the straight rod is stable again, as": "restabilization",
 }
-PLACE = rf"between ({NUMBER}) and ({NUMBER})|(?<!= )(?<![\w.+-])({NUMBER})(?= for | and | to |, on | \(\+-)"
+AFTER_PLACE = r"(?= for | and | to |, found on | \(\+-)"
+PLACE = rf"between ({NUMBER}) and ({NUMBER})|(?<!= )(?<![\w.+-])({NUMBER}){AFTER_PLACE}"
 
 
 def threshold_sentences(view, page):
@@ -278,10 +279,12 @@ def threshold_sentences(view, page):
         for _, match in read(page, r" for \w+ = NUMBER(?:, \w+ = NUMBER)?(?:, \w+ = NUMBER)?", only=line):
             columns = np.concatenate(list(view.point_columns.values()))
             why += [near_one_of(text, columns) for text in match.groups() if text]
-        for _, match in read(page, r", on NUMBER of NUMBER lines? of points along", only=line):
+        for _, match in read(page, r", found on NUMBER of NUMBER lines? of points along", only=line):
             lines = [each for each in lines_along(view.point_columns, name) if len(each.x)]
             having = len({tuple(getattr(rod, n) for n in LINEAR_PARAMETERS if n != name) for rod, *_ in true})
-            right = int(match[1]) == having and int(match[2]) == len(lines)
+            # Between two points of a spectrum with several changes only one of them is located.
+            is_number = int(match[1]) == having or (view.task != "thresholds" and int(match[1]) < having)
+            right = is_number and int(match[2]) == len(lines)
             why += [] if right else [f"on {having} of {len(lines)} lines"]
         found.append((line, "; ".join(filter(None, why)) if why else "no number was read"))
     return found

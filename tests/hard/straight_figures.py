@@ -111,7 +111,7 @@ def _roots_over(d, axes, name, columns, rods, here, w):
         all_of_them = len(of) == 1
         across = np.broadcast_to(x[:, None], part.shape)
         yield d.compare(axes, xy(of), (across, part), whole=all_of_them)
-        counts = [np.isfinite(line.get_ydata()).sum() for line in of]
+        counts = [np.isfinite(line.get_xydata()).all(axis=1).sum() for line in of]
         there = np.isfinite(part[:, 0]).sum()
         yield "" if all_of_them or counts == [there] * len(of) else f"{counts} of {there} points are drawn"
     if len(lines) == 4:

@@ -266,7 +266,7 @@ def test_lines_over_a_parameter_hold_every_point_once_in_the_order_of_the_file()
         (swept(np.geomspace(10, 1e5, 9), rising), "25.30000000000 to 29.30000000000 (+- 3e-11)"),
         (
             swept((100, 1e9), rising),
-            "26.30000000000 (+- 3e-11), on 1 of 2 lines of points along F, frequency 110 rad/tau2",
+            "26.30000000000 (+- 3e-11), found on 1 of 2 lines of points along F, frequency 110 rad/tau2",
         ),
     ],
 )

@@ -75,7 +75,8 @@ def _positions_text(
     located = [point for point in points if isinstance(point, LocatedThreshold)]
     errors = [stated_error(point.position, point.error)[1] for point in located]
     error_clause = f" (+- {error_text(max(errors))})" if errors else ""
-    lines_text = f", on {count_of_total(len(by_line), len(names), 'line')} of points along {parameter_name}"
+    count_text = count_of_total(len(by_line), len(names), "line")
+    lines_text = f", found on {count_text} of points along {parameter_name}"
     lines_text *= len(by_line) < len(names)
     if len(located) == len(points) and all(point.equals_within_errors(located[0]) for point in located):
         frequency = located[0].frequency
