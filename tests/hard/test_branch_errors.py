@@ -61,6 +61,7 @@ CASES = {
     ),
     "Fig. 2c, through its fold": Case(200.0, 1e4, 1e-4, 1.0, 199.9, 1e-7),
     "a fold close to the Hopf point": Case(150.0, 1e4, 1e-4, 1.0, 110.0, 1e-6),
+    "an error that changes its sign": Case(4722.88753, 443.06952, 1.724718966, 1.0, 24.0, 1e-6),
     "filament": Case(inf, inf, 0.0, 1.0, 80.0, 1e-6),
     "multipliers of 1e8": Case(1012.3, 21.16, 5.9886e-2, 4.72, 68.0, 1e-6),
 }

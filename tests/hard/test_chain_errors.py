@@ -124,7 +124,8 @@ def test_errors_in_space_grow_with_the_element_on_which_the_cycle_depends():
 
 def random_arm(index):
     """Of that number: a rod of up to three segments, or a cone, or of rubber, and a chain's accuracy,
-    parameter, ratio and points; None where it has no Hopf point well below its crushing force."""
+    parameter, ratio and points; None where it has no Hopf point well below its crushing force, as where waves
+    of any length begin to grow at once."""
     random = np.random.default_rng([16, index])
     names = (("k1", "k2", "k3"), ("k3",), ("k1", "k2", "k3", "gamma3"))[random.integers(3)]
     stretched, u, rows = random.uniform(2, 4), [0.0], [(1.0,) * 6]
@@ -142,7 +143,10 @@ def random_arm(index):
     }
     rod |= {"material": RodMaterial(law, profile=profile) if profile else RodMaterial(law)}
     crushing = Rod(F=0.0, **rod).crushing_force
-    hopf = hopf_point_below(Rod(F=min(150.0, 0.8 * crushing), **rod))
+    try:
+        hopf = hopf_point_below(Rod(F=min(150.0, 0.8 * crushing), **rod))
+    except Unsolvable:
+        return None
     parameter = random.choice(["F", "k2"])
     beyond, ratio = 1 + 10 ** random.uniform(-2, 0), random.uniform(*STEPS[parameter])
     if hopf is None or hopf.F * beyond * ratio**POINTS > 0.9 * crushing:

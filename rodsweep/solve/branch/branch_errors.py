@@ -43,7 +43,10 @@ class BranchErrorSettings:
     interpolation_safety_factor: float = 2.0
     """Safety factor on interpolated errors."""
     min_error: float = 1e-16
-    """Lower limit of an error before its logarithm is interpolated; smaller errors are rounding errors."""
+    """Lower limit of an error before its logarithm is taken; smaller errors are rounding errors."""
+    max_error_ratio: float = 30.0
+    """Largest ratio of two measured errors between which errors are interpolated. If the ratio is larger, the
+    smaller error is small only because errors change their sign near its cycle, and is replaced."""
     newton_tolerance_ratio: float = 1e-4
     """Tolerance of Newton's method for a cycle of a branch, also on the two finer meshes of an error
     measurement, divided by the accuracy. Near a fold or a Hopf point this tolerance over the derivative of
@@ -239,10 +242,9 @@ def _log_interpolated_errors(first_errors: Array, second_errors: Array, fraction
     """Geometric interpolation between the errors `first_errors` and `second_errors`, arrays of equal shape,
     at the fraction `fraction` of the distance from the first to the second; multiplied by
     `interpolation_safety_factor`, but not above the larger of the two errors."""
-    # Errors of a mesh change by factors along a branch, so their logarithms are interpolated.
-    logarithms = np.log(np.maximum([first_errors, second_errors], BRANCH_ERROR_SETTINGS.min_error))
-    means = np.exp(logarithms[0] + fraction * (logarithms[1] - logarithms[0]))
-    bounded_errors: Array = np.minimum(
-        BRANCH_ERROR_SETTINGS.interpolation_safety_factor * means, np.maximum(first_errors, second_errors)
-    )
-    return bounded_errors
+    larger_errors = np.maximum(first_errors, second_errors)
+    smallest = larger_errors / BRANCH_ERROR_SETTINGS.max_error_ratio
+    # Errors of a mesh change by factors along a branch, so geometric means are interpolated.
+    first, second = (np.maximum(errors, smallest) for errors in (first_errors, second_errors))
+    means = first ** (1 - fraction) * second**fraction
+    return np.asarray(np.minimum(BRANCH_ERROR_SETTINGS.interpolation_safety_factor * means, larger_errors))
