@@ -25,8 +25,8 @@ from rodsweep.config.tasks import CONFIGS
 from rodsweep.model.arm.quantities import ALL_QUANTITIES
 from rodsweep.model.parameters import PARAMETERS
 from rodsweep.results.file.validation import FORMAT
-from rodsweep.results.layouts.curve_extrema import EXTREMA_UNLOCATED, curve_extremum_variables
-from rodsweep.results.layouts.detached_branches import CURVES_LOST_BEYOND, DETACHED_BRANCH_VARIABLES
+from rodsweep.results.layouts.curve_extrema import EXTREMA_UNLOCATED, fold_curve_extremum_variables
+from rodsweep.results.layouts.detached_branches import CURVES_LOST_BEYOND, DETACHED_ROW_VARIABLES_BY_NAME
 from rodsweep.results.layouts.phase_diagram import (
     CYCLE_CURVE_ENDS,
     STABILITY_CLASSES,
@@ -435,9 +435,9 @@ def curve_rows(job: Job) -> Iterator[tuple[str, list[str]]]:
         yield "diagrams over F and k1" if is_of_limit else "", variable_row(variable, list(variable.extra))
     for variable in criticality_variables(line, row).values():
         yield "phase_diagram.criticality: true", variable_row(variable, list(variable.extra))
-    cycle_curves = cycle_curve_variables(line, row) | curve_extremum_variables(line, row)
+    cycle_curves = cycle_curve_variables(line, row) | fold_curve_extremum_variables(line, row)
     counts = EXTREMA_UNLOCATED, CURVES_LOST_BEYOND
-    for variable in (*(cycle_curves | DETACHED_BRANCH_VARIABLES).values(), *counts):
+    for variable in (*(cycle_curves | DETACHED_ROW_VARIABLES_BY_NAME).values(), *counts):
         yield "phase_diagram.cycles: true", variable_row(variable, list(variable.extra))
     third = job.config.phase_diagram.bautin_parameter
     assert third is not None

@@ -8,7 +8,7 @@ from benchmarks.lapack import inverse_spectrum, whole_matrices
 from rodsweep.determinant.certificate.box import eigenvalue_box
 from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.discretization.elements.resolution import expected_wave_number, resolution_for
-from rodsweep.model.dispersion import most_amplified_wave
+from rodsweep.model.dispersion import largest_growth_and_wave_number
 from rodsweep.model.rod import Rod
 from rodsweep.solve.spectrum.path.neighbouring_rods import NeighbouringRods, follow_spectra
 from rodsweep.solve.spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
@@ -65,7 +65,7 @@ def dense_count(rod: Rod) -> int | None:
     one for at least as many modes as are counted.
     """
     real, imag = eigenvalue_box(rod)
-    _, wave = most_amplified_wave(rod)
+    _, wave = largest_growth_and_wave_number(rod)
     count, modes = FEWEST_MODES, 0
     while count > modes:
         modes = count

@@ -7,9 +7,9 @@ from rodsweep.post.summary.number_texts import (
     error_text,
     number_with_error,
     ranges_text,
+    rounded_number_and_total_error,
     rounded_text,
     span_text,
-    stated_error,
 )
 from rodsweep.wording import count_of_total, counted, duration, is_or_are
 
@@ -72,7 +72,7 @@ def test_a_number_and_its_error_contain_the_true_number():
         true = value + error * random.choice([-1, 1])
         text, _, stated = number_with_error(value, error).partition(" (+- ")
         assert abs(float(text) - true) <= float(stated.rstrip(")")) * (1 + 1e-12) + 1e-15 * abs(value)
-        assert stated_error(value, error)[0] == text
+        assert rounded_number_and_total_error(value, error)[0] == text
         end = rounded_text(value, error)
         size = abs(float(end)) or abs(value)
         assert abs(float(end) - true) <= 1.001 * 10.0 ** np.ceil(np.log10(2 * error)) + 1e-5 * size

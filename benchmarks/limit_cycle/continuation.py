@@ -16,7 +16,7 @@ import numpy as np
 from rodsweep.bench.limit_cycle.sweeping import (
     TIMED_POINT_COUNT,
     AccurateCycle,
-    solve_from_neighbour,
+    solve_timed_points,
     swept_rod,
 )
 from rodsweep.bench.limit_cycle.swept_rods import RODS, rod_label
@@ -94,7 +94,7 @@ def measure_continuation(
     )
     starts = first_cycles(replace(point, F=point.F - (LONG_RUN_CYCLES - 1) * step), settings)
     runs: list[Callable[[], Any]] = [
-        partial(result_or_error, partial(solve_from_neighbour, "F", accuracy), rod)
+        partial(result_or_error, partial(solve_timed_points, "F", accuracy), rod)
         for accuracy, rod in zip(REQUESTED_ACCURACIES, rods, strict=True)
     ]
     for setting in settings:

@@ -18,7 +18,7 @@ from rodsweep.bench.study import TimedMethod
 from rodsweep.bench.thresholds.study import HOPF, ONSET, FirstThreshold, ThresholdCase
 from rodsweep.discretization.elements.resolution import Resolution, expected_wave_number, resolution_for
 from rodsweep.discretization.straight.arm_resolution import ArmMesh, arm_mesh
-from rodsweep.model.dispersion import most_amplified_wave
+from rodsweep.model.dispersion import largest_growth_and_wave_number
 
 from ..lapack import Eigenvalues, inverse_spectrum, whole_matrices
 
@@ -42,7 +42,7 @@ def threshold_mesh(case: ThresholdCase) -> Resolution | ArmMesh:
     rod = case.rod(case.onset if isnan(case.hopf) else case.hopf)
     if not rod.is_uniform_and_linear:
         return arm_mesh(rod, MESH_MODES, MESH_ACCURACY)
-    wave = most_amplified_wave(rod)[1]
+    wave = largest_growth_and_wave_number(rod)[1]
     return resolution_for(expected_wave_number(MESH_MODES, wave), MESH_ACCURACY)
 
 

@@ -4,7 +4,7 @@ from ..model.arm.quantities import QUANTITIES
 from ..model.parameters import PARAMETERS
 from .task_keywords import KEYWORDS_OF_TASK
 
-ARM_ADVICE = {
+UNKNOWN_ARM_ARGUMENT_HINTS = {
     "load_kind": "the load is given as pressure or force; an arm without load answers in Pa, and "
     'rs.sweep(task, arm={..., "load_kind": "force"}) in newton',
     "taper": "a cone has tip_radius",
@@ -13,17 +13,17 @@ ARM_ADVICE = {
     "F": "the load of an arm is pressure or force",
 }
 """Advice on arguments that `rs.Arm` does not have, by name."""
-ROD_ADVICE = {
+UNKNOWN_ROD_ARGUMENT_HINTS = {
     "k3": "k3 is the unit of stiffness",
     "gamma2": "gamma2 is the unit of drag; a rod has gamma1 and gamma3",
 }
 """Advice on arguments that `rs.Rod` does not have, by name."""
 
 
-def arm_argument_hint(name: str) -> str:
+def unknown_arm_argument_hint(name: str) -> str:
     """Advice on the argument `name` that `rs.Arm` does not have; empty if nothing is known about it."""
-    if name in ARM_ADVICE:
-        return ARM_ADVICE[name]
+    if name in UNKNOWN_ARM_ARGUMENT_HINTS:
+        return UNKNOWN_ARM_ARGUMENT_HINTS[name]
     if name in PARAMETERS:
         return f"{name} follows from the quantities of the arm; rs.Rod(arm=arm, {name}=...) replaces it"
     return _option_hint(name, "arm")
@@ -31,8 +31,8 @@ def arm_argument_hint(name: str) -> str:
 
 def rod_argument_hint(name: str) -> str:
     """Advice on the argument `name` that `rs.Rod` does not have; empty if nothing is known about it."""
-    if name in ROD_ADVICE:
-        return ROD_ADVICE[name]
+    if name in UNKNOWN_ROD_ARGUMENT_HINTS:
+        return UNKNOWN_ROD_ARGUMENT_HINTS[name]
     if name in QUANTITIES or name == "segments":
         return f"{name} belongs to an arm: rs.Rod(arm=rs.Arm({name}=..., ...))"
     return _option_hint(name, "rod")

@@ -13,7 +13,7 @@ from ..model.arm.arm import SlenderArm
 from ..model.arm.quantities import LOADS, SECTION_SIZE_NAMES
 from ..model.units import GivenQuantity
 from .answers.answer import Answer
-from .argument_hints import arm_argument_hint
+from .argument_hints import unknown_arm_argument_hint
 from .keyword_arguments import config_tree, job_of_tree, with_load_in_si
 from .solving_in_process import solve_in_process
 from .task_keywords import (
@@ -56,7 +56,7 @@ class Arm(SlenderArm):
     not. Raises InputError if the quantities describe no slender arm.
     """
 
-    __init__ = refusing_wrong_arguments(ARM_EXAMPLE, arm_argument_hint)(SlenderArm.__init__)
+    __init__ = refusing_wrong_arguments(ARM_EXAMPLE, unknown_arm_argument_hint)(SlenderArm.__init__)
 
     @cached_property
     @refusing_wrong_arguments("arm.flutter()")

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..config.arm.axes import PARAMETER_STORED_ALONG
+from ..config.arm.axes import STORAGE_AXIS_OF_QUANTITY
 from ..config.document.call_arguments import refusing_wrong_arguments
 from ..errors import InputError, short_repr
 from ..model.arm.quantities import ALL_QUANTITIES
@@ -16,8 +16,8 @@ from ..results.file.content_digests import SEAL_ATTRIBUTE, attribute_digests, va
 from ..results.file.current_state import (
     insert_records,
     journalled_points,
-    journalled_reasons,
     read_file_and_journals,
+    reasons_attribute_with_journals,
 )
 from ..results.file.validation import (
     ResultHeader,
@@ -77,7 +77,7 @@ def _open_result_file(path: Path) -> xr.Dataset:
         recent = journalled_points(header, data["status"].values.ravel())
         for name in data.variables.keys() & recent.dtype.fields.keys():
             insert_records(data[name].values, str(name), recent)
-        data.attrs |= journalled_reasons(header)
+        data.attrs |= reasons_attribute_with_journals(header)
         data = with_checksums(data)
     return with_arm_indexes(data)
 
@@ -87,10 +87,10 @@ def with_arm_indexes(data: xr.Dataset) -> xr.Dataset:
     this quantity."""
     for name in (
         coordinate_name
-        for coordinate_name in PARAMETER_STORED_ALONG
+        for coordinate_name in STORAGE_AXIS_OF_QUANTITY
         if coordinate_name in data.coords and coordinate_name not in data.xindexes
     ):
-        if data[name].dims == (PARAMETER_STORED_ALONG[name],):
+        if data[name].dims == (STORAGE_AXIS_OF_QUANTITY[name],):
             data = data.set_xindex(name)
     return data
 

@@ -16,7 +16,7 @@ from ..config.material import MaterialConfig
 from ..config.tasks import CONFIGS
 from ..errors import InputError
 from ..model.arm.arm import SlenderArm
-from ..model.arm.drag import DRAG_NAMES
+from ..model.arm.drag import DRAG_ESTIMATE_NAMES
 from ..model.arm.quantities import LOAD_OF_RATIO, LOADS
 from ..model.material.rod_material import DEFAULT_MATERIAL
 from ..solve.solve_lock import defer_signals
@@ -24,7 +24,11 @@ from ..tasks.running.job import Job, job_of_config, machine_memory
 
 ArmKind = TypeVar("ArmKind", bound=SlenderArm)
 """Type variable for the class of an arm: an argument and the result of a function have the same class."""
-DEFAULT_VALUES = {"drag": DRAG_NAMES[0], "law": DEFAULT_MATERIAL.law, "section": DEFAULT_MATERIAL.section}
+ARM_KEY_DEFAULTS = {
+    "drag": DRAG_ESTIMATE_NAMES[0],
+    "law": DEFAULT_MATERIAL.law,
+    "section": DEFAULT_MATERIAL.section,
+}
 """Default values of drag, law and section. A key of an arm with its default value is not written into the
 config tree."""
 ConfigTree = dict[str, Any]
@@ -49,7 +53,7 @@ def config_tree(task: str, keywords: Mapping[str, Any]) -> ConfigTree:
             for key, entry in plain_keyword(name, dict(value)).items():
                 _add_key(tree.setdefault(name, {}), key, entry)
             continue
-        section = _section_of(name, sections)
+        section = _best_matching_section(name, sections)
         values_of_section = tree.setdefault(section, {}) if section else tree
         _add_key(values_of_section, name, plain_keyword(f"{section}.{name}" if section else name, value))
     _write_out_arm(task, tree)
@@ -80,7 +84,7 @@ def _write_out_arm(task: str, tree: ConfigTree) -> None:
         written = {
             quantity_name: quantity
             for quantity_name, quantity in given.items()
-            if quantity_name not in DEFAULT_VALUES or quantity != DEFAULT_VALUES[quantity_name]
+            if quantity_name not in ARM_KEY_DEFAULTS or quantity != ARM_KEY_DEFAULTS[quantity_name]
         }
         parameters["arm"] = {name: plain_value(value) for name, value in written.items()}
 
@@ -113,7 +117,7 @@ def job_of_tree(tree: ConfigTree) -> Job:
     return job
 
 
-def point_count_of_valid_tree(tree: ConfigTree) -> int | None:
+def validated_point_count(tree: ConfigTree) -> int | None:
     """Number of points of a config tree. Raises InputError for a tree that `job_of_tree` refuses, before any
     rank of a run starts.
 
@@ -135,14 +139,14 @@ def _allowed_keys_by_section(task: str) -> dict[str, Collection[str]]:
     return {name: tuple(section.model_fields) for name, section in sections.items()} | {"": top_keys}
 
 
-def _section_of(name: str, sections: Mapping[str, Collection[str]]) -> str:
+def _best_matching_section(name: str, sections: Mapping[str, Collection[str]]) -> str:
     """Name of the first section with the key `name`, or else with the most similar key. sections: allowed
     keys by name of the section. Raises InputError if no key is similar."""
     section = next((section for section, allowed in sections.items() if name in allowed), None)
-    return _section_of(_similar_key(name, sections), sections) if section is None else section
+    return _best_matching_section(_most_similar_key(name, sections), sections) if section is None else section
 
 
-def _similar_key(name: str, sections: Mapping[str, Collection[str]]) -> str:
+def _most_similar_key(name: str, sections: Mapping[str, Collection[str]]) -> str:
     """The allowed key that is most similar to the unknown key `name`. For a quantity of an arm, whose section
     is not in `sections`, the first allowed key may be returned: validation then names the right section.
     Raises InputError with a list of all keys if no key is similar."""

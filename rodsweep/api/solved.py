@@ -59,7 +59,7 @@ class SolvedPoints:
     """All statuses that a point of the task can have."""
     values: Mapping[str, np.ndarray] = field(repr=False)
     """Variables of the layout by name, shape (points, own dimensions)."""
-    filled: Sequence[FilledVariable] = field(repr=False)
+    whole_file_variables: Sequence[FilledVariable] = field(repr=False)
     """Variables of the file that do not belong to single points."""
     run_attributes: Mapping[str, Any]
     """Attributes with the times, the host and the PETSc options of the solve."""
@@ -69,7 +69,7 @@ class SolvedPoints:
     @cached_property
     def dataset(self) -> xr.Dataset:
         """The Dataset of the points, as xarray would read it from a result file."""
-        coordinates, variables = stored_variables(self.plan, self.values, self.filled)
+        coordinates, variables = stored_variables(self.plan, self.values, self.whole_file_variables)
         header = {
             "program": PROGRAM,
             "format": FORMAT,
@@ -83,7 +83,7 @@ class SolvedPoints:
     @cached_property
     def view(self) -> ResultView:
         """The view of the points that tables read."""
-        return view_in_memory(self.job, self.plan, self.values, self.filled)
+        return view_in_memory(self.job, self.plan, self.values, self.whole_file_variables)
 
     def __reduce__(self) -> tuple[type[DatasetResult], tuple[xr.Dataset]]:
         return DatasetResult, (self.dataset,)

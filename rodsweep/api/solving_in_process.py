@@ -10,14 +10,14 @@ import numpy as np
 
 from ..errors import InputError
 from ..results.file.creation import FilePlan
-from ..results.file.provenance import joined_failure_reasons, utc_time
+from ..results.file.provenance import joined_reasons_attribute, utc_time
 from ..results.file.view import ResultView
 from ..solve.backend.availability import require_solvers
 from ..solve.backend.solver_pools import destroy_pooled_solvers
 from ..solve.solve_lock import exclusive_solve
 from ..solve_progress import SolvePosition, reporting_to, solve_part
 from ..sweep.points.groups import PointGroups, SolveGroup
-from ..sweep.progress import ProgressReporter, SilentProgress, in_notebook
+from ..sweep.progress import ProgressReporter, SilentProgress, can_show_notebook_bar
 from ..sweep.stop import RankListener, SingleRankCommunication, StopRequest
 from ..tasks.protocol import NamedArrays, Solver, SweepWideResult, SweepWideSolver
 from ..tasks.running.failures import FailureReasons, parameters_text, reasons_of_changed_points
@@ -76,7 +76,7 @@ def solve_in_process(
         plan=plan,
         statuses=solver.statuses,
         values=values,
-        filled=(*from_config, *sweep_wide.variables, *from_points),
+        whole_file_variables=(*from_config, *sweep_wide.variables, *from_points),
         run_attributes=_attributes_of_solve(start_time, reasons),
         messages=messages,
     )
@@ -97,7 +97,7 @@ def _attributes_of_solve(start_time: str, reasons: Sequence[str]) -> dict[str, A
         "hosts": socket.gethostname(),
         "started": start_time,
         "stopped": "",
-        **joined_failure_reasons("\n".join(reasons)),
+        **joined_reasons_attribute("\n".join(reasons)),
         "finished": utc_time(),
     }
 
@@ -212,7 +212,7 @@ def progress_display(progress: bool | None, total: int | None, title: str) -> Di
     progress = plain_keyword("progress", progress)
     if not (progress is None or isinstance(progress, bool)):
         raise InputError(f"progress = {progress!r} is not allowed; it should be True, False or None")
-    is_shown = sys.stderr.isatty() or in_notebook() if progress is None else progress
+    is_shown = sys.stderr.isatty() or can_show_notebook_bar() if progress is None else progress
     return ProgressReporter(total, title, is_bar=True) if is_shown else SilentProgress()
 
 

@@ -19,14 +19,14 @@ from ..errors import EnvironmentIncomplete, InputError, short_repr
 from ..tasks.running.unforeseen_exceptions import describe_exception, log_file
 from ..wording import counted
 from .dataset import open_result
-from .keyword_arguments import ConfigTree, config_tree, job_of_tree, plain_keyword, point_count_of_valid_tree
+from .keyword_arguments import ConfigTree, config_tree, job_of_tree, plain_keyword, validated_point_count
 from .solving_in_process import Display, progress_display, solve_in_process
 
 COMPLETE_STATUSES = (0, 1)
 """Exit statuses of a complete run: 0 if all points succeeded, 1 if some points failed."""
 REFUSAL_OF_STATUS: dict[int, type[Exception]] = {2: InputError, 3: EnvironmentIncomplete}
 """Class of the exception for each exit status of a run that was refused."""
-ALWAYS_ALLOWED_RANKS = 64
+RANKS_ALLOWED_FOR_ANY_SWEEP = 64
 """A sweep may have this number of ranks whatever the number of its points."""
 MAX_QUOTED_LENGTH = 2000
 """Maximum number of quoted characters of a run's standard error, enough for the last traceback."""
@@ -68,7 +68,7 @@ def sweep(
         )
     tree = config_tree(task, keywords)
     if ranks is not None:
-        _refuse_idle_ranks(ranks, point_count_of_valid_tree(tree))
+        _refuse_idle_ranks(ranks, validated_point_count(tree))
         return _solve_on_ranks(task, tree, ranks, strict, progress_display(progress, None, task))
     return solve_in_process(job_of_tree(tree), None if strict else _warn_of_failed_points, progress).dataset
 
@@ -85,9 +85,9 @@ def _warn_of_failed_points(indices: Sequence[int], error: Exception) -> None:
 
 
 def _refuse_idle_ranks(ranks: int, points: int | None) -> None:
-    """Raises InputError if there are more than ALWAYS_ALLOWED_RANKS ranks and most of them would be idle,
-    because both the points and the processors of this machine are fewer. points: None if not known."""
-    max_ranks = max(os.cpu_count() or 1, points or 0, ALWAYS_ALLOWED_RANKS)
+    """Raises InputError if there are more than RANKS_ALLOWED_FOR_ANY_SWEEP ranks and most of them would be
+    idle, because both the points and the processors of this machine are fewer. points: None if not known."""
+    max_ranks = max(os.cpu_count() or 1, points or 0, RANKS_ALLOWED_FOR_ANY_SWEEP)
     if points is not None and ranks > max_ranks:
         raise InputError(
             f"ranks = {short_repr(ranks)} is not allowed for {counted(points, 'point')}; ranks would be "

@@ -28,7 +28,7 @@ PEER_PACKAGE_NAME = "benchmarks"
 CHECKOUT_FOLDER = Path(__file__).parents[2]
 """Root folder of the checkout from which rodsweep runs; without a checkout, the parent of the installed
 package."""
-PEER_NAMES = {
+PEER_PHRASES_BY_STUDY = {
     "spectrum": "LAPACK, ARPACK and Chebyshev collocation",
     "thresholds": "grids and root finding with SciPy, AUTO-07p and PyCont-Lite",
     "limit_cycle": "further integrators of PETSc, those of SciPy, CVODE and AUTO-07p",
@@ -107,7 +107,9 @@ def peers_of_study(package: ModuleType | None, study: str, quick: bool, folder: 
 def peers_left_out(studies: Sequence[str]) -> str:
     """Sentence that names the missing peers of `studies`, for a run without the folder of peers; "" if these
     studies have no peers."""
-    missing = "; ".join(f"{name}: {PEER_NAMES[name]}" for name in studies if name in PEER_NAMES)
+    missing = "; ".join(
+        f"{name}: {PEER_PHRASES_BY_STUDY[name]}" for name in studies if name in PEER_PHRASES_BY_STUDY
+    )
     return missing and (
         f"The peers are left out ({missing}): give their folder, `{PEER_PACKAGE_NAME}` of a checkout of "
         f"rodsweep, as `--peers CHECKOUT/{PEER_PACKAGE_NAME}`."

@@ -17,7 +17,7 @@ from ..results.file.benchmark_file import Table
 
 Outcome = TypeVar("Outcome")
 """Type of the result of a timed function."""
-SHORT_RUN_SECONDS = 0.02
+MAX_CACHE_SENSITIVE_SECONDS = 0.02
 """If a run takes less than this duration, in s, its time depends on the contents of the processor caches
 after the previous run."""
 
@@ -122,7 +122,7 @@ def time_runs(runs: Sequence[Callable[[], Outcome]], rounds: Sequence[int]) -> l
     first = [_time_one_run(run) for run in runs]
     seconds: list[list[float]] = [[] for _ in runs]
     for i in timing_order(rounds):
-        if first[i].median < SHORT_RUN_SECONDS:
+        if first[i].median < MAX_CACHE_SENSITIVE_SECONDS:
             runs[i]()
         seconds[i] += _time_one_run(runs[i]).seconds
     return [

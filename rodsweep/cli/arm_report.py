@@ -31,10 +31,11 @@ def print_arm_report(typed_values: dict[str, str | None], poisson: float, segmen
         console.print(line, markup=False, style=PARAGRAPH_STYLES.get(kind, ""))
 
 
-NAME_PATTERN = "|".join((*UNITS, "segments"))
+QUANTITY_NAME_PATTERN = "|".join((*UNITS, "segments"))
 """Regular expression of all names of quantities."""
-QUANTITY_IN_SENTENCE_PATTERN = re.compile(
-    rf"^({NAME_PATTERN})|(?:(?<= and )|(?<=, with )|(?<= is not below ))({NAME_PATTERN})(?= = | are )"
+QUANTITY_NAME_IN_SENTENCE_PATTERN = re.compile(
+    rf"^({QUANTITY_NAME_PATTERN})"
+    rf"|(?:(?<= and )|(?<=, with )|(?<= is not below ))({QUANTITY_NAME_PATTERN})(?= = | are )"
 )
 """Regular expression of a quantity's name at the beginning of a sentence or before " = " and " are "."""
 
@@ -42,6 +43,6 @@ QUANTITY_IN_SENTENCE_PATTERN = re.compile(
 def with_option_names(sentence: str) -> str:
     """The error message `sentence`, with names of options such as --tip-radius in place of names of
     quantities."""
-    text = QUANTITY_IN_SENTENCE_PATTERN.sub(lambda match: "--" + match[0].replace("_", "-"), sentence)
+    text = QUANTITY_NAME_IN_SENTENCE_PATTERN.sub(lambda match: "--" + match[0].replace("_", "-"), sentence)
     text = text.replace("--segments", "--segment")
     return text if text.startswith("--") else f"--{text}"

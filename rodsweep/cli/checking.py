@@ -80,7 +80,7 @@ def _arm_lines(job: Job) -> list[str]:
         load_clause = ""
     return [
         f"the arm: {quantities_as_typed(arm.quantity_axes)}{_material_text(arm)}",
-        *_wall_lines(arm),
+        *_thin_wall_warnings(arm),
         *plane_lines(quantities),
         f"the arm as a rod: {', '.join(texts)} s",
         *_lines_on_points_without_rod(job.points),
@@ -96,7 +96,7 @@ def _material_text(arm: ArmConfig) -> str:
     return f"{segments_clause}; {', '.join(laws)}" if laws else segments_clause
 
 
-def _wall_lines(arm: ArmConfig) -> list[str]:
+def _thin_wall_warnings(arm: ArmConfig) -> list[str]:
     """Warning for tubes with thin walls, in a list; empty if all walls are thick enough."""
     if arm.inner_radius is None:
         return []

@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..bench.sweep.launch import FIRST_RANK_PREFIX, KILLED, OTHER_RANKS_PREFIX, SOLVED
+from ..bench.sweep.launch import FIRST_RANK_MEMORY_PREFIX, KILLED, OTHER_RANKS_MEMORY_PREFIX, SOLVED
 from ..tasks import TASKS
 from ..tasks.protocol import Solver
 from ..tasks.spectrum import SpectrumTask
@@ -67,7 +67,7 @@ class TabulatedSpectra(SpectrumTask):
 
 def record_memory(directory: Path) -> None:
     """Writes the peak memory of this rank in bytes into a file of the directory."""
-    prefix = FIRST_RANK_PREFIX if prints_messages() else OTHER_RANKS_PREFIX
+    prefix = FIRST_RANK_MEMORY_PREFIX if prints_messages() else OTHER_RANKS_MEMORY_PREFIX
     (directory / f"{prefix}-{os.getpid()}").write_text(str(peak_memory()))
 
 

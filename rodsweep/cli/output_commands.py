@@ -118,12 +118,12 @@ def export(
 @click.option(*OUTPUT, type=FILE_TYPE, help="A .html file; by default FILE's name with .html.")
 def report(files: tuple[Path, ...], output: Path | None) -> None:
     """Write one HTML page about the result FILEs, to share: answer, figures, tables, config, provenance."""
-    from ..post.report import require_page, write_report
+    from ..post.report import require_page_path, write_report
     from ..results.file.view import read_view
     from ..tasks.cycle_shapes import with_shapes
 
     output = link_target(output or with_suffix_replaced(files[0], ".html"))
-    require_page(output, files)
+    require_page_path(output, files)
     click.echo(write_report([read_view(link_target(file)) for file in files], output, with_shapes))
 
 
@@ -150,13 +150,13 @@ def portrait(F_max: float, accuracy: float | None, output: Path, **options: Any)
     --young "100 kPa" --viscosity "12 Pa s".
     """
     from ..post.rod_portrait.paragraph import paragraph
-    from ..post.rod_portrait.writing import require_portrait, write_portrait
+    from ..post.rod_portrait.writing import require_portrait_path, write_portrait
     from ..sweep.progress import ProgressReporter
     from ..tasks.rod_portrait import PortraitRequest, solve_rod_results
     from ..tasks.running.in_memory import solved_view
 
     output = link_target(output)
-    require_portrait(output)
+    require_portrait_path(output)
     parameters = {name: value for name, value in options.items() if name in PARAMETERS}
     material = {name: options[name] for name in ("law", "section", "profile")}
     quantities = {name: value for name, value in options.items() if name in (*UNITS, "poisson")}

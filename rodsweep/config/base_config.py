@@ -10,7 +10,7 @@ from typing import Annotated, Any, ClassVar
 from pydantic import Field, model_validator
 
 from ..model.material.rod_material import DEFAULT_MATERIAL, RodMaterial
-from ..model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS
+from ..model.parameters import NON_OPTIONAL_LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS
 from .arm.shape import MATERIAL_KEYS, SHAPE_KEYS, refuse_compressible, refuse_misused_shape
 from .material import MaterialConfig
 from .parameters_section import LinearParametersSection, ParametersSection
@@ -91,14 +91,14 @@ class Config(StrictConfigSection):
         return NONLINEAR_PARAMETERS
 
     @property
-    def options_without_effect(self) -> dict[str, str]:
+    def remedies_of_options_without_effect(self) -> dict[str, str]:
         """Options without effect in this config, by name; the value is the setting with which the option
         would have an effect."""
         return {}
 
     def refuse_options_without_effect(self) -> None:
         """Raises ValueError if the config gives an option that has no effect."""
-        for option, remedy in self.options_without_effect.items():
+        for option, remedy in self.remedies_of_options_without_effect.items():
             if option in getattr(self, self.task).model_fields_set:
                 raise ValueError(
                     f"{self.task}.{option} is given but not used; set {self.task}.{remedy} or remove it"
@@ -111,7 +111,9 @@ class Config(StrictConfigSection):
         Settings under the key `together` change only the variables that are computed jointly from all points.
         Two configs with equal settings and equal points give the same results.
         """
-        options = getattr(self, self.task).model_dump(mode="json", exclude=set(self.options_without_effect))
+        options = getattr(self, self.task).model_dump(
+            mode="json", exclude=set(self.remedies_of_options_without_effect)
+        )
         constant_values = dict(self.parameters.constant_parameters)
         settings = {
             "task": self.task,
@@ -170,7 +172,7 @@ class LinearConfig(Config):
 
     @classmethod
     def rod_parameters_used(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
-        return LINEAR_PARAMETERS
+        return NON_OPTIONAL_LINEAR_PARAMETERS
 
     @model_validator(mode="after")
     def _refuse_unused_parameters(self) -> "LinearConfig":

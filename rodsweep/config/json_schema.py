@@ -18,7 +18,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from ..model.arm.quantities import LOAD_OF_RATIO, LOADS, QUANTITIES, SECTION_SIZE_NAMES
-from ..model.parameters import LINEAR_PARAMETERS, PARAMETERS
+from ..model.parameters import NON_OPTIONAL_LINEAR_PARAMETERS, PARAMETERS
 from .arm.axes import LOAD_KEYS, NON_LOAD_KEYS
 from .axis import Axis
 from .document.refusals import value_type_of_key
@@ -206,7 +206,9 @@ def points_condition(parameter_names: Iterable[str], lists: bool) -> Schema:
         all_keys_given(["arm"], none_listed, load),
     ]
     if lists:
-        alternatives.append(all_keys_given(["points"], no_key_given(["arm", *LINEAR_PARAMETERS])))
+        alternatives.append(
+            all_keys_given(["points"], no_key_given(["arm", *NON_OPTIONAL_LINEAR_PARAMETERS]))
+        )
     return {"anyOf": alternatives} if "F" in axes else {"anyOf": alternatives, **no_key_given(["F"])}
 
 

@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field, create_model, model_validator
 
 from ..model.parameters import (
-    LINEAR_PARAMETERS,
+    NON_OPTIONAL_LINEAR_PARAMETERS,
     NONLINEAR_PARAMETERS,
     OPTIONAL_PARAMETERS,
     PARAMETERS,
@@ -20,7 +20,9 @@ from .arm.section import ArmConfig
 from .axis import Axis, ParameterAxis
 from .values import Number, StrictConfigSection, Text
 
-NONLINEAR_ONLY_PARAMETERS = tuple(name for name in NONLINEAR_PARAMETERS if name not in LINEAR_PARAMETERS)
+NONLINEAR_ONLY_PARAMETERS = tuple(
+    name for name in NONLINEAR_PARAMETERS if name not in NON_OPTIONAL_LINEAR_PARAMETERS
+)
 """Names of the parameters on which limit cycles depend but the linear problem does not."""
 REQUIRED_PARAMETERS = tuple(p.name for p in PARAMETERS.values() if p.default is None and p.name != "F")
 """Names of the parameters without a default, except F."""
@@ -56,7 +58,7 @@ class ParametersSection(LinearAxes):
     arm: Annotated[ArmConfig | None, Field(description="a mapping of an arm's quantities to values")] = None
     """An arm in SI units. A parameter given in addition to the arm replaces the arm's value."""
 
-    task_parameters: ClassVar[tuple[str, ...]] = TRANSVERSE_PARAMETERS
+    parameters_taken_from_arm: ClassVar[tuple[str, ...]] = TRANSVERSE_PARAMETERS
     """Names of the parameters that the task takes from an arm, or from axes given in addition to the arm."""
     in_diagram: ClassVar[bool] = False
     """Whether the points are the rows of a phase diagram, which needs a grid of parameters."""
@@ -70,7 +72,7 @@ class ParametersSection(LinearAxes):
             return given
         return {
             name: DEFAULT_VALUES_OF_PARAMETERS[name]
-            for name in cls.task_parameters
+            for name in cls.parameters_taken_from_arm
             if name in DEFAULT_VALUES_OF_PARAMETERS
         } | given
 
@@ -93,7 +95,7 @@ class ParametersSection(LinearAxes):
         if self.arm is None or self.arm_axes:
             return self.given_axes
         axes = self.arm.dimensionless_axes() | self.given_axes
-        return {name: axes[name] for name in self.task_parameters if name in axes}
+        return {name: axes[name] for name in self.parameters_taken_from_arm if name in axes}
 
     @cached_property
     def given_axes(self) -> dict[str, Axis]:
@@ -114,7 +116,7 @@ class ParametersSection(LinearAxes):
         return grid_axis_names({name: axis.size for name, axis in axes.items()}, self.in_diagram)
 
     @property
-    def single_parameter_sizes(self) -> dict[str, int]:
+    def sizes_of_single_parameter_axes(self) -> dict[str, int]:
         """Number of values on each axis along which a single parameter changes, by name of the parameter. An
         axis of an arm that changes several parameters, such as its length, is left out."""
         if self.arm is None or not self.arm_axes:
@@ -188,4 +190,4 @@ class DiagramParametersSection(LinearParametersSection):
 class NonlinearParametersSection(AllAxes):
     """Section `parameters` of a task on the nonlinear rod, all of whose parameters may be axes."""
 
-    task_parameters: ClassVar[tuple[str, ...]] = tuple(PARAMETERS)
+    parameters_taken_from_arm: ClassVar[tuple[str, ...]] = tuple(PARAMETERS)

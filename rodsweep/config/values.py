@@ -62,14 +62,14 @@ def printable(text: str) -> str:
     return "".join(c if c.isprintable() or c == "\n" else ascii(c)[1:-1] for c in text)
 
 
-def as_text(value: Any) -> Any:
+def require_printable_text(value: Any) -> Any:
     """The value unchanged; ValueError for a text with control characters or lone surrogates."""
     if isinstance(value, str) and not all(c.isprintable() or c == " " for c in value):
         raise ValueError(f"{short_repr(value)} has characters that cannot be printed")
     return value
 
 
-Text = Annotated[str, BeforeValidator(as_text)]
+Text = Annotated[str, BeforeValidator(require_printable_text)]
 Number = Annotated[
     float,
     BeforeValidator(as_float),

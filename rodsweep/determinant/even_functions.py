@@ -4,7 +4,7 @@ of the dispersion relation (`rodsweep.determinant.value`), z+- = (q1 +- q2)^2.
 With the squares z+- of the exponents of D, s = E(z+) + E(z-) and d = (E(z+) - E(z-))/(z+ - z-) are even in P,
 and entire in M = (z+ + z-)/2 and P^2. All derivatives of D follow from s, d, s' = ds/dM, d' = dd/dM and d* =
 (dd/dP^2)/4, because ds/dP^2 = 4 d'. Both methods also return the rounding errors of s and d. Every rounding
-error here is in units of `exponents.ROUNDING_UNIT`.
+error here is in units of `exponents.TWO_MACHINE_EPSILONS`.
 """
 
 import cmath
@@ -29,7 +29,8 @@ class EvenFunctionSettings(KernelConstants):
     """Otherwise, if |z+ z-| / (|M|^2 + 4 |P|^2) is at most this number, `even_sum_by_squares` computes s and
     d; else `even_functions_by_roots` does."""
     scale_rounding: float = 3.0
-    """Bound of the relative rounding error of S, the logarithm of the scale, in units of ROUNDING_UNIT."""
+    """Bound of the relative rounding error of S, the logarithm of the scale, divided by
+    TWO_MACHINE_EPSILONS."""
     max_scale_without_rounding: float = 8.0
     """Up to this S the other rounding errors of D exceed the rounding error of exp(-S). At a larger S only
     the exponentially small eigenvalues of strongly pulled rods depend on exp(-S)."""
@@ -79,10 +80,10 @@ def _rounding_by_roots(
     scaled_one, rounding_M, rounding_square = roundings
     c1 = modulus(functions_of_u.cosh)
     f1 = modulus(functions_of_u.sinhc)
-    g1 = modulus(functions_of_u.sinhc_slope)
+    g1 = modulus(functions_of_u.sinhc_slope_over_q)
     c2 = modulus(functions_of_v.cosh)
     f2 = modulus(functions_of_v.sinhc)
-    g2 = modulus(functions_of_v.sinhc_slope)
+    g2 = modulus(functions_of_v.sinhc_slope_over_q)
     per_root = 1 / modulus(difference)
     rounding_u = (u * rounding_M + rounding_square) * per_root + u
     rounding_v = (v * rounding_M + rounding_square) * per_root + v

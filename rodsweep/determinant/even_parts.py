@@ -20,7 +20,7 @@ from .even_functions import (
     even_functions_by_roots,
     even_functions_by_series,
 )
-from .exponents import EXPONENT_SETTINGS, ROUNDING_UNIT, entire_cosh, modulus, squared_exponents
+from .exponents import EXPONENT_SETTINGS, TWO_MACHINE_EPSILONS, entire_cosh, modulus, squared_exponents
 
 EvenSum = tuple[EvenFunctionValues, complex, float]
 """(s and d with derivatives, sum z+' E(z+) + z-' E(z-) times exp(-S), rounding error). `even_parts` returns
@@ -36,7 +36,7 @@ def _rounding_by_squares(
     roundings: tuple[float, float],
 ) -> float:
     """Rounding error of the sum z+' E(z+) + z-' E(z-) as computed by `even_sum_by_squares`, in units of
-    `ROUNDING_UNIT`, like all rounding errors of the arguments.
+    `TWO_MACHINE_EPSILONS`, like all rounding errors of the arguments.
 
     sizes: (|w|, |P|). roots: (sqrt z+, sqrt z-). slopes: (z+', z-'). roundings: rounding errors of M and P^2.
     The error of z follows from the terms that cancel in z; the error of an exponent q = sqrt z is half the
@@ -84,7 +84,7 @@ def even_sum_by_squares(
 
     The derivative of the smaller of z+ and z- follows from the derivative of the product z+ z-, because
     z+-' = T +- 2 P' cancels for large w. rounding_M, rounding_square: rounding errors of M and P^2. All
-    rounding errors are in units of `ROUNDING_UNIT`.
+    rounding errors are in units of `TWO_MACHINE_EPSILONS`.
     """
     F, nu, c2, gamma3 = coefficients
     P, plus, minus = squared_exponents(w, coefficients)
@@ -159,4 +159,8 @@ def even_parts(w: complex, coefficients: Coefficients) -> EvenSum:
         even, total, rounding_error = even_sum_by_squares(w, coefficients, rounding_M, rounding_square)
     excess = even.log_scale - EVEN_FUNCTION_SETTINGS.max_scale_without_rounding
     scale_error = max(1.0, EVEN_FUNCTION_SETTINGS.scale_rounding * excess)
-    return even, total, ROUNDING_UNIT * (scale_error * math.exp(-even.log_scale) + size / 2 * rounding_error)
+    return (
+        even,
+        total,
+        TWO_MACHINE_EPSILONS * (scale_error * math.exp(-even.log_scale) + size / 2 * rounding_error),
+    )

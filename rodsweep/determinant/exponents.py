@@ -36,7 +36,7 @@ EXPONENT_SETTINGS = ExponentSettings()
 
 MACHINE_EPSILON = sys.float_info.epsilon
 """Distance from 1 to the next larger double-precision number."""
-ROUNDING_UNIT = 2 * MACHINE_EPSILON
+TWO_MACHINE_EPSILONS = 2 * MACHINE_EPSILON
 """Unit of the rounding errors of the terms of D: twice the spacing of double-precision numbers at 1."""
 
 
@@ -45,7 +45,7 @@ class HyperbolicFunctions(NamedTuple):
 
     cosh: complex
     sinhc: complex
-    sinhc_slope: complex
+    sinhc_slope_over_q: complex
 
 
 @compiled

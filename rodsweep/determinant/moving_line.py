@@ -22,7 +22,7 @@ from .certificate.covering import (
     distance_from_zero_bound,
     exponent_changes,
     is_remainder_below,
-    mean_growth_rates,
+    mean_exponent_slopes,
 )
 from .certificate.discs import DISC_BOUND_SETTINGS, bidisc_centre
 from .parameter_path import determinant_along_path, dispersion_coefficient_derivatives
@@ -32,21 +32,21 @@ from .parameter_path import determinant_along_path, dispersion_coefficient_deriv
 class MovingLineSettings(KernelConstants):
     """Settings for the rectangles that prove that no eigenvalue crosses a moving line."""
 
-    first_half_height_ratio: float = 0.35
+    first_half_height_over_depth: float = 0.35
     """Half-height (in y) of the first rectangle over the distance of the line from the imaginary axis."""
     half_height_growth_factor: float = 1.6
     """After a proved rectangle, the half-height of the next rectangle is larger by this factor."""
-    max_half_height_ratio: float = 0.6
+    max_half_height_over_w: float = 0.6
     """Largest half-height of a rectangle divided by |w| at its lower edge. The discs about the centre of the
     rectangle must not contain w = 0."""
-    overlap_fraction: float = 1e-7
+    overlap_enlargement_fraction: float = 1e-7
     """The half-widths of every rectangle are enlarged by this fraction, so that rounding leaves no gap."""
     min_fraction: float = 1e-6
     """The proof fails if a rectangle is needed whose width in p is below this fraction of the interval of p,
     or whose half-height is below this fraction of the distance of the line from the imaginary axis."""
     field_ranges: ClassVar = {
         "half_height_growth_factor": (1.0, math.inf),
-        "max_half_height_ratio": (0.0, 1.0),
+        "max_half_height_over_w": (0.0, 1.0),
     }
 
 
@@ -87,7 +87,7 @@ def interpolate_ends(fraction: float, first: IntervalEnd, last: IntervalEnd) -> 
 
 
 @compiled
-def examine_rectangle(
+def rectangle_proof_and_costs(
     centre_end: IntervalEnd,
     y: float,
     direction: Coefficients,
@@ -95,7 +95,7 @@ def examine_rectangle(
     line_slope: float,
 ) -> tuple[bool, float, float]:
     """Returns (proved, cost in y, cost in p). proved: whether D is proved to have no zero on the rectangle
-    about w = l(p) + i y; cost: see `covering.examine_box`.
+    about w = l(p) + i y; cost: see `covering.box_outcome_and_costs`.
 
     centre_end: p, coefficients and line at the centre. direction: d(F, nu, c2, gamma3)/dp. half_widths:
     half-widths of the rectangle in y and in p. line_slope: dl/dp. Raises ValueError for a half-width that is
@@ -113,14 +113,14 @@ def examine_rectangle(
     radii = (math.hypot(half_y, line_slope * half_p), half_p)
     if abs(D) > 2 * rounding:
         if is_remainder_below(
-            centre, (D_w / D, D_p / D), radii, DISC_BOUND_SETTINGS.max_relative_change * abs(D) - rounding, 1
+            centre, (D_w / D, D_p / D), radii, DISC_BOUND_SETTINGS.max_D_change_ratio * abs(D) - rounding, 1
         ):
             return True, 0.0, 0.0
-        mean_rates = mean_growth_rates(centre)
+        mean_rates = mean_exponent_slopes(centre)
         w_slope = D_w - mean_rates[0] * D
         p_slope = D_p - mean_rates[1] * D
         max_remainder = (
-            DISC_BOUND_SETTINGS.max_relative_change
+            DISC_BOUND_SETTINGS.max_D_change_ratio
             * distance_from_zero_bound(D, 1j * w_slope * half_y, (line_slope * w_slope + p_slope) * half_p)
             - rounding
         )
@@ -152,9 +152,9 @@ def proves_no_crossing(
     top = box_from_sqrt_bound(a, depth)[1]
     width = last.p - first.p
     slope = (last.line - first.line) / width
-    enlargement = 1 + MOVING_LINE_SETTINGS.overlap_fraction
+    enlargement = 1 + MOVING_LINE_SETTINGS.overlap_enlargement_fraction
     count = 0
-    stack = [UnprovedStrip(0.0, 1.0, 0.0, MOVING_LINE_SETTINGS.first_half_height_ratio * depth)]
+    stack = [UnprovedStrip(0.0, 1.0, 0.0, MOVING_LINE_SETTINGS.first_half_height_over_depth * depth)]
     while len(stack) > 0:
         start, stop, y, half_y = stack.pop()
         middle = interpolate_ends((start + stop) / 2, first, last)
@@ -167,10 +167,10 @@ def proves_no_crossing(
             # The first rectangle is centred on the real axis: the lower half plane mirrors the upper.
             centre_y = y + half_y if y > 0 else 0.0
             half = (enlargement * half_y, enlargement * half_p)
-            proved, cost_y, cost_p = examine_rectangle(middle, centre_y, direction, half, slope)
+            proved, cost_y, cost_p = rectangle_proof_and_costs(middle, centre_y, direction, half, slope)
             if proved:
                 y = centre_y + half_y
-                max_half = MOVING_LINE_SETTINGS.max_half_height_ratio * math.hypot(middle.line, y)
+                max_half = MOVING_LINE_SETTINGS.max_half_height_over_w * math.hypot(middle.line, y)
                 half_y = min(MOVING_LINE_SETTINGS.half_height_growth_factor * half_y, max_half)
             elif cost_p > cost_y:
                 # Split in p from the height y upwards: the strip below y is already proved for both halves.

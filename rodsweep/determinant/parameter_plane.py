@@ -5,7 +5,7 @@ from functools import cached_property
 from math import exp, inf, log
 from typing import NamedTuple
 
-from ..model.parameters import CRUSHING_PARAMETERS, PARAMETERS
+from ..model.parameters import FORCE_AND_STRETCH_STIFFNESS, PARAMETERS
 from ..model.rod import Rod
 from .arm.determinant import arm_determinant
 from .exponents import MACHINE_EPSILON
@@ -158,7 +158,7 @@ class ParameterPlane:
         rod = self.rod_at(x, y)
         axis = self.axes[axis_index]
         force = rod.crushing_force
-        if force == inf or axis.name not in (*CRUSHING_PARAMETERS, "taper"):
+        if force == inf or axis.name not in (*FORCE_AND_STRETCH_STIFFNESS, "taper"):
             return max_step
         # The crushing force is proportional to k1 and quadratic in the taper, like the area.
         rate = {"F": 1.0, "k1": force / rod.k1}.get(axis.name, 2 * force / rod.taper)

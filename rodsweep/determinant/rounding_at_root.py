@@ -5,8 +5,8 @@ its evaluation.
 everywhere. At high eigenvalues of pulled rods the effects of one rounding error on several terms cancel, and
 that bound is up to a hundred times too large. Here the effects are summed with their signs, as D = 1 + (w/2)
 [T s + 4 N d] is evaluated, N = d(P^2)/dw. The notation is defined in `rodsweep.determinant.value` and
-`rodsweep.determinant.even_functions`; all errors but the result are in units of `exponents.ROUNDING_UNIT`.
-"""
+`rodsweep.determinant.even_functions`; all errors but the result are in units of
+`exponents.TWO_MACHINE_EPSILONS`."""
 
 import cmath
 import math
@@ -18,7 +18,7 @@ from .even_functions import EVEN_FUNCTION_SETTINGS
 from .even_parts import even_parts
 from .exponents import (
     EXPONENT_SETTINGS,
-    ROUNDING_UNIT,
+    TWO_MACHINE_EPSILONS,
     entire_cosh,
     hyperbolic_functions,
     modulus,
@@ -77,7 +77,7 @@ def rounding_error_at_root(w: complex, coefficients: Coefficients, log_scale: fl
         return rounding_error * math.exp(even.log_scale - log_scale)
     max_discriminant = EVEN_FUNCTION_SETTINGS.squares_below * (size_M * size_M + 4 * size_square)
     if modulus(M * M - 4 * square) > max_discriminant:
-        error, S = _error_by_roots(terms)
+        error, S = _error_and_scale_by_roots(terms)
     else:
         contrast = abs(c2 - gamma3) * (abs(c2 - gamma3) + c2 / 2)
         drag = 2 * soft * (T * abs(F) + 2 * nu)
@@ -86,12 +86,12 @@ def rounding_error_at_root(w: complex, coefficients: Coefficients, log_scale: fl
             contrast * size * size + drag * size + (F * soft) ** 2,
             2 * contrast * size + drag,
         )
-        error, S = _error_by_squares(squared_exponents(w, coefficients), terms, product)
-    return ROUNDING_UNIT * (math.exp(-log_scale) + size / 2 * error * math.exp(S - log_scale))
+        error, S = _error_and_scale_by_squares(squared_exponents(w, coefficients), terms, product)
+    return TWO_MACHINE_EPSILONS * (math.exp(-log_scale) + size / 2 * error * math.exp(S - log_scale))
 
 
 @compiled
-def _error_by_roots(terms: _DispersionTerms) -> tuple[float, float]:
+def _error_and_scale_by_roots(terms: _DispersionTerms) -> tuple[float, float]:
     """Returns (rounding error of (T s + 4 N d) exp(-S), S) as computed by `even_functions_by_roots`.
 
     With a = (2 T M - 4 N)/R and b = (2 N M - 4 T P^2)/R the sum T s + 4 N d is a C + b H."""
@@ -137,7 +137,7 @@ def _error_by_roots(terms: _DispersionTerms) -> tuple[float, float]:
 @compiled
 def _error_of_products(terms: _DispersionTerms, C: complex, H: complex) -> float:
     """Rounding error of (T s + 4 N d) R = 2 T (M C - 2 P^2 H) + 2 N (M H - 2 C) by the errors of T and N and
-    of the four products, which are rounded before they cancel. C, H: see `_error_by_roots`."""
+    of the four products, which are rounded before they cancel. C, H: see `_error_and_scale_by_roots`."""
     T, N, M, square, _, _, error_of_N = terms
     size_M = modulus(M)
     size_C = modulus(C)
@@ -149,7 +149,7 @@ def _error_of_products(terms: _DispersionTerms, C: complex, H: complex) -> float
 
 
 @compiled
-def _error_by_squares(
+def _error_and_scale_by_squares(
     exponents: tuple[complex, complex, complex], terms: _DispersionTerms, product: _ProductTerms
 ) -> tuple[float, float]:
     """Returns (rounding error of (z+' E(z+) + z-' E(z-)) exp(-S), S) as computed by `even_sum_by_squares`.

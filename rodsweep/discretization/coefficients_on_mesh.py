@@ -16,7 +16,7 @@ import numpy as np
 from ..arrays import Array
 from ..model.balance import BalanceCoefficients
 from ..model.material.jump import SHEAR_COLUMN
-from ..model.material.laws import LINEAR
+from ..model.material.laws import LINEAR_CONSTITUTIVE_LAW
 from ..model.material.rod_material import CrossSections, RodMaterial
 from ..model.rod import Rod
 from .elements.elements import ELEMENT_SETTINGS
@@ -66,7 +66,7 @@ def jumps_on_mesh(rod: Rod, mesh: Mesh) -> Jumps:
     sections = _sections_inside_elements(rod, mesh)
     c1, c2, c3 = sections.compliance
     # The cached array is shared by all rods with this taper, so its columns are filled in a copy.
-    sides = _shares_of_sides(rod.material, rod.taper, mesh).copy()
+    sides = _side_weights_at_jumps(rod.material, rod.taper, mesh).copy()
     for column, values in enumerate((sections.nu, c1, c3)):
         sides[..., column] = values[indices]
     sides[..., SHEAR_COLUMN] = c2[indices]
@@ -74,7 +74,7 @@ def jumps_on_mesh(rod: Rod, mesh: Mesh) -> Jumps:
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
-def _shares_of_sides(material: RodMaterial, taper: float, mesh: Mesh) -> Array:
+def _side_weights_at_jumps(material: RodMaterial, taper: float, mesh: Mesh) -> Array:
     """The `jump_sides` of an arm, (k, 2, 7), with the weights of both sides in the means, and 0 in the
     columns of the coefficients. Cached, because the weights are independent of all parameters except
     the taper."""
@@ -99,7 +99,7 @@ def jump_derivatives(rod: Rod, parameter_name: str, mesh: Mesh) -> Array:
     `parameter_name`, (k, 2, 3). Returns `NO_JUMP_DERIVATIVE` for a rod without jumps and for a linear law,
     for which the stress at a jump depends only on the mean strain."""
     indices, nodes = _indices_beside_jumps(rod.material, mesh)
-    if rod.material.constitutive_law is LINEAR or not len(nodes):
+    if rod.material.constitutive_law is LINEAR_CONSTITUTIVE_LAW or not len(nodes):
         return NO_JUMP_DERIVATIVE
     derivatives = rod.section_derivatives(parameter_name, mesh.one_sided_nodes[indices].ravel())
     c1, _, c3 = derivatives.compliance

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..model.balance import Values
-from ..model.material.laws import LINEAR
+from ..model.material.laws import LINEAR_CONSTITUTIVE_LAW
 from ..model.material.stress_strain import LocalSection, stress_tangent
 from ..model.rod import Rod
 from .coefficients_on_mesh import balance_coefficients_at_nodes, jumps_on_mesh
@@ -68,7 +68,7 @@ class RodOnMesh(ABC):
     @property
     def has_continuous_stresses(self) -> bool:
         """Whether S is continuous along the rod: the material does not jump, or the law is linear."""
-        return self.rod.material.constitutive_law is LINEAR or not len(self.nodal_rod.jumps)
+        return self.rod.material.constitutive_law is LINEAR_CONSTITUTIVE_LAW or not len(self.nodal_rod.jumps)
 
     def strains(self, x: Values) -> Values:
         """Strains (h1, h2, Pi) of states x at all nodes, tip included, (3, ..., nodes + 1); at a jump, the

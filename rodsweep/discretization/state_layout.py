@@ -75,8 +75,10 @@ class StateLayout:
     def interpolate(self, x: Array, E: Array) -> Array:
         """States x interpolated to another mesh. E: interpolation matrix from all nodes of the current mesh
         to all nodes of the other mesh, (nodes of the other mesh + 1, nodes + 1)."""
-        stress_count = self.components * self.node_count
-        slices = [slice(first, first + self.node_count) for first in range(0, stress_count, self.node_count)]
+        unknown_stress_count = self.components * self.node_count
+        slices = [
+            slice(first, first + self.node_count) for first in range(0, unknown_stress_count, self.node_count)
+        ]
         # Stresses at the tip are 0 on both meshes, so the row and the column of the tip are left out.
         stresses = [x[..., stress] @ E[:-1, :-1].T for stress in slices]
         return np.concatenate(

@@ -13,7 +13,7 @@ from ..arrays import Array
 from ..model.balance import Values
 from ..model.compiled.compilation import compiled
 from ..model.material.jump import LawUnknowns, unknowns_before_jump, unknowns_behind_jump
-from ..model.material.laws import LINEAR
+from ..model.material.laws import LINEAR_CONSTITUTIVE_LAW
 from ..model.rod import Rod
 from .coefficients_on_mesh import jumps_on_mesh
 from .element_strains import index_before_jump
@@ -84,13 +84,15 @@ def interpolate_stress(rod: Rod, S: Values, source: Mesh, target: Mesh) -> Value
     """
     E = interpolation_matrix(source, target)
     target_S = S @ E.T
-    target_jumps = NO_JUMPS if rod.material.constitutive_law is LINEAR else jumps_on_mesh(rod, target)
+    target_jumps = (
+        NO_JUMPS if rod.material.constitutive_law is LINEAR_CONSTITUTIVE_LAW else jumps_on_mesh(rod, target)
+    )
     if len(target_jumps.nodes):
         source_nodes = jumps_on_mesh(rod, source).nodes
         for column, component in zip(SHARE_COLUMNS, JUMPING_COMPONENTS, strict=True):
             target_S[component] = (
                 S[component]
-                @ _discontinuous_interpolation(
+                @ _interpolation_matrix_with_jumps(
                     E, source, target, source_nodes, target_jumps.nodes, target_jumps.jump_sides[..., column]
                 ).T
             )
@@ -112,7 +114,7 @@ def interpolate_state_stress(nodal: NodalRod, S: Values, source: Mesh, rod: Rod,
     sides_of_jumps = stresses_at_both_sides(nodal, S)
     for node, values in zip(nodal.jumps, sides_of_jumps, strict=True):
         for side, side_values in enumerate(values):
-            rows = element == _element_behind(source, node) - 1 + side
+            rows = element == _element_starting_at(source, node) - 1 + side
             for component, value in zip(JUMPING_COMPONENTS, side_values, strict=True):
                 # Each side has its own value at the node of the jump, so only the share of this node changes.
                 target_S[component][..., rows] += (value - S[component, ..., node])[..., None] * E[rows, node]
@@ -123,7 +125,7 @@ def interpolate_state_stress(nodal: NodalRod, S: Values, source: Mesh, rod: Rod,
     return target_S
 
 
-def _discontinuous_interpolation(  # noqa: PLR0913, PLR0917 - of both meshes
+def _interpolation_matrix_with_jumps(  # noqa: PLR0913, PLR0917 - of both meshes
     E: Array,
     source: Mesh,
     target: Mesh,
@@ -138,7 +140,7 @@ def _discontinuous_interpolation(  # noqa: PLR0913, PLR0917 - of both meshes
     # replaces this value.
     matrix = E.copy()
     element = np.searchsorted(source.edges, target.node_positions, side="right") - 1
-    elements_at_jumps = [_element_behind(source, node) for node in source_nodes]
+    elements_at_jumps = [_element_starting_at(source, node) for node in source_nodes]
 
     def row_of(element_index: int, *, to_first_node: bool) -> Array:
         p = source.orders[element_index]
@@ -164,7 +166,7 @@ def _discontinuous_interpolation(  # noqa: PLR0913, PLR0917 - of both meshes
     return matrix
 
 
-def _element_behind(mesh: Mesh, node: int) -> int:
+def _element_starting_at(mesh: Mesh, node: int) -> int:
     """Index of the element that begins at the node `node` of a jump."""
     return index_before_jump(int(node), mesh.element_nodes) + 1 - int(node)
 

@@ -27,7 +27,7 @@ EQUALITY_TOLERANCE = 1e-12
 errors."""
 POINT_DIMENSION = "number_of_point"
 """Name of the dimension of selected points of the file."""
-CLICK_TOLERANCE = 0.25
+CLICK_TOLERANCE_IN_SPACINGS = 0.25
 """A click selects the nearest stored load if the distance between click and load, divided by the smallest
 spacing of stored loads, is below this number."""
 
@@ -72,10 +72,10 @@ class AnswersFromFile:
         is_filmed = flag_words(point["status"]).item() == "cycle" and point.sizes["shape"] >= MIN_SHAPES
         return point if is_filmed else None
 
-    def load_near(self, state: PageState, load: float) -> float:
+    def load_selected_by_click(self, state: PageState, load: float) -> float:
         """Load that a click at the load `load` selects, in the unit of the control: the nearest stored load
-        if its distance is small, see `CLICK_TOLERANCE`; otherwise `load`. Also `load` if the file has no
-        cycles, fewer than two loads for the rod of `state`, or results of the other tab."""
+        if its distance is small, see `CLICK_TOLERANCE_IN_SPACINGS`; otherwise `load`. Also `load` if the file
+        has no cycles, fewer than two loads for the rod of `state`, or results of the other tab."""
         if state.tab != self.state.tab or not self.has_cycles:
             return load
         stored_loads = np.unique(
@@ -85,7 +85,7 @@ class AnswersFromFile:
             return load
         nearest_load = float(stored_loads[np.argmin(np.abs(stored_loads - load))])
         spacing = float(np.min(np.diff(stored_loads)))
-        return nearest_load if abs(nearest_load - load) < CLICK_TOLERANCE * spacing else load
+        return nearest_load if abs(nearest_load - load) < CLICK_TOLERANCE_IN_SPACINGS * spacing else load
 
     def _control_values(self, tab: str, name: str) -> Array:
         """Values of the parameter or quantity `name` at all points of the file, (points,), in the unit of the

@@ -11,9 +11,9 @@ from bokeh.models.css import StyleSheet
 
 from ..post.summary.arm.arm import quantity_words
 from .slider_scales import SLIDER_SCALES, ControlScale, PictureAxis
-from .state import MATERIAL_CHOICE_NAMES, SECOND_PARAMETERS, TAB_DEFAULTS, PageState
+from .state import LAW_MENU_ENTRIES, SECOND_PARAMETERS, TAB_DEFAULTS, PageState
 
-MAX_FORCE_LABEL = "Largest force F (k3/L^2)"
+LABEL_OF_MAX_FORCE = "Largest force F (k3/L^2)"
 SLIDER_STEP_COUNT = 400
 """Number of steps of a slider between its ends."""
 ChangeCallback = Callable[..., None]
@@ -94,12 +94,10 @@ class Controls:
         self.tabs = Tabs(tabs=panels, sizing_mode="stretch_width", name="tabs", stylesheets=sheets)
         self.tabs.on_change("active", self._tab_changed)
         new_select = partial(Select, sizing_mode="stretch_width", stylesheets=sheets)
-        self.law = new_select(
-            title="Law of the material", name="law", options=list(MATERIAL_CHOICE_NAMES.items())
-        )
+        self.law = new_select(title="Law of the material", name="law", options=list(LAW_MENU_ENTRIES.items()))
         self.across = new_select(title="Second parameter of the diagram", name="across")
         self.F_max = TextInput(
-            title=MAX_FORCE_LABEL, name="F_max", sizing_mode="stretch_width", stylesheets=sheets
+            title=LABEL_OF_MAX_FORCE, name="F_max", sizing_mode="stretch_width", stylesheets=sheets
         )
         for key, widget in (("law", self.law), ("across", self.across), ("F_max", self.F_max)):
             widget.on_change("value", partial(self._choice_changed, key))
@@ -121,11 +119,11 @@ class Controls:
         finally:
             self._is_updating = False
 
-    def show_largest_load(self, state: PageState, axis: PictureAxis) -> None:
+    def show_largest_pressure(self, state: PageState, axis: PictureAxis) -> None:
         """Writes, for an arm, the pressure that corresponds to the largest force above the field of this
         force."""
         pressure_clause = f": {state.largest_force() * axis.factor:.4g} kPa" if state.tab == "arm" else ""
-        self.F_max.title = MAX_FORCE_LABEL + pressure_clause
+        self.F_max.title = LABEL_OF_MAX_FORCE + pressure_clause
 
     def _field_changed(self, name: str, text: str) -> None:
         self._changed(values={name: text})

@@ -22,7 +22,7 @@ from .solving.tip_release import TipPosition
 from .state import PageState, dimensionless_parameters_of, from_address
 from .texts import progress_text, solving_text
 
-STOPPED_SENTENCE = "Stopped. A change of the rod starts the solve again."
+SOLVE_STOPPED_SENTENCE = "Stopped. A change of the rod starts the solve again."
 """Sentence shown in place of a picture after the user has stopped its solve."""
 
 
@@ -94,7 +94,7 @@ class Page:
                 if kind in kinds.TIP_KINDS:
                     self.contents.beating.remove_dragged_shape()
                 elif kind not in kinds.MANUAL_KINDS:
-                    self.contents.show_message(kind, STOPPED_SENTENCE)
+                    self.contents.show_message(kind, SOLVE_STOPPED_SENTENCE)
         self._show_solving()
 
     def drag(self, kind: str, tip: TipPosition) -> None:
@@ -143,7 +143,7 @@ class Page:
             self._cancel_request(kind)
         for kind in (*((kinds.LOAD_KIND,) if F is None else ()), *kinds.INSTANT_KINDS):
             self._send_request(kind)
-        self.contents.show_point(state)
+        self.contents.show_state(state)
         if F is not None:
             self.contents.move_load_lines(state, F)
         self._show_solving()
@@ -197,11 +197,11 @@ class Page:
         self.progress.pop(kind, None)
 
         def receive(reply: Reply) -> None:
-            self._receive(request, reply)
+            self._pass_to_event_loop(request, reply)
 
         self.solvers.ask(self.session, request, receive, receive)
 
-    def _receive(self, request: SolveRequest, reply: Reply) -> None:
+    def _pass_to_event_loop(self, request: SolveRequest, reply: Reply) -> None:
         """Passes a reply to the event loop of the document; only this loop may change the document."""
         if self.is_open:
             self.document.add_next_tick_callback(lambda: self._on_answer(request, reply))
@@ -246,5 +246,5 @@ class Page:
     def _move_load(self, event: Tap) -> None:
         """Sets the load to the horizontal position of a click."""
         if event.x is not None:
-            load = event.x if self.stored is None else self.stored.load_near(self.state, event.x)
+            load = event.x if self.stored is None else self.stored.load_selected_by_click(self.state, event.x)
             self.change({self.state.load: SLIDER_SCALES[self.state.tab][self.state.load].text(load)})

@@ -23,7 +23,7 @@ from .solving.diagrams import can_follow_cycle_curves
 from .state import PageState
 from .texts import SolvingIndicator, add_texts
 
-NO_CYCLE_CURVES_SENTENCE = "No folds and no torus points of cycles were found in this diagram."
+NO_CYCLE_CURVES_FOUND_SENTENCE = "No folds and no torus points of cycles were found in this diagram."
 """Sentence above the diagram after a search that found no curves of cycles."""
 
 
@@ -90,10 +90,10 @@ class PageContents:
         document.template = template_text("page.html")
         document.template_variables["page_css"] = template_text("page.css")
 
-    def show_point(self, state: PageState) -> None:
+    def show_state(self, state: PageState) -> None:
         """Marks the second parameter and the load of `state` in the diagram, and updates controls, address,
         config and Python lines."""
-        self.controls.show_largest_load(state, load_axis(state))
+        self.controls.show_largest_pressure(state, load_axis(state))
         x, y = (
             SLIDER_SCALES[state.tab][name].value(state.values[name]) for name in (state.load, state.second)
         )
@@ -142,7 +142,7 @@ class PageContents:
             scales = SLIDER_SCALES[state.tab]
             self.diagram.show(answer, scales[state.load], scales[state.second])
             if kind == "cycles" and len(answer["cycle_curve_x"]) == 0:
-                self.diagram.card.show_sentence_above(NO_CYCLE_CURVES_SENTENCE)
+                self.diagram.card.show_sentence_above(NO_CYCLE_CURVES_FOUND_SENTENCE)
         self.numbers.show(kind, answer)
 
     def show_message(self, kind: str, sentence: str) -> None:

@@ -33,7 +33,7 @@ ALLOWED_HOSTS = (LISTEN_ADDRESS, "localhost")
 UNUSED_SESSION_MILLISECONDS = 5000
 """A session ends this time after its page was closed, in milliseconds; until then a page whose connection was
 lost may connect again."""
-CHECK_MILLISECONDS = 1000
+SESSION_CHECK_MILLISECONDS = 1000
 """Time between two searches for sessions to end, in milliseconds. The next page may have to wait for the
 solves of a closed page until its session ends."""
 
@@ -95,7 +95,7 @@ class ExploreServer:
             {"/": application},
             extra_websocket_origins=[f"{host}:{self.port}" for host in ALLOWED_HOSTS],
             unused_session_lifetime_milliseconds=UNUSED_SESSION_MILLISECONDS,
-            check_unused_sessions_milliseconds=CHECK_MILLISECONDS,
+            check_unused_sessions_milliseconds=SESSION_CHECK_MILLISECONDS,
         )
         self.http = UndelayedServer(tornado)
         self.http.add_sockets(sockets)

@@ -20,9 +20,9 @@ from .state_of_file import state_from_config
 
 ADDRESS_SCRIPT = 'history.replaceState(null, "", location.pathname + "?" + address.tags[0])'
 """Browser script that writes the state of the page into the address bar."""
-SAVE_SCRIPT = 'download(new Blob([lines.config], {type: "application/yaml"}), "explore.yaml")'
+SAVE_CONFIG_SCRIPT = 'download(new Blob([lines.config], {type: "application/yaml"}), "explore.yaml")'
 """Browser script that saves the config as a file."""
-FILM_SCRIPT = """
+SAVE_FILM_SCRIPT = """
 const bytes = Uint8Array.from(atob(film.tags[0]), (letter) => letter.charCodeAt(0))
 if (bytes.length > 0) download(new Blob([bytes], {type: "image/gif"}), "explore.gif")
 """
@@ -32,7 +32,7 @@ COPY_SCRIPT = "navigator.clipboard.writeText(lines.{})"
 `ExportedLines`."""
 CONFIG_TASKS = ["limit_cycle", "spectrum", "thresholds", "branch"]
 """Tasks for which the page writes a config; the first is the default."""
-FILM_COMMANDS = """# the film of the arm:
+FILM_COMMANDS_COMMENT = """# the film of the arm:
 # rodsweep run explore.yaml --set limit_cycle.shapes=48
 # rodsweep plot explore.h5 --what animation -o explore.gif
 """
@@ -68,7 +68,7 @@ class ExportPanel:
         self.task = Select(title="Config of the task", name="task", **tasks, stylesheets=[widgets])
         self.task.on_change("value", self._choose_task)
         save = Button(label="Save the config", name="save_button", stylesheets=[widgets])
-        save.js_on_click(_saving_script(SAVE_SCRIPT, lines=self.shared_lines))
+        save.js_on_click(_saving_script(SAVE_CONFIG_SCRIPT, lines=self.shared_lines))
         self.file = FileInput(title="Load a config", name="load", accept=".yaml,.yml", stylesheets=[widgets])
         self.file.on_change("value", self._load_chosen_file)
         copies = []
@@ -77,7 +77,7 @@ class ExportPanel:
             copy_lines = CustomJS(args={"lines": self.shared_lines}, code=COPY_SCRIPT.format(lines))
             copies[-1].js_on_click(copy_lines)
         self.film = Div(name="film", tags=[""], visible=False)
-        self.film.js_on_change("tags", _saving_script(FILM_SCRIPT, film=self.film))
+        self.film.js_on_change("tags", _saving_script(SAVE_FILM_SCRIPT, film=self.film))
         self.address.js_on_change("tags", CustomJS(args={"address": self.address}, code=ADDRESS_SCRIPT))
         self.root = Column(
             self.address, self.task, self.yaml, Row(copies[0], save), self.file, self.python, copies[1],
@@ -115,7 +115,7 @@ class ExportPanel:
     def _config(self) -> str:
         """Config for the task that the user has chosen."""
         text = self._state.yaml(self.task.value)
-        return text + FILM_COMMANDS if self.task.value == CONFIG_TASKS[0] else text
+        return text + FILM_COMMANDS_COMMENT if self.task.value == CONFIG_TASKS[0] else text
 
     def _load_chosen_file(self, attribute: str, previous: str, content: str) -> None:
         """Passes the text of the chosen file to the page. content: content in base64; empty after a clearing.

@@ -17,13 +17,13 @@ from ..errors import InputError, short_repr
 from ..model.parameters import OPTIONAL_PARAMETERS
 from ..model.units import load_over_flutter
 
-MATERIAL_CHOICES: dict[str, dict[str, str]] = {
+MATERIAL_SECTION_BY_LAW: dict[str, dict[str, str]] = {
     "linear": {},
     "fixed": {"law": "neo_hookean", "section": "fixed"},
     "swelling": {"law": "neo_hookean", "section": "swelling"},
 }
 """Keys of the config section `material`, by choice of the constitutive law on the page."""
-MATERIAL_CHOICE_NAMES = {
+LAW_MENU_ENTRIES = {
     "linear": "linear",
     "fixed": "neo-Hookean, fixed section",
     "swelling": "neo-Hookean, swelling section",
@@ -48,7 +48,7 @@ SECOND_PARAMETERS = {
 """Choices of the diagram's second parameter on each tab; the first is the default."""
 PAGE_F_MAX = "200"
 """Largest force with which the page opens, in k3/L^2."""
-LARGEST_FORCE_KEYS = {"thresholds": "F_max", "branch": "stop"}
+LARGEST_FORCE_KEY_BY_TASK = {"thresholds": "F_max", "branch": "stop"}
 """Key of the largest force in the section of a task, by task."""
 
 
@@ -63,7 +63,7 @@ class PageState:
     arm: Mapping[str, str] = field(default_factory=lambda: dict(DEFAULT_ARM))
     """Texts on the tab "arm", by name of the quantity."""
     law: str = "linear"
-    """Constitutive law, a key of `MATERIAL_CHOICES`."""
+    """Constitutive law, a key of `MATERIAL_SECTION_BY_LAW`."""
     across: str = ""
     """Second parameter of the diagram that the user has chosen; empty for the default of the tab."""
     F_max: str = PAGE_F_MAX
@@ -92,7 +92,7 @@ class PageState:
     def subject(self) -> SoftRod | Arm:
         """Rod or arm of the visible tab. For invalid values, raises the same InputError as the command
         line."""
-        material: dict[str, Any] = dict(MATERIAL_CHOICES[self.law])
+        material: dict[str, Any] = dict(MATERIAL_SECTION_BY_LAW[self.law])
         if self.tab == "arm":
             return Arm(**{name: text.strip() for name, text in self.arm.items()}, **material)
         for name, text in self.rod.items():
@@ -141,9 +141,11 @@ class PageState:
             "task": task,
             "parameters": values if self.tab == "rod" else {"arm": values},
         }
-        document |= {"material": dict(MATERIAL_CHOICES[self.law])} if MATERIAL_CHOICES[self.law] else {}
-        if task in LARGEST_FORCE_KEYS:
-            document[task] = {LARGEST_FORCE_KEYS[task]: self.largest_force()}
+        document |= (
+            {"material": dict(MATERIAL_SECTION_BY_LAW[self.law])} if MATERIAL_SECTION_BY_LAW[self.law] else {}
+        )
+        if task in LARGEST_FORCE_KEY_BY_TASK:
+            document[task] = {LARGEST_FORCE_KEY_BY_TASK[task]: self.largest_force()}
         return tree_yaml(document)
 
     def python(self) -> str:
@@ -179,7 +181,7 @@ def from_address(query: str, default: PageState | None = None) -> PageState:
     query_values = dict(parse_qsl(query.lstrip("?"), keep_blank_values=True))
     tab = _require_choice("tab", query_values.pop("tab", state.tab), TAB_DEFAULTS)
     state = replace(state, tab=tab)
-    law = _require_choice("law", query_values.pop("law", state.law), MATERIAL_CHOICES)
+    law = _require_choice("law", query_values.pop("law", state.law), MATERIAL_SECTION_BY_LAW)
     second = _require_choice("across", query_values.pop("across", state.second), SECOND_PARAMETERS[tab])
     state = replace(state, law=law, across=second, F_max=query_values.pop("F_max", state.F_max))
     defaults = TAB_DEFAULTS[tab]

@@ -26,14 +26,14 @@ from .solving.requests import crushing_force
 from .state import (
     DEFAULT_ARM,
     DEFAULT_ROD,
-    LARGEST_FORCE_KEYS,
-    MATERIAL_CHOICES,
+    LARGEST_FORCE_KEY_BY_TASK,
+    MATERIAL_SECTION_BY_LAW,
     PAGE_F_MAX,
     SECOND_PARAMETERS,
     PageState,
 )
 
-HIDDEN_QUANTITIES = ("density_difference", "fluid_density", "law", "section")
+KEYS_OUTSIDE_ARM_TAB = ("density_difference", "fluid_density", "law", "section")
 """Keys of an arm that are ignored or have a control outside the tab of the arm."""
 RELATIVE_PRESSURE_KEY = "pressure_over_flutter"
 """Key of an arm's pressure relative to flutter; the page has it as text in the control of the pressure."""
@@ -97,10 +97,10 @@ def state_from_config(config: Config, path: Path, F_max: str = PAGE_F_MAX) -> Pa
 def _largest_force(config: Config, default: str) -> str:
     """Largest force of a search for thresholds, or of branches along F, as text; `default` for other
     tasks."""
-    key = LARGEST_FORCE_KEYS.get(config.task)
+    key = LARGEST_FORCE_KEY_BY_TASK.get(config.task)
     options: Any = getattr(config, config.task, None)
     if key is not None and getattr(options, "along", "F") == "F":
-        return _exact_number_text(getattr(options, key))
+        return _fifteen_digit_text(getattr(options, key))
     return default
 
 
@@ -114,7 +114,7 @@ def _state_of_arm(config: Config, path: Path) -> PageState:
     quantities = {name: getattr(section, name) for name in type(section).model_fields}
     quantities = {name: value for name, value in quantities.items() if value is not None}
     shares = quantities.pop(RELATIVE_PRESSURE_KEY, None)
-    omitted = [name for name in quantities if name not in (*DEFAULT_ARM, *HIDDEN_QUANTITIES)]
+    omitted = [name for name in quantities if name not in (*DEFAULT_ARM, *KEYS_OUTSIDE_ARM_TAB)]
     if omitted:
         reason = f"the page cannot show an arm with {omitted[0]}"
         raise InputError(f"{path}: {reason}; its controls are {', '.join(DEFAULT_ARM)}")
@@ -123,7 +123,7 @@ def _state_of_arm(config: Config, path: Path) -> PageState:
     for name, values in axes.items():
         scale = SLIDER_SCALES["arm"][name]
         value = scale.factor * float(values[len(values) // 2])
-        texts[name] = scale.text(value) if len(values) > 1 else f"{_exact_number_text(value)} {scale.unit}"
+        texts[name] = scale.text(value) if len(values) > 1 else f"{_fifteen_digit_text(value)} {scale.unit}"
     if shares is not None:
         texts["pressure"] = f"{_middle_value_text(shares.array())} of flutter"
     return PageState(tab="arm", arm=texts, law=_law_key(config, path), across=_second_parameter("arm", axes))
@@ -137,21 +137,21 @@ def _second_parameter(tab: str, axes: Mapping[str, np.ndarray]) -> str:
 
 
 def _law_key(config: Config, path: Path) -> str:
-    """Constitutive law of a config, as a key of `MATERIAL_CHOICES`; "linear" for a law that the page does not
-    offer. Raises InputError if the arm has a profile."""
+    """Constitutive law of a config, as a key of `MATERIAL_SECTION_BY_LAW`; "linear" for a law that the page
+    does not offer. Raises InputError if the arm has a profile."""
     rod_material = config.rod_material
     if rod_material.profile is not None:
         raise InputError(f"{path}: the page cannot show an arm with a profile, only uniform arms and cones")
     law_values = {"law": rod_material.law, "section": rod_material.section}
-    return next((key for key, value in MATERIAL_CHOICES.items() if value == law_values), "linear")
+    return next((key for key, value in MATERIAL_SECTION_BY_LAW.items() if value == law_values), "linear")
 
 
 def _middle_value_text(values: np.ndarray) -> str:
     """Middle of the values, (n,), as text: rounded, or with all digits if there is one value."""
-    return f"{values[len(values) // 2]:.6g}" if len(values) > 1 else _exact_number_text(values[0])
+    return f"{values[len(values) // 2]:.6g}" if len(values) > 1 else _fifteen_digit_text(values[0])
 
 
-def _exact_number_text(value: float) -> str:
+def _fifteen_digit_text(value: float) -> str:
     """A number with all its digits, except the last, in which the conversion of units makes errors."""
     return f"{value:.15g}"
 

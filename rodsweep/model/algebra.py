@@ -20,14 +20,14 @@ class LieAlgebra(NamedTuple):
     """Structure constants of a Lie algebra, and the sparsity patterns of ad and ad*.
 
     components: indices of the components. structure_constants: the nonzero constants. ad_pattern: pattern of
-    ad; ad_pattern[a][c] is True if (ad_E V)_a depends on V_c. coad_pattern: pattern of the derivative of ad*;
-    coad_pattern[c][b] is True if (ad*_E Sigma)_c depends on Sigma_b or on E_b, which depends on Sigma_b.
-    """
+    ad; ad_pattern[a][c] is True if (ad_E V)_a depends on V_c. coad_derivative_pattern: pattern of the
+    derivative of ad*; coad_derivative_pattern[c][b] is True if (ad*_E Sigma)_c depends on Sigma_b or on E_b,
+    which depends on Sigma_b."""
 
     components: range
     structure_constants: tuple[StructureConstant, ...]
     ad_pattern: SparsityPattern
-    coad_pattern: SparsityPattern
+    coad_derivative_pattern: SparsityPattern
 
     @property
     def dimension(self) -> int:
@@ -35,7 +35,7 @@ class LieAlgebra(NamedTuple):
         return len(self.components)
 
     @property
-    def distinct_pairs(self) -> list[tuple[int, int]]:
+    def ordered_distinct_pairs(self) -> list[tuple[int, int]]:
         """All ordered pairs (a, b) of indices of components of the algebra with a != b."""
         return [(a, b) for a in self.components for b in self.components if a != b]
 

@@ -30,7 +30,7 @@ K_FRACTIONS: Array = MIN_K_FRACTION ** (1 - np.arange(WAVE_SAMPLE_COUNT) / WAVE_
 """Ratios K/(F g) of all samples of K = kappa^2, increasing, (WAVE_SAMPLE_COUNT,)."""
 
 
-def most_amplified_wave(rod: Rod) -> tuple[float, float]:
+def largest_growth_and_wave_number(rod: Rod) -> tuple[float, float]:
     """Returns (growth rate in 1/tau2, wave number in 1/L) of the most amplified wave; (0, 0) if all waves
     decay. The wave travels on an infinitely long rod with the coefficients of the uniform `rod`. The function
     is not compiled, so that `rodsweep check` need not load numba."""
@@ -38,7 +38,7 @@ def most_amplified_wave(rod: Rod) -> tuple[float, float]:
     # The growth is positive only for K < F g, so without such K every wave decays; nan counts as none.
     if not F * rod.g > 0:
         return 0.0, 0.0
-    rate, wave_number = _largest_growth(F * rod.g, rod.g * nu, c2, gamma3)
+    rate, wave_number = _scaled_growth_and_wave_number(F * rod.g, rod.g * nu, c2, gamma3)
     return float(rate), float(wave_number)
 
 
@@ -70,17 +70,17 @@ def _interval_midpoints(material: RodMaterial) -> tuple[Array, Array]:
 
 
 @lru_cache(maxsize=CACHED_ARM_COUNT)
-def most_amplified_local_waves(rod: Rod) -> tuple[Array, Array]:
+def local_growths_and_wave_numbers(rod: Rod) -> tuple[Array, Array]:
     """Returns (growth rates, wave numbers) of the most amplified wave at each point of `sampled_arm(rod)`,
     (points,) each. A local wave travels on an infinitely long uniform rod with the coefficients of the arm at
     the point. If all waves at a point decay, both numbers are 0."""
-    return _most_amplified_waves(rod.F, sampled_arm(rod).local)
+    return _growths_and_wave_numbers(rod.F, sampled_arm(rod).local)
 
 
 def largest_growth_at_ends(rod: Rod) -> float:
     """The larger growth rate, in 1/tau2, of the most amplified local waves at the two ends of an arm: the
     points of `sampled_arm` are too far apart for a thin tip."""
-    return float(_most_amplified_waves(rod.F, end_coefficients(rod))[0].max())
+    return float(_growths_and_wave_numbers(rod.F, end_coefficients(rod))[0].max())
 
 
 def end_coefficients(rod: Rod) -> LocalCoefficients:
@@ -104,16 +104,18 @@ def wave_numbers_of_growth_at_ends(rod: Rod) -> Array:
     """Wave numbers |q| of the exponentials at the two ends of an arm that grow at the largest rate of the
     local waves there, (2,); 0 at an end at which all local waves decay."""
     coefficients = end_coefficients(rod)
-    growth, _ = _most_amplified_waves(rod.F, coefficients)
+    growth, _ = _growths_and_wave_numbers(rod.F, coefficients)
     return np.where(growth > 0, local_wave_numbers(growth, rod.F, coefficients), 0.0)
 
 
-def _most_amplified_waves(F: float, coefficients: LocalCoefficients) -> tuple[Array, Array]:
-    """Returns (growth rates, wave numbers) as `most_amplified_local_waves`, at the points of
+def _growths_and_wave_numbers(F: float, coefficients: LocalCoefficients) -> tuple[Array, Array]:
+    """Returns (growth rates, wave numbers) as `local_growths_and_wave_numbers`, at the points of
     `coefficients`."""
     nu, c2, c3, gamma2, gamma3, g = coefficients
     # A local rod has its own units: the formula needs bending compliance and drag scaled to 1.
-    rate, wave_number = _largest_growth(np.maximum(F * c3 * g, 0.0), g * nu, c2 / c3, gamma3 / gamma2)
+    rate, wave_number = _scaled_growth_and_wave_number(
+        np.maximum(F * c3 * g, 0.0), g * nu, c2 / c3, gamma3 / gamma2
+    )
     # Rates return to the unit tau2 of the base; the wave number already is in 1/L.
     return rate / (gamma2 * c3), wave_number
 
@@ -127,7 +129,7 @@ def expected_unstable_count(rod: Rod) -> float:
     return float(weights @ np.sqrt(np.maximum(rod.F * coefficients.c3 * coefficients.g, 0.0))) / math.pi
 
 
-def _largest_growth(max_K: Any, damping_at_0: Any, c2: Any, gamma3: Any) -> tuple[Any, Any]:
+def _scaled_growth_and_wave_number(max_K: Any, damping_at_0: Any, c2: Any, gamma3: Any) -> tuple[Any, Any]:
     """Returns (growth rate, wave number) of the most amplified wave for k3 = gamma2 = 1; the rate is 0 if
     every wave decays.
 
@@ -137,7 +139,9 @@ def _largest_growth(max_K: Any, damping_at_0: Any, c2: Any, gamma3: Any) -> tupl
     """
     # The closed formula needs a damped limit K = 0; a strongly pulled rod may not have one.
     if not np.min(damping_at_0) > 0:
-        return _largest_sampled_growth(*(np.asarray(x)[..., None] for x in (max_K, damping_at_0, c2, gamma3)))
+        return _sampled_growth_and_wave_number(
+            *(np.asarray(x)[..., None] for x in (max_K, damping_at_0, c2, gamma3))
+        )
     # At the largest w the derivative of the dispersion relation with respect to K is 0:
     # (c2 + gamma3) w + 2 K = F g. Without K the relation is quadratic in w. In units of `unit` no allowed
     # force overflows.
@@ -156,10 +160,12 @@ def _largest_growth(max_K: Any, damping_at_0: Any, c2: Any, gamma3: Any) -> tupl
         return max_K * relative_max_K / denominator, np.sqrt(max_K * (damping / denominator))
 
 
-def _largest_sampled_growth(max_K: Any, damping_at_0: Any, c2: Any, gamma3: Any) -> tuple[Array, Array]:
-    """`_largest_growth` by comparison of WAVE_SAMPLE_COUNT wave numbers. On a pulled rod with g < 0 the
-    growth rate may have a maximum at K = 0 only, or no maximum. Arguments: as in `_largest_growth`, (...,
-    1)."""
+def _sampled_growth_and_wave_number(
+    max_K: Any, damping_at_0: Any, c2: Any, gamma3: Any
+) -> tuple[Array, Array]:
+    """`_scaled_growth_and_wave_number` by comparison of WAVE_SAMPLE_COUNT wave numbers. On a pulled rod with
+    g < 0 the growth rate may have a maximum at K = 0 only, or no maximum. Arguments: as in
+    `_scaled_growth_and_wave_number`, (..., 1)."""
     product = c2 * gamma3
     K = max_K * K_FRACTIONS
     # Both branches of each `where` are evaluated, also where they divide by 0.

@@ -183,7 +183,9 @@ PARAMETERS = {
 
 NONLINEAR_PARAMETERS = tuple(name for name, parameter in PARAMETERS.items() if not parameter.optional)
 """Names of the parameters of the nonlinear rod, without the optional parameters."""
-LINEAR_PARAMETERS = tuple(name for name in NONLINEAR_PARAMETERS if PARAMETERS[name].in_linear_problem)
+NON_OPTIONAL_LINEAR_PARAMETERS = tuple(
+    name for name in NONLINEAR_PARAMETERS if PARAMETERS[name].in_linear_problem
+)
 """Names of the parameters of the transverse linear problem, without the optional parameters."""
 OPTIONAL_PARAMETERS = tuple(name for name, parameter in PARAMETERS.items() if parameter.optional)
 """Names of the parameters that a result file contains only if the config contains them."""
@@ -191,17 +193,19 @@ SCALING_PAIRS = tuple(
     (name, scaled) for name, parameter in PARAMETERS.items() for scaled in parameter.scaled_names
 )
 """All pairs (parameter name, name of a stiffness or drag that the parameter multiplies)."""
-TRANSVERSE_PARAMETERS = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
+TRANSVERSE_PARAMETERS = (*NON_OPTIONAL_LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
 """Names of all parameters of the transverse linear problem, optional parameters included."""
 RANGE_CHECKS = [(name, parameter.allowed.contains) for name, parameter in PARAMETERS.items()]
 """(name, predicate) of every parameter; the predicate is True for values in the range. The list is prepared
 once, because sweeps create many rods."""
-CRUSHING_PARAMETERS = ("F", "k1")
+FORCE_AND_STRETCH_STIFFNESS = ("F", "k1")
 """Names of the force and of the stretch stiffness: a rod of linear material is crushed if F >= k1."""
 
 
-def parameter_names_except(excluded: str, names: tuple[str, ...] = LINEAR_PARAMETERS) -> tuple[str, ...]:
-    """All names in `names` except `excluded`. names: by default `LINEAR_PARAMETERS`."""
+def parameter_names_except(
+    excluded: str, names: tuple[str, ...] = NON_OPTIONAL_LINEAR_PARAMETERS
+) -> tuple[str, ...]:
+    """All names in `names` except `excluded`. names: by default `NON_OPTIONAL_LINEAR_PARAMETERS`."""
     return tuple(name for name in names if name != excluded)
 
 

@@ -136,7 +136,7 @@ class Rod:
         return self._coefficients is not None
 
     @property
-    def equivalent_linear_rod(self) -> tuple["Rod", float]:
+    def equivalent_linear_rod_and_rate(self) -> tuple["Rod", float]:
         """Returns (linear rod, rate). Eigenvalues of this rod are `rate` times eigenvalues of the linear rod.
         With the bending factor K = B(nu) of this rod's law, the linear rod has the coefficients (F/K, nu, c2
         K, gamma3), and rate = K. Raises NotUniform for an arm that varies."""

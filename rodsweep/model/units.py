@@ -31,7 +31,7 @@ COMMON_UNITS = ("cm", "mm", "kPa", "MPa", "GPa", "Pa s", "mPa s", "kPa s", "mN",
 """Units that are suggested if the user's text differs from the unit only in blanks or capital letters."""
 MULTIPLE_OF_FLUTTER_PATTERN = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*(%?)\s*(?:of|times)\s+flutter\s*", re.ASCII)
 """Pattern of a load as a multiple of the flutter threshold, "1.2 of flutter" or "120 % of flutter"."""
-RELATIVE_LOAD_PATTERN = re.compile(r"%?\s*(of|times|above|below)\b|.*flutter", re.ASCII)
+INTENDED_RELATIVE_LOAD_PATTERN = re.compile(r"%?\s*(of|times|above|below)\b|.*flutter", re.ASCII)
 """Pattern of the unit of a text that is meant as a load relative to flutter, such as "of fluter"."""
 PERCENT_FROM_FLUTTER_PATTERN = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*%\s*(above|below)\s+flutter\s*", re.ASCII)
 """Pattern of a load as a distance from the flutter threshold, "20 % above flutter"."""
@@ -113,7 +113,7 @@ def conversion_factor(beginning: str, unit_text: str, si_unit: str, allowed_text
     dimension."""
     if unit_text.startswith(","):
         raise InputError(f"{beginning} has a decimal comma; write a point")
-    if si_unit in LOAD_UNITS and RELATIVE_LOAD_PATTERN.match(unit_text):
+    if si_unit in LOAD_UNITS and INTENDED_RELATIVE_LOAD_PATTERN.match(unit_text):
         raise InputError(
             f"{beginning} is not a load relative to flutter; write it like '1.2 of flutter' or "
             "'20 % below flutter', with a number of 0 or above"

@@ -22,7 +22,7 @@ from .range_unions import ParameterRange, intersection_of_ranges, union_of_range
 
 HOPF, FOLD, END = (SPECIAL_KINDS.index(kind) for kind in ("hopf", "fold", "end"))
 """Codes of the kinds of special points in a result file."""
-STOP_REASONS = ("no_cycle_found", "list_full")
+EARLY_STOP_REASONS = ("no_cycle_found", "list_full")
 """Reasons for which the continuation of a branch stopped before the end of the branch."""
 
 
@@ -81,9 +81,9 @@ class StoredBranch:
     @property
     def is_decided(self) -> bool:
         """Whether the branch was followed to its end and the stability of all cycles is known."""
-        return self.special[-1].reason not in STOP_REASONS and bool((self.stable >= 0).all())
+        return self.special[-1].reason not in EARLY_STOP_REASONS and bool((self.stable >= 0).all())
 
-    def near_hopf_points(self) -> list[tuple[Array, Array, NDArray[np.integer]]]:
+    def scaled_curves_near_hopf_points(self) -> list[tuple[Array, Array, NDArray[np.integer]]]:
         """For each Hopf point at an end of the branch: (|at/at_H - 1|, y/|a|, stability) to the first fold.
 
         at_H, a: parameter and amplitude coefficient of the Hopf point. Hopf points with unknown or zero a are

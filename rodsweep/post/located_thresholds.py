@@ -17,7 +17,7 @@ from ..results.file.view import ResultView
 from ..results.layouts.thresholds import CROSSING_KINDS
 from ..sweep.points.points import ParameterLine
 
-HOPF_POINT_TOLERANCE = 1e-9
+UNDECIDED_HOPF_DISTANCE = 1e-9
 """At points of the file that are closer to a Hopf point than this relative distance, the growth rate is
 rounding error."""
 STABILITY_CHANGES = {("hopf", 2), ("restabilization", 0)}
@@ -156,5 +156,5 @@ class StoredThresholds:
 
 def _lies_between(point: LocatedThreshold, low: float, high: float) -> bool:
     """Whether a located threshold lies between `low` and `high`, within its error or rounding error."""
-    margin = max(point.error, HOPF_POINT_TOLERANCE * abs(point.position))
+    margin = max(point.error, UNDECIDED_HOPF_DISTANCE * abs(point.position))
     return bool(low - margin <= point.position <= high + margin)

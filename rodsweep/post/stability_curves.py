@@ -10,7 +10,9 @@ from ..results.layouts.thresholds import CROSSING_KINDS
 from .located_thresholds import STABILITY_CHANGES
 
 
-def curves_bounding_stability(view: ResultView, line_parameter: str, row_parameter: str) -> dict[int, bool]:
+def is_stability_boundary_by_curve(
+    view: ResultView, line_parameter: str, row_parameter: str
+) -> dict[int, bool]:
     """For each curve of Hopf points, by number: whether the curve bounds the region of stable rods.
 
     A curve bounds the region if it is, for some change of stability on a row, the nearest curve along the

@@ -17,7 +17,7 @@ from ..model.rod import Rod
 from .changes.thresholds import ThresholdsRequest, solve_thresholds
 from .cycle.limit_cycle import solve_cycle
 from .cycle.reference_rod import REFERENCE_REQUEST
-from .orbit.matrix.linearisation import parameter_derivatives, reduced_variation_sides
+from .orbit.matrix.linearisation import parameter_derivatives, reduced_stage_residual_variations
 from .orbit.matrix.workspace import FactorStorage, NewtonWorkspace
 from .orbit.orbit import Orbit
 from .orbit.symmetry import REFLECTION
@@ -30,7 +30,7 @@ SAMPLE_ROD = Rod(F=40.0, k1=1e4, k2=1e2, gamma3=1e-2)
 """A uniform rod; any rod compiles the same functions."""
 SAMPLE_CONE = Rod(F=6.0, k1=1e4, k2=1e2, gamma3=1e-2, taper=0.5)
 """An arm whose properties vary smoothly along its length."""
-SAMPLE_SEGMENTS = Rod(
+SAMPLE_SEGMENTED_ARM = Rod(
     F=30.0,
     k1=1e4,
     k2=1e2,
@@ -58,10 +58,10 @@ def warm_up_arms() -> None:
     path = ParameterPath(SAMPLE_CONE, "F")
     spectra = SpectrumRequest(2, SAMPLE_ACCURACY, certify=True)
     follow_spectra(NeighbouringRods(path, np.linspace(SAMPLE_CONE.F, 1.2 * SAMPLE_CONE.F, 12)), spectra)
-    search = ThresholdsRequest(SAMPLE_SEGMENTS.F, SAMPLE_ACCURACY, certify=True, max_thresholds=1)
-    for arm in (SAMPLE_CONE, SAMPLE_SEGMENTS):
+    search = ThresholdsRequest(SAMPLE_SEGMENTED_ARM.F, SAMPLE_ACCURACY, certify=True, max_thresholds=1)
+    for arm in (SAMPLE_CONE, SAMPLE_SEGMENTED_ARM):
         solve_thresholds(arm, search)
-    solve_cycle(SAMPLE_SEGMENTS, REFERENCE_REQUEST, None, "F")
+    solve_cycle(SAMPLE_SEGMENTED_ARM, REFERENCE_REQUEST, None, "F")
 
 
 def warm_up_uniform() -> None:
@@ -80,6 +80,6 @@ def warm_up_uniform() -> None:
     )
     variations = np.zeros((1, len(orbit.values) + 1))
     equations = orbit.orbit_equations
-    reduced_variation_sides(
+    reduced_stage_residual_variations(
         orbit.values, equations, parameter_derivatives(form, "F"), variations, equations, memory.factors
     )

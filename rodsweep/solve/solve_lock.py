@@ -25,7 +25,7 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 _solve_lock = RLock()
-_signal_numbers = tuple(map(int, signal.valid_signals()))
+_all_signal_numbers = tuple(map(int, signal.valid_signals()))
 """Numbers of all signals, listed once because listing takes longer than replacing the handlers."""
 
 
@@ -46,7 +46,7 @@ def defer_signals(function: Callable[P, R]) -> Callable[P, R]:
 
     @wraps(function)
     def call(*values: P.args, **named: P.kwargs) -> R:
-        with DeferredSignals() as held, reporting_to(held.call_due_handlers):
+        with SignalDeferral() as held, reporting_to(held.call_due_handlers):
             return function(*values, **named)
 
     return call
@@ -69,7 +69,7 @@ def exclusive_solve(function: Callable[P, R]) -> Callable[P, R]:
     return one_at_a_time(defer_signals(call))
 
 
-class DeferredSignals:
+class SignalDeferral:
     """Context in which Python's signal handlers wait for the next progress report or the end of the context.
 
     Python runs signal handlers in the main thread only; in another thread the context has no effect.
@@ -83,7 +83,7 @@ class DeferredSignals:
         if current_thread() is not main_thread():
             return self
         try:
-            for number in _signal_numbers:
+            for number in _all_signal_numbers:
                 handler = getsignal(number)
                 if callable(handler):
                     self._handlers[number] = handler

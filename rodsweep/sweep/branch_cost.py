@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ..arrays import Array
-from ..model.material.laws import LINEAR
+from ..model.material.laws import LINEAR_CONSTITUTIVE_LAW
 from ..model.material.rod_material import RodMaterial
 from .cost_estimate import CostEstimate, sampled_points
 from .points.points import Points
@@ -15,14 +15,14 @@ COSTLIER_IF_LARGER = frozenset({"k1", "F"})
 values."""
 BRANCH_SECONDS_PER_FORCE = 0.004
 """All branches of a rod take BRANCH_SECONDS_PER_FORCE F (accuracy/1e-7)^BRANCH_ACCURACY_EXPONENT (1 + F/(k2
-t))^BRANCH_BENDING_EXPONENT/taper^2, in seconds. t: min(1, taper)^2. F: largest force on the branches, at most
-k1 t. Fourteen random rods (F up to 60 to 200, k2 from 12 to 9000, accuracies from 1e-4 to 1e-9) took 0.3 to
-21 s, all within a factor of three of the formula and most within two; some near F = k1 take four times as
-long. Branches of six cones, over F and over the taper, took 0.6 to 2 times as long as foreseen (0.2 to 11 s,
-tapers from 0.5 to 1.5)."""
+t))^BRANCH_FORCE_OVER_BENDING_EXPONENT/taper^2, in seconds. t: min(1, taper)^2. F: largest force on the
+branches, at most k1 t. Fourteen random rods (F up to 60 to 200, k2 from 12 to 9000, accuracies from 1e-4 to
+1e-9) took 0.3 to 21 s, all within a factor of three of the formula and most within two; some near F = k1 take
+four times as long. Branches of six cones, over F and over the taper, took 0.6 to 2 times as long as foreseen
+(0.2 to 11 s, tapers from 0.5 to 1.5)."""
 BRANCH_ACCURACY_EXPONENT = -0.17
 """Exponent of the accuracy in the formula of BRANCH_SECONDS_PER_FORCE."""
-BRANCH_BENDING_EXPONENT = 1.5
+BRANCH_FORCE_OVER_BENDING_EXPONENT = 1.5
 """Exponent of 1 + F/(k2 t) in the formula of BRANCH_SECONDS_PER_FORCE."""
 MEASURED_TAPERS = (0.5, 1.5)
 """Smallest and largest taper of the cones in the measurement of BRANCH_SECONDS_PER_FORCE. A cone of taper
@@ -52,7 +52,10 @@ def branches_cost(
     seconds_per_force = BRANCH_SECONDS_PER_FORCE * (accuracy / 1e-7) ** BRANCH_ACCURACY_EXPONENT
     # A cone has as many waves along its length as a uniform rod under the force F/taper^2.
     seconds = (
-        seconds_per_force * F / taper**2 * (1 + F / (values["k2"] * min_area)) ** BRANCH_BENDING_EXPONENT
+        seconds_per_force
+        * F
+        / taper**2
+        * (1 + F / (values["k2"] * min_area)) ** BRANCH_FORCE_OVER_BENDING_EXPONENT
     )
     if not indices.size:
         return CostEstimate(0.0)
@@ -69,7 +72,7 @@ def _underestimated_rods_text(
     """Kind of rods among the sampled rods whose branches may take many times as long as estimated, or empty.
     materials: material of every rod. values: parameters, numbers or (rods,). taper: a number or (rods,)."""
     min_taper, max_taper = MEASURED_TAPERS
-    if any(material.constitutive_law is not LINEAR for material in materials):
+    if any(material.constitutive_law is not LINEAR_CONSTITUTIVE_LAW for material in materials):
         return "branches of rubber"
     if any(material.profile is not None for material in materials):
         return "branches of arms with a profile"

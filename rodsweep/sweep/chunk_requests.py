@@ -135,7 +135,7 @@ class ChunkServer:
         with self.serving_lock:
             # Stop requests come first, so that no chunk is handed out after one.
             while comm.Iprobe(source=MPI.ANY_SOURCE, tag=STOP_TAG, status=self.mpi_status):
-                self.stop.adopt(comm.recv(source=self.mpi_status.Get_source(), tag=STOP_TAG))
+                self.stop.adopt_request_of_rank(comm.recv(source=self.mpi_status.Get_source(), tag=STOP_TAG))
             self._pass_on_stop()
             self._receive_positions()
             while comm.Iprobe(source=MPI.ANY_SOURCE, tag=REQUEST_TAG, status=self.mpi_status):
@@ -165,7 +165,7 @@ class ChunkServer:
                 self.answered_in_advance.add(rank)
             return
         if report.stop_signal:  # the report may arrive before the rank's message with STOP_TAG
-            self.stop.adopt(report.stop_signal)
+            self.stop.adopt_request_of_rank(report.stop_signal)
             self._pass_on_stop()
         self.positions.pop(rank, None)
         self.queue.add_report(rank, report)
@@ -215,7 +215,7 @@ class ChunkClient:
         """Exchanges at most one stop request with the first rank: sends the request of this rank, or receives
         the request of the first rank."""
         if not self.stop_exchanged and self.comm.Iprobe(source=0, tag=STOP_TAG):
-            self.stop.adopt(self.comm.recv(source=0, tag=STOP_TAG))
+            self.stop.adopt_request_of_rank(self.comm.recv(source=0, tag=STOP_TAG))
             self.stop_exchanged = True
         if not self.stop_exchanged and self.stop:
             self.comm.send(self.stop.name, dest=0, tag=STOP_TAG)

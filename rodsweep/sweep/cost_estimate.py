@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..discretization.elements.resolution import RESOLUTION_SETTINGS, expected_wave_number, resolution_for
 from ..discretization.straight.arm_resolution import arm_mesh
-from ..model.dispersion import expected_unstable_count, most_amplified_wave, sampled_arm
+from ..model.dispersion import expected_unstable_count, largest_growth_and_wave_number, sampled_arm
 from ..model.rod import Rod
 from .points.groups import PointGroups
 from .points.points import Points
@@ -217,7 +217,7 @@ def _unknown_count(rod: Rod, mode_count: int, accuracy: float) -> int:
     accuracy `accuracy`."""
     if not rod.is_uniform_and_linear:
         return arm_mesh(rod, mode_count, accuracy).unknown_count
-    _, wave = most_amplified_wave(rod)
+    _, wave = largest_growth_and_wave_number(rod)
     return resolution_for(expected_wave_number(mode_count, wave), accuracy).unknown_count
 
 

@@ -10,7 +10,7 @@ from ..arrays import Array
 from ..discretization.elements.elements import Elements, equal_edges
 from ..discretization.elements.resolution import expected_wave_number, resolution_for
 from ..discretization.straight.arm_resolution import arm_mesh
-from ..model.dispersion import most_amplified_wave
+from ..model.dispersion import largest_growth_and_wave_number
 from ..model.rod import Crushed, Rod
 from ..solve.changes.search_range import end_below_crushing
 from .cost_estimate import sampled_points
@@ -22,7 +22,7 @@ def spectrum_mesh(rod: Rod, mode_count: int, accuracy: float) -> Elements:
     mesh."""
     if not rod.is_uniform:
         return arm_mesh(rod, mode_count, accuracy)
-    _, wave_number = most_amplified_wave(rod.equivalent_linear_rod[0])
+    _, wave_number = largest_growth_and_wave_number(rod.equivalent_linear_rod_and_rate[0])
     resolution = resolution_for(expected_wave_number(mode_count, wave_number), accuracy)
     return Elements(equal_edges(resolution.element_count), resolution.order)
 

@@ -36,7 +36,7 @@ def on_terminal() -> bool:
 
 
 @cache
-def in_notebook() -> bool:
+def can_show_notebook_bar() -> bool:
     """Whether a progress bar can appear in cells of a notebook; without ipywidgets rich prints a warning."""
     return Console().is_jupyter and find_spec("ipywidgets") is not None
 
@@ -82,16 +82,16 @@ class ProgressReporter:
         self.finished_count = finished_count
         self.fraction_sum = 0.0
         self.position_text = ""
-        self._show()
+        self._show_if_due()
 
     def show_position(self, text: str, fraction_sum: float = 0.0) -> None:
         """Shows the text `text` on the progress of a long point, if an update is due. fraction_sum: sum of
         the fractions done of all unfinished points."""
         self.fraction_sum = fraction_sum
         self.position_text = text
-        self._show()
+        self._show_if_due()
 
-    def _show(self) -> None:
+    def _show_if_due(self) -> None:
         """Draws the bar or prints a line, if an update is due."""
         now = time.monotonic()
         if not self.start_time or now < self.next_display:
@@ -129,7 +129,7 @@ class ProgressReporter:
 
 def _bar(title: str) -> Progress:
     """Progress bar on standard error, or in a notebook, that begins with `title`."""
-    console = Console() if in_notebook() else Console(file=sys.stderr, force_terminal=True)
+    console = Console() if can_show_notebook_bar() else Console(file=sys.stderr, force_terminal=True)
     fields = (f"{{task.fields[{name}]}}" for name in ("count", "rate", "left", "where"))
     # A unit or a file name in brackets would be taken as a style.
     title_column, *field_columns = (TextColumn(text, markup=False) for text in (title, *fields))

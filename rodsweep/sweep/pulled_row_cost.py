@@ -7,21 +7,21 @@ import numpy as np
 from ..arrays import Array
 from ..model.dispersion import sampled_arm
 from ..model.rod import Rod
-from .search_cost import SOFT_SEARCH_MS
+from .search_cost import SOFT_SEARCH_MS_PER_F2_OVER_K2
 
 MAX_SAMPLED_ROWS = 20
 """Largest number of rows whose boxes are computed for an estimate; each takes up to 20 ms."""
 COVERING_MS_PER_BOX = 0.11
 """Time to search one uniform rod under pulls, divided by the number of boxes from which the covering starts,
 in ms: 0.07 to 0.15 for twelve rods with 98 to 2900 boxes."""
-PULL_BEYOND_SHEAR_MS = 100.0
+EXTRA_MS_BEYOND_SHEAR_STIFFNESS = 100.0
 """Further time to search one rod from a pull beyond its shear stiffness, in ms: 110 for six, k2 = 100."""
-ARM_MS_PER_PULL = 0.6
+ARM_MS_PER_LARGEST_PULL = 0.6
 """Time to search an arm that is not uniform under pulls, divided by the largest pull in k3/L^2, in ms: 0.5 to
 0.7 for a cone under pulls of 100 and 1000."""
-MAX_ATTEMPT_SECONDS = 30.0
+MAX_UNRESOLVED_SEARCH_SECONDS = 30.0
 """Largest time of a search that no mesh resolves, in s: 0.07 to 30 s were measured for six arms and rods."""
-DOUBTFUL_PULLS_TEXT = "rows that begin at a pull beyond the shear stiffness"
+UNDERESTIMATED_ROWS_TEXT = "rows that begin at a pull beyond the shear stiffness"
 """Kind of rows whose time is not estimated reliably: of fourteen rods under pulls F < -k2 nu some took ten
 times as long as a rod under half or twice the pull."""
 
@@ -34,17 +34,17 @@ def pulled_rows_seconds(rods: Sequence[Rod], F_values: Array, row_count: int) ->
     if not pulls.size or not rods:
         return 0.0, ""
     # The diagram itself begins a row at the first pull with a bound on its eigenvalues.
-    starts = [_first_searchable_pull(rod, pulls) for rod in rods]
+    starts = [_largest_searchable_pull(rod, pulls) for rod in rods]
     seconds_of_rows = [_row_seconds(rod, start) for rod, start in zip(rods, starts, strict=True)]
     # Beyond the shear stiffness g = nu + F c2 is negative somewhere along the arm.
     arms = (sampled_arm(rod.with_values(F=start)) for rod, start in zip(rods, starts, strict=True))
     is_beyond_shear_stiffness = any(float(np.min(arm.local.g)) < 0 for arm in arms)
     return row_count * float(
         np.mean(seconds_of_rows)
-    ), DOUBTFUL_PULLS_TEXT if is_beyond_shear_stiffness else ""
+    ), UNDERESTIMATED_ROWS_TEXT if is_beyond_shear_stiffness else ""
 
 
-def _first_searchable_pull(rod: Rod, pulls: Array) -> float:
+def _largest_searchable_pull(rod: Rod, pulls: Array) -> float:
     """First of the increasing `pulls` from which a row can be searched; 0 if there is none. For arms that are
     not uniform, whose searchable pulls are not known in advance, the first pull."""
     if not rod.is_uniform_and_linear:
@@ -53,7 +53,7 @@ def _first_searchable_pull(rod: Rod, pulls: Array) -> float:
     high = len(pulls)
     while low < high:  # the search itself bisects too
         middle = (low + high) // 2
-        if _boxes(rod, float(pulls[middle])) is None:
+        if _boxes_from_pull_to_zero(rod, float(pulls[middle])) is None:
             low = middle + 1
         else:
             high = middle
@@ -64,15 +64,17 @@ def _row_seconds(rod: Rod, start_pull: float) -> float:
     """Time to search one row from the pull `start_pull` to F = 0, in s."""
     if not rod.is_uniform_and_linear:
         # No search lasts longer, because it gives up on rods that no mesh resolves.
-        return min(1e-3 * ARM_MS_PER_PULL * -start_pull, MAX_ATTEMPT_SECONDS)
-    boxes = _boxes(rod, start_pull)
+        return min(1e-3 * ARM_MS_PER_LARGEST_PULL * -start_pull, MAX_UNRESOLVED_SEARCH_SECONDS)
+    boxes = _boxes_from_pull_to_zero(rod, start_pull)
     covering_ms = COVERING_MS_PER_BOX * (0 if boxes is None else len(boxes))
     drive = start_pull * rod.with_values(F=start_pull).g
-    exchanges_ms = PULL_BEYOND_SHEAR_MS + SOFT_SEARCH_MS * drive if drive > 0 else 0.0
-    return 1e-3 * covering_ms + min(1e-3 * exchanges_ms, MAX_ATTEMPT_SECONDS)
+    exchanges_ms = (
+        EXTRA_MS_BEYOND_SHEAR_STIFFNESS + SOFT_SEARCH_MS_PER_F2_OVER_K2 * drive if drive > 0 else 0.0
+    )
+    return 1e-3 * covering_ms + min(1e-3 * exchanges_ms, MAX_UNRESOLVED_SEARCH_SECONDS)
 
 
-def _boxes(rod: Rod, pull: float) -> Array | None:
+def _boxes_from_pull_to_zero(rod: Rod, pull: float) -> Array | None:
     """Boxes of the covering from `pull` to F = 0; None if no a-priori bound applies."""
     # Imported for rows under pulls only: these modules load the compiler.
     from ..determinant.certificate.first_boxes import first_boxes

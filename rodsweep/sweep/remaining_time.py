@@ -9,16 +9,16 @@ included. The module reads no clock: the caller passes all times.
 
 from math import exp
 
-PACE_WINDOW_START = 0.5
+SKIPPED_FRACTION_OF_POINTS = 0.5
 """The time per point is measured after this fraction of the points that are finished now."""
-MIN_POINTS = 2
+MIN_POINTS_FOR_PACE = 2
 """Minimum number of points finished after the first record; with fewer points there is no time per point."""
-MIN_FRACTION_DONE = 0.1
+MIN_UNFINISHED_FRACTION_SUM = 0.1
 """Minimum sum of the fractions done of unfinished points, for an estimate without finished points. For
 smaller sums, the time of starting up dominates."""
-TIME_CONSTANT_RATIO = 0.25
+SMOOTHING_TIME_RATIO = 0.25
 """Time constant of the reported remaining time, divided by the smaller of elapsed and remaining time."""
-RECORD_RATIO = 1.02
+RECORDED_POINT_COUNT_RATIO = 1.02
 """Ratio of the numbers of finished points in two successive stored records: about 35 records per doubling."""
 
 
@@ -53,14 +53,14 @@ class RemainingTimeEstimator:
         # A countdown that only passes time; the new estimate corrects it with the weight below.
         expected = max(reported - (now - last_time), 0.0)
         # A zero time constant would divide by zero when nothing is left.
-        time_constant = TIME_CONSTANT_RATIO * min(now, max(remaining, expected)) or 1.0
+        time_constant = SMOOTHING_TIME_RATIO * min(now, max(remaining, expected)) or 1.0
         weight = 1 - exp(-(now - last_time) / time_constant)
         self.reported = now, expected + weight * (remaining - expected)
         return self.reported[1]
 
     def _record(self, finished_count: int, now: float) -> None:
         """Stores the record (finished, now); thins earlier records to about 35 per doubling of the points."""
-        if len(self.records) > 2 and self.records[-1][0] < RECORD_RATIO * self.records[-2][0]:
+        if len(self.records) > 2 and self.records[-1][0] < RECORDED_POINT_COUNT_RATIO * self.records[-2][0]:
             # The latest record is replaced, not added to, so that a million points need some hundred records.
             self.records.pop()
         self.records.append((finished_count, now))
@@ -70,14 +70,18 @@ class RemainingTimeEstimator:
         includes the wait since the latest record. finished_count: number of finished points. now: in s since
         the start of the sweep. fraction_sum: sum of the fractions done of unfinished points.
 
-        Before MIN_POINTS points are finished, the time follows from the fractions done of unfinished points;
-        None if their sum is below MIN_FRACTION_DONE.
+        Before MIN_POINTS_FOR_PACE points are finished, the time follows from the fractions done of unfinished
+        points; None if their sum is below MIN_UNFINISHED_FRACTION_SUM.
         """
-        if not self.records or finished_count < self.records[0][0] + MIN_POINTS:
+        if not self.records or finished_count < self.records[0][0] + MIN_POINTS_FOR_PACE:
             # Before two points are finished only the fractions of long points tell the pace.
-            return now / (finished_count + fraction_sum) if fraction_sum >= MIN_FRACTION_DONE else None
+            return (
+                now / (finished_count + fraction_sum) if fraction_sum >= MIN_UNFINISHED_FRACTION_SUM else None
+            )
         earlier_records = (
-            record for record in reversed(self.records) if record[0] <= PACE_WINDOW_START * finished_count
+            record
+            for record in reversed(self.records)
+            if record[0] <= SKIPPED_FRACTION_OF_POINTS * finished_count
         )
         earlier_points, earlier_time = next(earlier_records, self.records[0])
         latest_time = self.records[-1][1]

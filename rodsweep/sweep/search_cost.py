@@ -13,11 +13,11 @@ THRESHOLD_SEARCH_MS = 24.0
 four times as long."""
 SEARCH_CERTIFICATE_MS = 16.0
 """Time to certify that a search along one parameter missed no crossing, in ms: mean over the 72 rods."""
-SOFT_SEARCH_MS = 0.014
+SOFT_SEARCH_MS_PER_F2_OVER_K2 = 0.014
 """Time to search one uniform rod for exchanges of the leading eigenvalue, divided by F^2/k2, in ms. F:
 largest force of the search. The number of exchanges grows with F^2/k2: 30 rods with k2 from 0.3 to 3 took 0.8
 to 3 times this time, for F up to 200."""
-SOFT_ARM_SEARCH_MS = 4e-4
+SOFT_ARM_MS_PER_F4_OVER_K2_SQUARED = 4e-4
 """Time to search a soft arm that is not uniform for crossings along F, divided by (F^2/k2)^2, in ms. F:
 largest force; k2: of the thinnest section. Eight cones with F^2/k2 from 800 to 16000: 0.3 to 2 times this."""
 ARM_SEARCH_MS = 200.0
@@ -57,7 +57,11 @@ def soft_searches_seconds(points: Points, F_max: float, is_varying: bool) -> flo
         # The search ends where the rod is crushed.
         F = np.maximum(np.minimum(F_max, values["k1"]), 0.0)
         exchanges = F**2 / (np.asarray(values["k2"]) * min_area)
-        rod_ms = SOFT_ARM_SEARCH_MS * exchanges**2 if is_varying else SOFT_SEARCH_MS * exchanges
+        rod_ms = (
+            SOFT_ARM_MS_PER_F4_OVER_K2_SQUARED * exchanges**2
+            if is_varying
+            else SOFT_SEARCH_MS_PER_F2_OVER_K2 * exchanges
+        )
         # An infinite time could not be added, compared and printed like other times.
         return float(min(points.count * 1e-3 * float(np.mean(rod_ms)), sys.float_info.max / 4))
 

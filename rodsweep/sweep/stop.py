@@ -16,7 +16,7 @@ from ..solve_progress import PositionMaker, SolvePosition, SolveStopped
 
 POLL_SECONDS = 0.05
 """Seconds between two polls for messages and stop requests during a solve."""
-POSITION_SECONDS = 0.5
+SECONDS_BETWEEN_PROGRESS_REPORTS = 0.5
 """Seconds from the start of a solve to the first report of its progress, and between two reports."""
 STOP_SIGNALS = (signal.SIGTERM, signal.SIGUSR1, signal.SIGINT)
 """Signals that request a stop: from `kill`, a scheduler's time limit or warning, or Ctrl-C."""
@@ -53,7 +53,7 @@ class StopRequest:
     def listen(self) -> None:
         """Installs handlers, so that stop signals set this request, not end the process; main thread only."""
         for signal_number in STOP_SIGNALS:
-            signal.signal(signal_number, self._record_signal)
+            signal.signal(signal_number, self._record_signal_name)
 
     @staticmethod
     def ignore() -> None:
@@ -62,11 +62,11 @@ class StopRequest:
             # A second signal would otherwise end the process with a traceback after all results are stored.
             signal.signal(signal_number, signal.SIG_IGN)
 
-    def adopt(self, name: str) -> None:
+    def adopt_request_of_rank(self, name: str) -> None:
         """Adopts the stop request of another rank; name: name of the signal."""
         self.name = name
 
-    def _record_signal(self, signal_number: int, _: FrameType | None) -> None:
+    def _record_signal_name(self, signal_number: int, _: FrameType | None) -> None:
         if signal_number == signal.SIGINT and self.acknowledges and not self.name:
             with suppress(OSError):
                 os.write(2, STOPPING_MESSAGE)  # print is not safe in a signal handler
@@ -108,14 +108,14 @@ class RankListener:
         self.stop = stop
         self.item_label = item_label
         self.next_poll = 0.0
-        self.next_report = time.monotonic() + POSITION_SECONDS
+        self.next_report = time.monotonic() + SECONDS_BETWEEN_PROGRESS_REPORTS
 
     def __call__(self, make_position: PositionMaker) -> None:
         """Handles a solver's report at `make_position()`; raises SolveStopped if the solve must end."""
         now = time.monotonic()
         # The text is made only when it is due, as solvers report thousands of times a second.
         if now >= self.next_report and (position := make_position()).text:
-            self.next_report = now + POSITION_SECONDS
+            self.next_report = now + SECONDS_BETWEEN_PROGRESS_REPORTS
             self.communication.report_position(
                 SolvePosition(
                     ": ".join(filter(None, (self.item_label(), position.text))), position.completed_fraction

@@ -11,7 +11,7 @@ from ..discretization.elements.resolution import mesh_accuracy
 from ..model.rod import Rod
 from ..solve.changes.spectrum_samples import SPECTRUM_SAMPLE_SETTINGS
 from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
-from .check_rows import arms_line, material_check_rows, rod_check_rows
+from .check_rows import arms_line, stretch_shear_and_drag_rows, varying_arm_and_law_rows
 from .protocol import CheckRow, Task
 
 
@@ -22,24 +22,24 @@ class CertifiedTask(Task):
 
     uncertified_risk: ClassVar[str]
     """Consequence of a missing certificate, as `check` prints it."""
-    count_location: ClassVar[str] = ""
+    mode_count_location: ClassVar[str] = ""
     """Rods at which the certificate counts modes: "point" for every point, "line" for some rods on each
     line."""
-    never_modelled: ClassVar[tuple[str, str]] = (
+    never_modelled_effects: ClassVar[tuple[str, str]] = (
         "gravity, inertia, nonlinear motion",
         "not part of the linear overdamped problem",
     )
     """(effects that the task never models, reason), as `check` prints them."""
 
     @abstractmethod
-    def option_rows(self) -> list[CheckRow]:
+    def requested_result_rows(self) -> list[CheckRow]:
         """Rows of `check` on the results that the task's options request."""
 
     @property
     def parameter_values(self) -> dict[str, np.ndarray]:
         """All values of each parameter at points, in searches and on lines, by name of the parameter, in
         arrays of any shape."""
-        return self.points.rod_values | self.searched_ranges() | self.coordinates()
+        return self.points.rod_values | self.searched_range_ends() | self.coordinates()
 
     def arms_line(self) -> str:
         return arms_line(self.config, self.parameter_values, self.first_mesh)
@@ -47,7 +47,7 @@ class CertifiedTask(Task):
     def first_mesh(self) -> Elements | None:
         """The finest of the initial meshes of all points; None if the rod model applies to no point.
 
-        By default the mesh of a search, along the parameter in `searched_ranges`, for eigenvalues on the
+        By default the mesh of a search, along the parameter in `searched_range_ends`, for eigenvalues on the
         imaginary axis.
         """
         accuracy = mesh_accuracy(SPECTRUM_SAMPLE_SETTINGS.arm_accuracy, needs_vectors=False)
@@ -55,9 +55,9 @@ class CertifiedTask(Task):
         def mesh_of(rod: Rod) -> Elements:
             return spectrum_mesh(rod, SPECTRUM_SAMPLE_SETTINGS.min_computed_modes, accuracy)
 
-        return largest_first_mesh(self.points, mesh_of, self.searched_ranges())
+        return largest_first_mesh(self.points, mesh_of, self.searched_range_ends())
 
-    def searched_ranges(self) -> dict[str, np.ndarray]:
+    def searched_range_ends(self) -> dict[str, np.ndarray]:
         """Ends of the searched range, (1,) or (2,), by name of the parameter; empty for tasks without a
         search."""
         return {}
@@ -69,9 +69,9 @@ class CertifiedTask(Task):
         if not getattr(self.config, task).certify:
             return False, f"{task}.certify: false; {self.uncertified_risk}"
         proof = "winding number of D"
-        if self.count_location == "line" and not self.config.is_uniform_and_linear:
+        if self.mode_count_location == "line" and not self.config.is_uniform_and_linear:
             proof += " at some rods, with some bounds estimated; between them slopes of the eigenvalues"
-        if self.count_location == "point" and self._has_varying_arm:
+        if self.mode_count_location == "point" and self._has_varying_arm:
             proof += ", with some bounds estimated"
         return True, proof
 
@@ -84,9 +84,13 @@ class CertifiedTask(Task):
 
     def check_rows(self) -> list[CheckRow]:
         """Rows of the table of modelled and neglected effects, with a row on the certificate."""
-        quantity, reason = self.never_modelled
+        quantity, reason = self.never_modelled_effects
         values = self.parameter_values
-        rows = [*rod_check_rows(values), *material_check_rows(self.config, values), *self.option_rows()]
+        rows = [
+            *stretch_shear_and_drag_rows(values),
+            *varying_arm_and_law_rows(self.config, values),
+            *self.requested_result_rows(),
+        ]
         return [*rows, ("certificate", *self.certificate()), (quantity, False, reason)]
 
 
@@ -95,7 +99,7 @@ class HopfPointTask(CertifiedTask):
     """Base class of the tasks criticality and branch, which start from the Hopf points of a rod."""
 
     uncertified_risk: ClassVar[str] = "Hopf points may be missed"
-    never_modelled: ClassVar[tuple[str, str]] = (
+    never_modelled_effects: ClassVar[tuple[str, str]] = (
         "gravity, inertia, motion out of the plane",
         "not part of the overdamped problem",
     )

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..config.task.branch import BranchConfig
-from ..results.layouts.branch import followed_variables, special_variables
+from ..results.layouts.branch import branch_cycle_variables, special_variables
 from ..results.layouts.variables import outcome_values, value_lists
 from ..sweep.branch_cost import branches_cost
 from ..sweep.cost_estimate import CostEstimate
 from .base_classes import HopfPointTask
-from .check_rows import crushing_clause, points_clause
+from .check_rows import points_clause, search_end_below_crushing_clause
 from .protocol import CheckRow, Solver
 
 if TYPE_CHECKING:
@@ -31,11 +31,11 @@ class BranchTask(HopfPointTask):
     def headline(self) -> str:
         options = self.config.branch
         parameter = options.along
-        crushing_text = crushing_clause(self.config) * (options.along == "F")
+        crushing_text = search_end_below_crushing_clause(self.config) * (options.along == "F")
         range_text = f"from {options.start:g} to {options.stop:g}"
         return points_clause(self.points, f"followed in {parameter} {range_text}{crushing_text}")
 
-    def option_rows(self) -> list[CheckRow]:
+    def requested_result_rows(self) -> list[CheckRow]:
         options = self.config.branch
         lengths_text = f"{options.cycles} cycles and {options.special} special points"
         limit_sentence = f"at most {lengths_text} of a rod are stored"
@@ -48,7 +48,7 @@ class BranchTask(HopfPointTask):
             ("cycles on other branches", False, "task: limit_cycle finds stable cycles from a motion"),
         ]
 
-    def searched_ranges(self) -> dict[str, np.ndarray]:
+    def searched_range_ends(self) -> dict[str, np.ndarray]:
         """Smallest and largest value of the followed parameter, (2,), by its name."""
         options = self.config.branch
         return {options.along: np.array([options.start, options.stop])}
@@ -86,7 +86,7 @@ def branch_values(
     numbered = [(number, point) for number, curve in enumerate(result.curves, 1) for point in curve.points]
     cycles = [_cycle_values(point, parameter_name) | {"branch": number} for number, point in numbered]
     crossing_by_value = {crossing.value: crossing for crossing in result.crossings}
-    second_branches = branches_at_breakings(result.curves)
+    second_branches = second_branch_by_breaking(result.curves)
     specials = []
     first_cycle_index = 0  # index of the first cycle of the branch
     for number, curve in enumerate(result.curves, 1):
@@ -104,12 +104,12 @@ def branch_values(
     values: dict[str, Any] = {f"{name}_count": count if is_complete else -1 for name, count in counts.items()}
     values |= {"unstable_at_start": result.unstable_at_start, "certified": result.proved}
     values["followed_from"], values["followed_to"] = result.followed_range
-    values |= value_lists(followed_variables(parameter_name), cycles, point_count)
+    values |= value_lists(branch_cycle_variables(parameter_name), cycles, point_count)
     values |= value_lists(special_variables(parameter_name), specials, special_count)
     return values | {"seconds": result.seconds, "status": result.status}
 
 
-def branches_at_breakings(curves: "Sequence[BranchCurve]") -> dict[tuple[int, int], int]:
+def second_branch_by_breaking(curves: "Sequence[BranchCurve]") -> dict[tuple[int, int], int]:
     """For every symmetry breaking on a branch, the number of the second branch that begins or ends there.
 
     Keys: (number of the branch, from 1; index of the symmetry breaking among the branch's special points).
@@ -131,13 +131,13 @@ def _cycle_values(point: "StoredBranchCycle", parameter_name: str) -> dict[str, 
         f"branch_{parameter_name}_error": "parameter_value_error",
         "unstable_multipliers": "unstable_count",
     }
-    variables = [variable for variable in followed_variables(parameter_name) if variable.name != "branch"]
+    variables = [variable for variable in branch_cycle_variables(parameter_name) if variable.name != "branch"]
     return outcome_values(variables, point, point.measures, point.errors, names=attribute_names)
 
 
-SPECIAL_POINT_FIELDS = {
+SPECIAL_POINT_FIELD_BY_VARIABLE = {
     "special_at": "parameter_value",
-    "special_amplitude_coefficient_error": "coefficient_error",
+    "special_amplitude_coefficient_error": "relative_coefficient_error",
 }
 """Field of `SpecialPoint` by name of the variable, where the two names differ."""
 
@@ -156,4 +156,4 @@ def _special_point_values(
     }
     given_names = {*values, "special_branch", "special_meets"}
     variables = [variable for variable in special_variables("F") if variable.name not in given_names]
-    return values | outcome_values(variables, point, prefix="special_", names=SPECIAL_POINT_FIELDS)
+    return values | outcome_values(variables, point, prefix="special_", names=SPECIAL_POINT_FIELD_BY_VARIABLE)

@@ -13,7 +13,7 @@ from ..wording import counted
 from .protocol import CheckRow
 
 
-def crushing_clause(config: Config) -> str:
+def search_end_below_crushing_clause(config: Config) -> str:
     """Clause stating that a search along F ends below the crushing force (zero stretch); empty if no force
     crushes the arm."""
     if config.is_uniform_and_linear:
@@ -40,7 +40,7 @@ def points_clause(points: Points, clause: str) -> str:
     return f"{points_text(points)}, {'each ' * (points.count > 1)}{clause}"
 
 
-def rod_check_rows(columns: Mapping[str, np.ndarray]) -> list[CheckRow]:
+def stretch_shear_and_drag_rows(columns: Mapping[str, np.ndarray]) -> list[CheckRow]:
     """Rows of `check` on stretch, shear and rotational drag.
 
     columns: values of the rods' parameters by name, arrays of any shape.
@@ -56,7 +56,7 @@ def rod_check_rows(columns: Mapping[str, np.ndarray]) -> list[CheckRow]:
     ]
 
 
-def material_check_rows(config: Config, columns: Mapping[str, np.ndarray]) -> list[CheckRow]:
+def varying_arm_and_law_rows(config: Config, columns: Mapping[str, np.ndarray]) -> list[CheckRow]:
     """Rows of `check` on quantities that vary along the arm, and on the constitutive law.
 
     Empty for uniform arms of linear material. columns: values of the rods' parameters by name, arrays of any
@@ -64,10 +64,10 @@ def material_check_rows(config: Config, columns: Mapping[str, np.ndarray]) -> li
     """
     if config.is_uniform_and_linear:
         return []
-    shape_texts = _shape_texts(config, columns)
+    shape_texts = _taper_and_profile_texts(config, columns)
     return [
         ("variation along the arm", bool(shape_texts), " with ".join(shape_texts) or "uniform"),
-        ("law", True, _law_text(config)),
+        ("law", True, _law_and_section_text(config)),
     ]
 
 
@@ -81,10 +81,10 @@ def arms_line(
     """
     if config.is_uniform_and_linear:
         return ""
-    shape_texts = _shape_texts(config, columns) or ["a uniform arm"]
+    shape_texts = _taper_and_profile_texts(config, columns) or ["a uniform arm"]
     if len(shape_texts) == 1 and shape_texts[0].startswith(("a profile", "a smooth profile")):
         shape_texts = ["an arm", *shape_texts]
-    arms_text = f"{' with '.join(shape_texts)} of {_law_text(config)}"
+    arms_text = f"{' with '.join(shape_texts)} of {_law_and_section_text(config)}"
     mesh = first_mesh()
     if mesh is None:
         return arms_text
@@ -94,7 +94,7 @@ def arms_line(
     return f"{arms_text}; {mesh_text} has {elements_text} of order {mesh.order}"
 
 
-def _shape_texts(config: Config, columns: Mapping[str, np.ndarray]) -> list[str]:
+def _taper_and_profile_texts(config: Config, columns: Mapping[str, np.ndarray]) -> list[str]:
     """Texts on the tapers and the profile of the arms; empty for uniform arms. columns: values of the rods'
     parameters by name, arrays of any shape."""
     tapers = columns.get("taper", np.ones(1))
@@ -118,7 +118,7 @@ def _profile_text(config: Config, profile: Profile) -> str:
     return f"{profile_text} with {counted(jumps, 'jump')}" if jumps else profile_text
 
 
-def _law_text(config: Config) -> str:
+def _law_and_section_text(config: Config) -> str:
     """Text describing the constitutive law and the cross-section."""
     law = "linear material" if config.rod_material.law == "linear" else "neo-Hookean rubber"
     return f"{law} with a swelling section" if config.rod_material.section == "swelling" else law

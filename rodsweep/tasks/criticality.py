@@ -11,7 +11,7 @@ from ..results.layouts.variables import outcome_values, value_lists
 from ..sweep.cost_estimate import CostEstimate
 from ..sweep.search_cost import criticality_cost, soft_searches_seconds
 from .base_classes import HopfPointTask
-from .check_rows import crushing_clause, points_clause
+from .check_rows import points_clause, search_end_below_crushing_clause
 from .protocol import CheckRow, Solver
 from .thresholds import crossing_values
 
@@ -27,9 +27,11 @@ class CriticalityTask(HopfPointTask):
 
     def headline(self) -> str:
         F_max = self.config.criticality.F_max
-        return points_clause(self.points, f"searched from F = 0 to {F_max:g}{crushing_clause(self.config)}")
+        return points_clause(
+            self.points, f"searched from F = 0 to {F_max:g}{search_end_below_crushing_clause(self.config)}"
+        )
 
-    def option_rows(self) -> list[CheckRow]:
+    def requested_result_rows(self) -> list[CheckRow]:
         max_thresholds = self.config.criticality.crossings
         return [
             self.AXIAL_DRAG_ROW,
@@ -37,7 +39,7 @@ class CriticalityTask(HopfPointTask):
             ("cycles", False, "only to third order in the amplitude; task: limit_cycle computes cycles"),
         ]
 
-    def searched_ranges(self) -> dict[str, np.ndarray]:
+    def searched_range_ends(self) -> dict[str, np.ndarray]:
         """The largest F of the search, (1,), by the name of the parameter."""
         return {"F": np.array([self.config.criticality.F_max])}
 

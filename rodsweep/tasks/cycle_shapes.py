@@ -10,16 +10,16 @@ import numpy as np
 from ..config.arm.axes import LOAD_KEYS
 from ..config.document.reading import validated_config
 from ..errors import EnvironmentIncomplete, InputError
-from ..model.arm.drag import DRAG_NAMES
+from ..model.arm.drag import DRAG_ESTIMATE_NAMES
 from ..results.file.view import ResultView
 from ..results.layouts.limit_cycle import ENERGY_VARIABLES, SHAPE_VARIABLES, TIP_VARIABLES
 from .running.job import Job, job_of_config
 
 SHAPE_COUNT = 48
 """Number of shapes per period; an animation needs about 50 frames."""
-SAMPLE_COUNT = 256
+TIP_AND_ENERGY_SAMPLE_COUNT = 256
 """Number of samples of the tip and of the energy per period."""
-MAX_PERIOD_DIFFERENCE = 100
+MAX_PERIOD_DIFFERENCE_IN_ERRORS = 100
 """Two cycles are treated as different if the difference of the stored and the new period exceeds this
 multiple of the sum of their estimated errors."""
 
@@ -59,7 +59,7 @@ def _solve_stored_point(view: ResultView, number: int) -> tuple[Job, dict[str, A
         ) from None
     names = ("period", "period_error")
     stored_period, error = (float(view.variables[name].ravel()[number - 1]) for name in names)
-    allowed = MAX_PERIOD_DIFFERENCE * stored_period * (error + float(record["period_error"]))
+    allowed = MAX_PERIOD_DIFFERENCE_IN_ERRORS * stored_period * (error + float(record["period_error"]))
     if not abs(float(record["period"]) - stored_period) <= allowed:
         raise InputError(
             f"{view.path} has no shapes of cycles, and point {number}, solved without its neighbour, ends "
@@ -69,18 +69,22 @@ def _solve_stored_point(view: ResultView, number: int) -> tuple[Job, dict[str, A
 
 
 def _job_of_point(view: ResultView, number: int) -> Job:
-    """Job that solves one point of the file again with SHAPE_COUNT shapes and SAMPLE_COUNT samples.
-    Parameters, material, accuracy, harmonics and start are those of the file, for a start from a mode also
-    amplitude and most_periods; a start from a neighbour becomes a start from the leading mode. number: number
-    of the point, from 1."""
+    """Job that solves one point of the file again with SHAPE_COUNT shapes and TIP_AND_ENERGY_SAMPLE_COUNT
+    samples. Parameters, material, accuracy, harmonics and start are those of the file, for a start from a
+    mode also amplitude and most_periods; a start from a neighbour becomes a start from the leading mode.
+    number: number of the point, from 1."""
     stored = view.config["limit_cycle"]
     is_from_hopf = stored["start"] == "hopf"
     kept_options = ["harmonics"] if is_from_hopf else ["harmonics", "amplitude", "most_periods"]
-    options = {"shapes": SHAPE_COUNT, "samples": SAMPLE_COUNT, "start": "hopf" if is_from_hopf else "mode"}
+    options = {
+        "shapes": SHAPE_COUNT,
+        "samples": TIP_AND_ENERGY_SAMPLE_COUNT,
+        "start": "hopf" if is_from_hopf else "mode",
+    }
     options |= {name: stored[name] for name in kept_options}
     document = {
         "task": "limit_cycle",
-        "parameters": _parameters_of_point(view.as_list, number),
+        "parameters": _parameters_section_of_point(view.as_list, number),
         "accuracy": view.config["accuracy"],
         "limit_cycle": options,
     }
@@ -88,7 +92,7 @@ def _job_of_point(view: ResultView, number: int) -> Job:
     return job_of_config(Path(view.path.name), validated_config(document), document)
 
 
-def _parameters_of_point(view: ResultView, number: int) -> dict[str, Any]:
+def _parameters_section_of_point(view: ResultView, number: int) -> dict[str, Any]:
     """Section `parameters` of a config with one point of a list of points: the parameters of a rod, or an arm
     and its follower force, with the parameters that the file's config gives in addition to the arm. number:
     number of the point, from 1."""
@@ -104,6 +108,6 @@ def _parameters_of_point(view: ResultView, number: int) -> dict[str, Any]:
         values = view.quantities[key].ravel() if isinstance(value, dict) else None
         arm[key] = value if values is None else float(values[number - 1 if values.size > 1 else 0])
     if "drag" in arm:
-        arm["drag"] = DRAG_NAMES[int(arm["drag"])]
+        arm["drag"] = DRAG_ESTIMATE_NAMES[int(arm["drag"])]
     given_values = {name: value for name, value in point_values.items() if name == "F" or name in section}
     return given_values | {"arm": arm}

@@ -29,7 +29,13 @@ from ..sweep.first_mesh import largest_first_mesh
 from ..sweep.points.chains import Chains, SweepChains
 from ..sweep.points.grid import require_in_range
 from ..wording import counted
-from .check_rows import arms_line, material_check_rows, points_clause, points_text, rod_check_rows
+from .check_rows import (
+    arms_line,
+    points_clause,
+    points_text,
+    stretch_shear_and_drag_rows,
+    varying_arm_and_law_rows,
+)
 from .hopf.lines import HopfLine, hopf_lines_of, hopf_variables
 from .protocol import CheckRow, OrderedMap, Solver, Task, solve_on_one_rank
 
@@ -39,11 +45,11 @@ if TYPE_CHECKING:
 NON_SOLVER_OPTIONS = ("method", "along", "direction", "time")
 """Options of the task that concern the sweep or the file; all other options are passed to the solver of a
 cycle."""
-MULTIPLIER_FIELDS = {f"multiplier_{part}": f"multipliers_{part}" for part in ("real", "imag")}
+MULTIPLIER_FIELD_BY_VARIABLE = {f"multiplier_{part}": f"multipliers_{part}" for part in ("real", "imag")}
 """Field of `CycleOutcome` by name of the variable, where the two names differ."""
-ALLOWED_K2_WITH_TAU1 = Range(isfinite, "a finite number")
+K2_VALUES_WITH_TAU1 = Range(isfinite, "a finite number")
 """Values of k2 for which tau1 exists."""
-ALLOWED_GAMMA3_WITH_TAU1 = Range(lambda value: value > 0, "a number above 0")
+GAMMA3_VALUES_WITH_TAU1 = Range(lambda value: value > 0, "a number above 0")
 """Values of gamma3 for which tau1 exists."""
 
 
@@ -56,8 +62,8 @@ class LimitCycleTask(Task):
     def __post_init__(self) -> None:
         if self.config.limit_cycle.time == "tau1":
             reason = ", because tau1 = gamma3/k2 is the unit of time that limit_cycle.time asks for"
-            require_in_range(ALLOWED_K2_WITH_TAU1, "k2", self.points.rod_values["k2"], "", reason)
-            require_in_range(ALLOWED_GAMMA3_WITH_TAU1, "gamma3", self.points.rod_values["gamma3"], "", reason)
+            require_in_range(K2_VALUES_WITH_TAU1, "k2", self.points.rod_values["k2"], "", reason)
+            require_in_range(GAMMA3_VALUES_WITH_TAU1, "gamma3", self.points.rod_values["gamma3"], "", reason)
 
     @property
     def chains(self) -> Chains | None:
@@ -104,9 +110,9 @@ class LimitCycleTask(Task):
         )
 
     def arms_line(self) -> str:
-        return arms_line(self.config, self.points.rod_values, self._first_mesh)
+        return arms_line(self.config, self.points.rod_values, self._finest_initial_mesh)
 
-    def _first_mesh(self) -> Elements | None:
+    def _finest_initial_mesh(self) -> Elements | None:
         """The finest of the initial meshes of all points: meshes of motions in time or, with start: hopf, of
         branches from Hopf points. None if no point has a mesh."""
         from ..solve.cycle.transient.motion_mesh import (
@@ -133,8 +139,8 @@ class LimitCycleTask(Task):
             transient_row = self._stored_values_row(transient_row[0], "transient", TRANSIENT_VARIABLES)
         tip_variables = TIP_VARIABLES + ENERGY_VARIABLES
         return [
-            *rod_check_rows(self.points.rod_values),
-            *material_check_rows(self.config, self.points.rod_values),
+            *stretch_shear_and_drag_rows(self.points.rod_values),
+            *varying_arm_and_law_rows(self.config, self.points.rod_values),
             ("axial drag", True, f"gamma1 = {', '.join(f'{value:g}' for value in gamma1)}"),
             ("nonlinear motion", True, "task: limit_cycle; in the plane, geometrically exact"),
             ("energy budget", True, "means and fluctuations over a cycle"),
@@ -197,11 +203,11 @@ class LimitCycleTask(Task):
         if self.config.limit_cycle.method == "collocation":
             return by_collocation
         from ..solve.cycle.by_integration import solve_by_integration
-        from ..solve.cycle.status import IntegrationStatus
+        from ..solve.cycle.status import IntegratedCycleStatus
 
         return replace(
             by_collocation,
-            statuses=tuple(IntegrationStatus),
+            statuses=tuple(IntegratedCycleStatus),
             solve=lambda index: solve_by_integration(self.points.rod(index), request),
         )
 
@@ -219,7 +225,7 @@ class LimitCycleTask(Task):
         multipliers = unknown if cycle.multipliers is None else cycle.multipliers
         stored_multipliers = SimpleNamespace(multipliers=multipliers)
         sources = stored_multipliers, cycle.errors, cycle.measures, cycle
-        values = outcome_values(CYCLE_VARIABLES, *sources, names=MULTIPLIER_FIELDS)
+        values = outcome_values(CYCLE_VARIABLES, *sources, names=MULTIPLIER_FIELD_BY_VARIABLE)
         if options.time == "tau1":  # t/tau1 = (t/tau2) k2/gamma3
             values[PERIOD_TAU1_VARIABLE.name] = cycle.measures.period * point["k2"] / point["gamma3"]
         if options.samples:

@@ -32,7 +32,7 @@ class ModesTask(CertifiedTask):
     config: ModesConfig
 
     uncertified_risk: ClassVar[str] = "modes may be missed"
-    count_location: ClassVar[str] = "point"
+    mode_count_location: ClassVar[str] = "point"
 
     def coordinates(self) -> dict[str, np.ndarray]:
         """Material coordinates u of the nodes at which modes are stored, (nodes,), by dimension."""
@@ -47,7 +47,7 @@ class ModesTask(CertifiedTask):
         options = self.config.modes
         return f"{points_text(self.points)}, {options.modes} leading modes each, on {options.nodes} nodes"
 
-    def option_rows(self) -> list[CheckRow]:
+    def requested_result_rows(self) -> list[CheckRow]:
         growth = self.config.modes.growth
         norm_text = "in the norm of the dissipation" if growth else "modes.growth: false"
         return [

@@ -41,7 +41,7 @@ class PhaseDiagramTask(CertifiedTask):
     config: PhaseDiagramConfig
 
     uncertified_risk: ClassVar[str] = "crossings may be missed"
-    count_location: ClassVar[str] = "line"
+    mode_count_location: ClassVar[str] = "line"
 
     @property
     def line_values(self) -> np.ndarray:
@@ -59,7 +59,7 @@ class PhaseDiagramTask(CertifiedTask):
             f"values of {line_parameter} each"
         )
 
-    def option_rows(self) -> list[CheckRow]:
+    def requested_result_rows(self) -> list[CheckRow]:
         options = self.config.phase_diagram
         curves_text = "followed from row to row" if options.curves else "phase_diagram.curves: false"
         criticality_text = "phase_diagram.criticality adds it"
@@ -90,7 +90,7 @@ class PhaseDiagramTask(CertifiedTask):
             ("stable states, with cycles", options.cycles, cycles_text),
         ]
 
-    def searched_ranges(self) -> dict[str, np.ndarray]:
+    def searched_range_ends(self) -> dict[str, np.ndarray]:
         """First and last value of the parameter that varies along the rows, (2,), by its name."""
         return {self.config.plane_parameters[0]: self.line_values[[0, -1]]}
 

@@ -17,7 +17,7 @@ NODE_COUNT = 33
 """Number of Lobatto nodes of each shape."""
 FRAMES_PER_RETURN = 32
 """Number of shapes per return of the tip to theta = 0; an animation interpolates between the shapes."""
-MOTION_ACCURACY = 1e-5
+BENT_SHAPE_ACCURACY = 1e-5
 """Relative accuracy of the mesh on which the bent shape is computed, equal to the accuracy of motions in the
 task limit_cycle."""
 
@@ -56,7 +56,7 @@ def bent_shape(job: Job, tip: tuple[float, float] | None) -> Array:
     from ..solve.motion.fixed_tip import bent_state_with_tip_at
 
     rod = job.points.rod(0)
-    system = ExplicitSystem(integrable_rod(rod), motion_mesh(rod, MOTION_ACCURACY))
+    system = ExplicitSystem(integrable_rod(rod), motion_mesh(rod, BENT_SHAPE_ACCURACY))
     state = np.zeros(system.unknown_count) if tip is None else bent_state_with_tip_at(system, *tip)
     shape: Array = system.shape(state)[:2] @ system.mesh.evaluation_matrix(lobatto_points(NODE_COUNT)).T
     return shape

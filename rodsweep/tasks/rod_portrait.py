@@ -20,14 +20,14 @@ from ..results.layouts.thresholds import CROSSING_KINDS
 from .running.in_memory import solved_view
 from .running.job import Job, job_of_config
 
-CYCLE_FRACTIONS = (0.1, 0.5, 0.9)
+CYCLE_FORCE_FRACTIONS = (0.1, 0.5, 0.9)
 """Forces of the three cycles, as fractions of the total length of all ranges of F with a stable cycle."""
 SHAPE_COUNT = 12
 """Number of shapes per period of each cycle; a small panel has no room for more."""
-LARGE_DEFLECTION = 0.5
+LARGE_INITIAL_DEFLECTION = 0.5
 """Initial tip deflection in L, large enough to reach a stable cycle even if the straight rod is also
 stable."""
-MODE_THRESHOLD_KINDS = ("onset", "hopf")
+LEADING_MODE_THRESHOLD_KINDS = ("onset", "hopf")
 """Kinds of thresholds; the leading mode is solved at the first threshold of each kind."""
 BRANCH_ACCURACY = 1e-5
 """Relative accuracy of the cycles on the branches of a portrait without a requested accuracy, far below a
@@ -127,7 +127,7 @@ def _cycle_at_force(
     deflection. If both starts find no cycle, the result of the first start that gave a result; None if both
     gave None. solve: function (task, options, F) that solves a task, and returns None for invalid input."""
     result = None
-    for start in ({"start": "hopf"}, {"start": "mode", "amplitude": LARGE_DEFLECTION}):
+    for start in ({"start": "hopf"}, {"start": "mode", "amplitude": LARGE_INITIAL_DEFLECTION}):
         view = solve("limit_cycle", {**start, "shapes": SHAPE_COUNT}, F)
         if view is not None and np.isfinite(view.variables["period"]).all():
             return view
@@ -136,11 +136,11 @@ def _cycle_at_force(
 
 
 def first_threshold_forces(thresholds: ResultView) -> dict[str, float]:
-    """Force of the first threshold of each kind in MODE_THRESHOLD_KINDS, at which the leading mode is
+    """Force of the first threshold of each kind in LEADING_MODE_THRESHOLD_KINDS, at which the leading mode is
     drawn."""
     kinds, forces = (thresholds.by_point(f"crossing_{name}")[0] for name in ("kind", "F"))
     first_forces = {}
-    for kind in MODE_THRESHOLD_KINDS:
+    for kind in LEADING_MODE_THRESHOLD_KINDS:
         indices = np.flatnonzero(kinds == CROSSING_KINDS.index(kind))
         if len(indices):
             first_forces[kind] = float(forces[indices[0]])
@@ -148,7 +148,8 @@ def first_threshold_forces(thresholds: ResultView) -> dict[str, float]:
 
 
 def cycle_forces(ranges: Sequence[ParameterRange]) -> list[float]:
-    """Forces of the three cycles, increasing: at CYCLE_FRACTIONS of the ranges of F with a stable cycle.
+    """Forces of the three cycles, increasing: at CYCLE_FORCE_FRACTIONS of the ranges of F with a stable
+    cycle.
 
     A force is rounded to three digits if the rounded force is in the same range. Empty if `ranges` is empty.
     """
@@ -157,7 +158,7 @@ def cycle_forces(ranges: Sequence[ParameterRange]) -> list[float]:
     lengths = np.array([high - low for low, high in ranges])
     cumulated = np.concatenate([[0.0], np.cumsum(lengths)])
     forces = []
-    for fraction in CYCLE_FRACTIONS:
+    for fraction in CYCLE_FORCE_FRACTIONS:
         position = fraction * cumulated[-1]
         number = min(int(np.searchsorted(cumulated, position, side="right")) - 1, len(ranges) - 1)
         low, high = ranges[number]

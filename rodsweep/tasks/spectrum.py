@@ -14,7 +14,7 @@ from ..discretization.elements.resolution import mesh_accuracy
 from ..discretization.straight.longitudinal_modes import longitudinal_modes
 from ..errors import InputError
 from ..model.longitudinal import longitudinal_eigenvalues
-from ..model.material.laws import LINEAR
+from ..model.material.laws import LINEAR_CONSTITUTIVE_LAW
 from ..model.material.rod_material import RodMaterial
 from ..model.rod import Crushed, Rod
 from ..results.layouts.spectrum import (
@@ -43,7 +43,7 @@ class SpectrumTask(CertifiedTask):
     config: SpectrumConfig
 
     uncertified_risk: ClassVar[str] = "modes may be missed"
-    count_location: ClassVar[str] = "point"
+    mode_count_location: ClassVar[str] = "point"
 
     def __post_init__(self) -> None:
         if self.config.spectrum.longitudinal and np.isinf(self.points.columns_by_name["k1"]).any():
@@ -96,7 +96,7 @@ class SpectrumTask(CertifiedTask):
         names of the dimensions of these points. shape: their lengths. columns: values of the parameters on
         which the rates depend, by name, flattened to (points,)."""
         points = self.points
-        linear = self.config.rod_material.constitutive_law is LINEAR
+        linear = self.config.rod_material.constitutive_law is LINEAR_CONSTITUTIVE_LAW
         parameter_names = longitudinal_parameters(self.config.is_uniform_and_linear, linear)
         names = [name for name in parameter_names if name in points.columns_by_name]
         columns = {name: points.columns_by_name[name] for name in names}
@@ -118,7 +118,7 @@ class SpectrumTask(CertifiedTask):
     def headline(self) -> str:
         return f"{points_text(self.points)}, {self.config.spectrum.modes} leading modes each"
 
-    def option_rows(self) -> list[CheckRow]:
+    def requested_result_rows(self) -> list[CheckRow]:
         options = self.config.spectrum
         vectors_text = f"on {options.nodes} nodes" if options.vectors else "spectrum.vectors adds them"
         longitudinal_text = "they decouple; spectrum.longitudinal adds them"

@@ -12,7 +12,7 @@ from ..results.layouts.variables import outcome_values, value_lists
 from ..sweep.cost_estimate import CostEstimate
 from ..sweep.search_cost import thresholds_cost
 from .base_classes import CertifiedTask
-from .check_rows import crushing_clause, points_clause
+from .check_rows import points_clause, search_end_below_crushing_clause
 from .protocol import CheckRow, Solver
 
 if TYPE_CHECKING:
@@ -32,20 +32,20 @@ class ThresholdsTask(CertifiedTask):
     config: ThresholdsConfig
 
     uncertified_risk: ClassVar[str] = "crossings may be missed"
-    count_location: ClassVar[str] = "line"
+    mode_count_location: ClassVar[str] = "line"
 
     def headline(self) -> str:
-        end_text = f"{self.config.thresholds.F_max:g}{crushing_clause(self.config)}"
+        end_text = f"{self.config.thresholds.F_max:g}{search_end_below_crushing_clause(self.config)}"
         return points_clause(self.points, f"searched from F = 0 to {end_text}")
 
-    def option_rows(self) -> list[CheckRow]:
+    def requested_result_rows(self) -> list[CheckRow]:
         max_thresholds = self.config.thresholds.crossings
         return [
             ("onset, Hopf points, restabilization", True, "task: thresholds"),
             ("all other crossings", True, f"at most {max_thresholds} are stored for each point"),
         ]
 
-    def searched_ranges(self) -> dict[str, np.ndarray]:
+    def searched_range_ends(self) -> dict[str, np.ndarray]:
         """The largest F of the search, (1,), by the name of the parameter."""
         return {"F": np.array([self.config.thresholds.F_max])}
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from ..model.arm.arm import SlenderArm
 from ..model.arm.neglected import SELF_BUCKLING_WEIGHT, Effect, Validity
-from ..model.material.laws import LINEAR
+from ..model.material.laws import LINEAR_CONSTITUTIVE_LAW
 from ..wording import two_digits
 
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ def slenderness_check(arm: SlenderArm) -> Check:
 def compression_check(assessment: "Assessment", at_flutter: Effect) -> Check:
     """Check of F/k1, the compressive strain of the straight arm's weakest section, at flutter and loaded."""
     # The limit of linear elasticity means nothing for a law that holds at large strain.
-    if assessment.arm.law != LINEAR.law_name:
+    if assessment.arm.law != LINEAR_CONSTITUTIVE_LAW.law_name:
         return _rubber_compression_check(assessment)
     texts = []
     effects = [at_flutter, *assessment.compression_under_load]

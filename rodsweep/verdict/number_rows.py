@@ -6,7 +6,7 @@ from typing import NamedTuple
 from ..model.arm.arm import SlenderArm
 from ..model.arm.section import Tube
 from ..model.arm.shape import Station
-from ..model.material.laws import LINEAR
+from ..model.material.laws import LINEAR_CONSTITUTIVE_LAW
 from ..model.units import with_si_prefix
 from .planes import PlaneOfMotion
 from .rounded_numbers import three_digit_range_text
@@ -60,7 +60,7 @@ def shape_rows(arm: SlenderArm) -> list[NumberRow]:
             source = "all other rows are for segment 1" if number == 1 else "drag by its own radius"
             rows.append(NumberRow(f"segment {number}", interval_text, station_phrase(station), source))
             start = station.end
-    if arm.law != LINEAR.law_name:
+    if arm.law != LINEAR_CONSTITUTIVE_LAW.law_name:
         rows.append(
             NumberRow(
                 "law", f"neo-Hookean, {arm.section} section", LAW_FORMULA, "E is the modulus at small strain"
@@ -76,7 +76,7 @@ def dimensional_rows(arm: SlenderArm) -> list[NumberRow]:
     return [
         NumberRow("A", f"{section.area:.4g} m^2", section.formula.split(", ")[0], "geometry"),
         NumberRow("I", f"{section.second_moment:.4g} m^4", section.formula.split(", ")[1], "geometry"),
-        NumberRow("kappa", f"{kappa:.4g}", section.shear_formula, "Cowper 1966"),
+        NumberRow("kappa", f"{kappa:.4g}", section.shear_coefficient_formula, "Cowper 1966"),
         NumberRow("k3", f"{arm.bending_stiffness:.4g} N m^2", "E I", "paper, Sec. III"),
         NumberRow("k3/L^2", f"{arm.force_scale:.4g} N", "unit of force", "paper, Sec. VI"),
         *load_row(arm),

@@ -586,7 +586,7 @@ def test_a_long_solve_is_shown_where_it_is_asked_for_or_a_terminal_is(progress, 
     """The display is due at once; standard error is no terminal here."""
     monkeypatch.setattr("rodsweep.sweep.progress.QUIET_SECONDS", 0.0)
     monkeypatch.setattr("rodsweep.sweep.progress.BAR_SECONDS", 0.0)
-    monkeypatch.setattr("rodsweep.sweep.stop.POSITION_SECONDS", 0.0)
+    monkeypatch.setattr("rodsweep.sweep.stop.SECONDS_BETWEEN_PROGRESS_REPORTS", 0.0)
     asked = {} if progress is None else {"progress": progress}
     rs.Rod(k1=1e4, k2=1e4, gamma3=1e-4).branch(stop=40, accuracy=1e-4, **asked)
     said = capsys.readouterr().err

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import rodsweep as rs
-from rodsweep.api.argument_hints import ARM_ADVICE, ROD_ADVICE
+from rodsweep.api.argument_hints import UNKNOWN_ARM_ARGUMENT_HINTS, UNKNOWN_ROD_ARGUMENT_HINTS
 from rodsweep.explore.state import PageState
 from rodsweep.model.parameters import PARAMETERS
 
@@ -105,9 +105,11 @@ def test_what_a_rod_does_not_have_is_refused_with_what_to_write(name, advice):
         rs.Rod(k1=1e4, k2=1e4, gamma3=1e-4, **{name: 1.0})
 
 
-@pytest.mark.parametrize("word", sorted({*ARM_ADVICE, *ROD_ADVICE}))
+@pytest.mark.parametrize("word", sorted({*UNKNOWN_ARM_ARGUMENT_HINTS, *UNKNOWN_ROD_ARGUMENT_HINTS}))
 def test_advice_is_for_what_is_no_argument(word):
-    known = {field.name for field in fields(rs.Arm)} if word in ARM_ADVICE else set(PARAMETERS)
+    known = (
+        {field.name for field in fields(rs.Arm)} if word in UNKNOWN_ARM_ARGUMENT_HINTS else set(PARAMETERS)
+    )
     assert word not in known
 
 

@@ -18,7 +18,7 @@ from surveyed import survey_only
 from rodsweep.bench import peers as bench_peers
 from rodsweep.bench.peers import (
     NO_PEERS,
-    PEER_NAMES,
+    PEER_PHRASES_BY_STUDY,
     PeerContribution,
     peer_package,
     peers_left_out,
@@ -143,7 +143,7 @@ def test_method_that_fails_has_no_finite_error_and_says_how(monkeypatch):
 
 
 def test_race_takes_all_in_turn_and_times_the_second_of_two(monkeypatch):
-    monkeypatch.setattr("rodsweep.bench.study.SHORT_RUN_SECONDS", np.inf)
+    monkeypatch.setattr("rodsweep.bench.study.MAX_CACHE_SENSITIVE_SECONDS", np.inf)
     order = []
     raced = time_runs([lambda: order.append("a"), lambda: order.append("b") or 7], [2, 1])
     assert order == ["a", "b", "a", "a", "b", "b", "a", "a"]
@@ -152,7 +152,7 @@ def test_race_takes_all_in_turn_and_times_the_second_of_two(monkeypatch):
 
 
 def test_race_makes_long_runs_once_a_round(monkeypatch):
-    monkeypatch.setattr("rodsweep.bench.study.SHORT_RUN_SECONDS", 0.0)
+    monkeypatch.setattr("rodsweep.bench.study.MAX_CACHE_SENSITIVE_SECONDS", 0.0)
     order = []
     time_runs([lambda: order.append("a"), lambda: order.append("b")], [2, 0])
     assert order == ["a", "b", "a", "a"]
@@ -317,7 +317,7 @@ def test_a_folder_of_this_name_that_is_no_checkouts_is_left_alone(monkeypatch, t
 
 def test_who_is_left_out_is_said_for_every_study_with_peers():
     rooms = [path.parent.name for path in (ROOT / "benchmarks").glob("*/__init__.py")]
-    assert sorted(PEER_NAMES) == sorted(rooms)
+    assert sorted(PEER_PHRASES_BY_STUDY) == sorted(rooms)
 
 
 def test_a_benchmark_names_its_processor():

@@ -12,17 +12,17 @@ from rodsweep.bench.limit_cycle.settling import SettlingMethod, settling_table
 from rodsweep.bench.limit_cycle.study import (
     FOLLOWING_RACE,
     WAITING_RACE,
+    following_table,
     run_limit_cycle_study,
     time_at_error,
     time_at_error_table,
-    work_table,
 )
 from rodsweep.bench.limit_cycle.sweeping import (
     ACCURACY,
     AccurateCycle,
     SweptRod,
     measure_sweep_points,
-    solve_from_neighbour,
+    solve_timed_points,
     sweep_table,
 )
 from rodsweep.bench.limit_cycle.swept_rods import QUICK_RODS, RODS
@@ -32,7 +32,7 @@ from rodsweep.bench.limit_cycle.tracking import (
     cycle_request,
     orbit_of,
     solve_reference,
-    tip_returns,
+    tip_angle_returns,
     trajectory_measurement_fields,
 )
 from rodsweep.bench.peers import NO_PEERS, PeerContribution
@@ -62,7 +62,7 @@ def test_returns_lie_on_the_section():
     steps = DEFAULT_INTEGRATOR.integrate(
         1e-5, IntegrationTask(at.system, at.state, FOLLOWED_PERIODS * at.period)
     )
-    found = tip_returns(at.system, steps)
+    found = tip_angle_returns(at.system, steps)
     angle = at.system.tip_coordinates(found.states)[2]
     assert len(found.times) >= 6
     assert np.abs(angle).max() < 1e-9 * np.abs(at.system.tip_coordinates(steps.states)[2]).max()
@@ -93,7 +93,7 @@ def test_table_at_equal_error_states_the_ratios():
 
 def test_tables_show_what_failed():
     failed = Measurement("", "a", "1e-05", 1.0, np.inf, failure="failed (ArithmeticError)")
-    assert "| a | 1e-05 | failed (ArithmeticError) |" in work_table([failed])
+    assert "| a | 1e-05 | failed (ArithmeticError) |" in following_table([failed])
     never = SettlingMethod(
         50.0, "waiting, a", "", np.nan, np.inf, print, failed_tolerances=("1e-06", "1e-07")
     )
@@ -136,7 +136,7 @@ def test_points_of_a_sweep_are_as_accurate_as_they_say():
 def test_a_point_without_a_cycle_is_shown_as_failed():
     rod = SweptRod(replace(RODS[2], F=25.0), exact(), {"F": None}, NewtonWorkspace())
     with pytest.raises(ArithmeticError, match="no cycle: straight"):
-        solve_from_neighbour("F", ACCURACY, rod)
+        solve_timed_points("F", ACCURACY, rod)
     failed = Measurement("rod", "sweep over F", "", 1.0, np.inf, failure="failed (ArithmeticError)")
     assert "| rod | sweep over F | failed (ArithmeticError) |  |" in sweep_table([failed])
 

@@ -26,7 +26,7 @@ from rodsweep.bench.sweep.launch import (
 )
 from rodsweep.bench.sweep.study import (
     TWO_COMMAND_CASE,
-    growth_table,
+    added_point_cost_table,
     instant_table,
     run_sweep_study,
     sweep_measurement,
@@ -49,7 +49,7 @@ def row(name, points, ranks, seconds, memory):
             seconds=s,
             stated_seconds=s - 0.5,
             solver_seconds=0.0,
-            peak_memory=tuple(memory[:ranks]),
+            first_and_other_peak_memory=tuple(memory[:ranks]),
             file_bytes=1000 + 62 * points,
             journal_bytes=74 * (points - 1),
             processors_busy_elsewhere=0.0,
@@ -73,7 +73,7 @@ def test_quick_study_writes_its_tables_and_its_measurements(monkeypatch, loaded)
     assert (f"| {TWO_COMMAND_CASE} | 16 | 1 |" in study.text) == bool(launcher_arguments(2))
     assert "| no solver | 400 | 1 |" in study.text
     assert "| resumed | 400 | 1 |" in study.text
-    assert growth_table([]) in study.text
+    assert added_point_cost_table([]) in study.text
     assert "| limit cycles | 2 | 1 |" in study.text
     assert "| 12 of F | 144 |" in study.text
     assert ("| no solver | 400 | 2 |" in study.text) == bool(launcher_arguments(2))
@@ -98,7 +98,7 @@ def test_memory_of_a_rank_does_not_grow_with_the_grid(tmp_path):
         killed = run(case, 1)
         assert killed.journal_bytes > 74 * (points - 1)
         resumed = run(replace(case, solver_kind="instant"), 1, fresh=False)
-        peaks[points] = [killed.peak_memory[0], resumed.peak_memory[0]]
+        peaks[points] = [killed.first_and_other_peak_memory[0], resumed.first_and_other_peak_memory[0]]
     for few, many in zip(*peaks.values(), strict=True):
         assert 5e7 < few < many + 1e6 * FEW_MEGABYTES
         assert many < few + 1e6 * FEW_MEGABYTES
@@ -147,12 +147,12 @@ def test_growth_is_that_of_each_step():
         for n in (1, 2)
         for k in (3, 4, 5)
     ]
-    text = growth_table(rows)
+    text = added_point_cost_table(rows)
     assert "| no solver | 1 rank | 1000 | 10000 | 10 | 62 | +0.0 |  |  |" in text
     assert "| no solver | 1 rank | 10000 | 100000 | 10 | 62 | +0.0 |  | 1.00 |" in text
     assert "| no solver | 2 ranks | 10000 | 100000 | 10 | 62 | +0.0 | +0.0 | 1.00 |" in text
     killed = row(KILLED, 10**5, 1, 1.0, [10**8])
-    assert growth_table([killed]).endswith("---|")
+    assert added_point_cost_table([killed]).endswith("---|")
     text = instant_table([*rows, killed])
     assert "| no solver | 100000 | 2 | 1.50 | 30.0 | 100.0 | 200.0 | 62.0 |  |" in text
     assert "| killed | 100000 | 1 | 1.00 | 10.0 | 100.0 |  | 62.0 | 74.0 |" in text

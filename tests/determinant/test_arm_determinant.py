@@ -113,7 +113,7 @@ def test_cone_of_radius_ratio_one_half_flutters_where_collocation_says():
 @pytest.mark.parametrize("F", [-50.0, 1e-3, 60.0, 900.0])
 def test_uniform_rods_of_rubber_are_equivalent_to_linear_ones(law, section, F):
     rod = Rod(F=F, k1=500.0, k2=70.0, gamma3=0.01, material=RodMaterial(law=law, section=section))
-    linear, rate = rod.equivalent_linear_rod
+    linear, rate = rod.equivalent_linear_rod_and_rate
     for w in PLACES[:5]:
         found = ArmDeterminant(rod).value(w)
         closed = scaled_determinant(w / rate, linear.coefficients)

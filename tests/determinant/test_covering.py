@@ -12,7 +12,11 @@ from rodsweep.determinant.certificate.box import (
     frequency_bound_on_path,
     zero_free_radius,
 )
-from rodsweep.determinant.certificate.covering import cover_with_boxes, distance_from_zero_bound, examine_box
+from rodsweep.determinant.certificate.covering import (
+    box_outcome_and_costs,
+    cover_with_boxes,
+    distance_from_zero_bound,
+)
 from rodsweep.determinant.certificate.discs import bidisc_centre, bound_on_bidisc
 from rodsweep.determinant.certificate.first_boxes import first_boxes, path_intervals
 from rodsweep.determinant.parameter_path import (
@@ -140,7 +144,7 @@ def test_no_box_with_a_crossing_is_called_empty_and_regular_ones_hold_one_at_mos
             at = eta + half[0] * rng.uniform(-1, 1), p + half[1] * rng.uniform(-1, 1)
             if at[0] <= half[0]:
                 continue
-            kind = examine_box(
+            kind = box_outcome_and_costs(
                 complex(0, at[0]), coefficients_at(at[1], path.origin, path.direction), path.direction, half
             )[0]
             assert kind != 0

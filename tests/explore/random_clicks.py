@@ -23,7 +23,7 @@ from explore.browser import Browser
 
 from rodsweep.errors import UserError
 from rodsweep.explore.slider_scales import SLIDER_SCALES
-from rodsweep.explore.state import MATERIAL_CHOICES, SECOND_PARAMETERS, TAB_DEFAULTS, PageState
+from rodsweep.explore.state import MATERIAL_SECTION_BY_LAW, SECOND_PARAMETERS, TAB_DEFAULTS, PageState
 
 SECONDS = 600.0
 SEED = 35
@@ -167,7 +167,7 @@ class RandomUser:
 
     def choose(self) -> str:
         """A menu."""
-        name, choices = (("law", MATERIAL_CHOICES), ("across", SECOND_PARAMETERS[self.tab()]))[
+        name, choices = (("law", MATERIAL_SECTION_BY_LAW), ("across", SECOND_PARAMETERS[self.tab()]))[
             self.random.integers(2)
         ]
         return self.set(name, self.one_of(choices))

@@ -10,10 +10,10 @@ from bokeh.models import HoverTool
 
 import rodsweep as rs
 from rodsweep.errors import UserError
-from rodsweep.explore.page import STOPPED_SENTENCE, Page
-from rodsweep.explore.page_contents import NO_CYCLE_CURVES_SENTENCE
+from rodsweep.explore.page import SOLVE_STOPPED_SENTENCE, Page
+from rodsweep.explore.page_contents import NO_CYCLE_CURVES_FOUND_SENTENCE
 from rodsweep.explore.page_style import template_text
-from rodsweep.explore.pictures.card import AXIS_ALPHAS, STABLE_COLOUR
+from rodsweep.explore.pictures.card import AXIS_ALPHA_NAMES, STABLE_COLOUR
 from rodsweep.explore.pictures.diagram import (
     BOUNDARY_COLOURS,
     DiagramCell,
@@ -327,7 +327,7 @@ def test_a_search_that_finds_no_folds_says_so_above_the_diagram_as_fine_as_befor
     assert not card.message.visible
     page.solve("cycles")
     run_callbacks(page.document)
-    assert (card.message.visible, card.message.text) == (True, NO_CYCLE_CURVES_SENTENCE)
+    assert (card.message.visible, card.message.text) == (True, NO_CYCLE_CURVES_FOUND_SENTENCE)
     assert card.figure.visible
     assert page.contents.diagram.cell_source.data == drawn
 
@@ -412,7 +412,7 @@ def test_a_stopped_solve_has_a_sentence_in_place_of_its_picture():
     page.stop()
     contents = page.contents
     for picture in (contents.branches, contents.diagram, contents.beating):
-        assert picture.card.message.text == STOPPED_SENTENCE
+        assert picture.card.message.text == SOLVE_STOPPED_SENTENCE
         assert not picture.card.figure.visible
     assert page.contents.sign.text == ""
 
@@ -422,7 +422,7 @@ def test_pictures_without_an_answer_have_no_axes():
     page = page_with(ImmediateSolvers(kinds=("spectrum",)))
     contents = page.contents
     for card in contents.cards:
-        alphas = {getattr(axis, name) for axis in card.figure.axis for name in AXIS_ALPHAS}
+        alphas = {getattr(axis, name) for axis in card.figure.axis for name in AXIS_ALPHA_NAMES}
         assert alphas == ({1.0} if card in (contents.spectrum.card, contents.mode.card) else {0.0})
 
 

@@ -12,7 +12,7 @@ from rodsweep.explore.sharing import state_from_config_text
 from rodsweep.explore.state import (
     DEFAULT_ARM,
     DEFAULT_ROD,
-    MATERIAL_CHOICES,
+    MATERIAL_SECTION_BY_LAW,
     SECOND_PARAMETERS,
     TAB_DEFAULTS,
     PageState,
@@ -25,7 +25,7 @@ RODS = st.builds(
         rod=dict(zip(DEFAULT_ROD, texts, strict=True)), law=law, across=across, F_max=F_max
     ),
     st.lists(TEXT, min_size=len(DEFAULT_ROD), max_size=len(DEFAULT_ROD)),
-    st.sampled_from(list(MATERIAL_CHOICES)),
+    st.sampled_from(list(MATERIAL_SECTION_BY_LAW)),
     st.sampled_from(SECOND_PARAMETERS["rod"]),
     TEXT,
 )
@@ -60,7 +60,7 @@ def test_an_address_with_an_unknown_key_or_choice_is_refused(query, named):
         from_address(query)
 
 
-@pytest.mark.parametrize("law", MATERIAL_CHOICES)
+@pytest.mark.parametrize("law", MATERIAL_SECTION_BY_LAW)
 def test_a_loaded_config_is_the_state_that_saved_it(law):
     state = PageState(rod=OTHER, law=law)
     assert state_from_config_text(state.yaml("limit_cycle")).subject() == state.subject()

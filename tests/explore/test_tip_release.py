@@ -16,7 +16,7 @@ from rodsweep.explore.solving.requests import SHAPE_COUNT, Reply, SolveRequest, 
 from rodsweep.explore.solving.tip_release import motion_in_page_units
 from rodsweep.explore.state import PageState
 from rodsweep.post.figures.cycle.released_motion_film import motion_film
-from rodsweep.post.figures.cycle.tip_path import PATH_SEGMENT_COUNT, smooth_tip_path
+from rodsweep.post.figures.cycle.tip_path import SEGMENTS_BETWEEN_SHAPES, smooth_tip_path
 
 KINDS = (*INSTANT_KINDS, "bent", "motion", "film")
 
@@ -59,7 +59,7 @@ def test_the_drawn_path_of_the_tip_is_smooth_and_leads_through_the_shapes():
     picture = page.contents.beating
     for each in (picture.shapes_source, picture.motion_source):
         path = np.stack([picture.path_source.data[name] for name in "xy"], axis=1)
-        assert path[::PATH_SEGMENT_COUNT][: len(ends(each))] == pytest.approx(ends(each), abs=1e-6)
+        assert path[::SEGMENTS_BETWEEN_SHAPES][: len(ends(each))] == pytest.approx(ends(each), abs=1e-6)
         steps = np.diff(path, axis=0)
         turns = np.angle(np.exp(1j * np.diff(np.arctan2(steps[:, 1], steps[:, 0]))))
         assert np.degrees(np.abs(turns).max()) < 12  # 44 degrees in a path of straight lines between shapes
@@ -161,7 +161,7 @@ def test_the_path_between_shapes_is_that_of_a_smooth_motion(is_closed):
     fine = 2 * np.pi * np.linspace(0, turns, len(path))
     # Central differences of sin(2 phase) have the error h^2/6 (2 w)^3, of which a cubic has a quarter of h.
     assert path == pytest.approx(np.stack([np.cos(fine), np.sin(2 * fine)], axis=1), abs=4e-3)
-    assert len(path) == 32 * PATH_SEGMENT_COUNT + 1
+    assert len(path) == 32 * SEGMENTS_BETWEEN_SHAPES + 1
 
 
 def test_two_shapes_have_a_straight_path():

@@ -10,7 +10,7 @@ from matplotlib.contour import ContourSet
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from rodsweep.model.arm.drag import DRAG_NAMES
+from rodsweep.model.arm.drag import DRAG_ESTIMATE_NAMES
 from rodsweep.model.arm.neglected import Validity
 
 from .arm_sentences import NAMED, UNIT, UNITS, force_unit, in_si, quantities_at_points
@@ -217,7 +217,7 @@ def quantities_told(d, view):
     if not each:
         return found
     for line, match in read(d.page, r"drag ([a-z ]+?)(?: \(of NUMBER values\))?(?=,| and |$)"):
-        names = {DRAG_NAMES[int(q["drag"])].replace("_", " ") for q in each if "drag" in q}
+        names = {DRAG_ESTIMATE_NAMES[int(q["drag"])].replace("_", " ") for q in each if "drag" in q}
         found.append((line, "" if match[1] in names else f"drags {names}"))
     for line, match in read(
         d.page,

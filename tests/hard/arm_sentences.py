@@ -12,7 +12,7 @@ from rods import rod_of
 
 import rodsweep as rs
 from rodsweep.model.arm.arm import SlenderArm
-from rodsweep.model.arm.drag import DRAG_NAMES
+from rodsweep.model.arm.drag import DRAG_ESTIMATE_NAMES
 from rodsweep.model.arm.neglected import (
     CURVATURE_OVER_AMPLITUDE,
     DOUBTFUL_RATIO,
@@ -140,7 +140,7 @@ def quantities_at_points(view):
 def arm_of(q):
     """The arm of quantities at a point."""
     given = {n: x for n, x in q.items() if not np.isnan(x) and n != "drag" and not n.endswith("over_flutter")}
-    return SlenderArm(**given, drag=DRAG_NAMES[int(q.get("drag", 0))])
+    return SlenderArm(**given, drag=DRAG_ESTIMATE_NAMES[int(q.get("drag", 0))])
 
 
 def in_si(view):
@@ -172,7 +172,7 @@ def _quantity_lines(view, page):
     for name, values in view.quantities.items():
         true = np.unique(np.asarray(values, float))
         if name == "drag":
-            found += _drag_line(page, [DRAG_NAMES[int(number)] for number in true])
+            found += _drag_line(page, [DRAG_ESTIMATE_NAMES[int(number)] for number in true])
             continue
         for line, why, low, high, unit in parameter_lines(page, name, true):
             ends = (
@@ -313,7 +313,7 @@ def region_as_stated(view, text, mask):
     for item in text.split(", "):
         if match := re.fullmatch(r"drag (.*)", item):
             name = "drag"
-            names = {DRAG_NAMES[int(x)].replace("_", " ") for x in columns[name][mask]}
+            names = {DRAG_ESTIMATE_NAMES[int(x)].replace("_", " ") for x in columns[name][mask]}
             why += [] if set(match[1].split(" and ")) == names else [f"drags {names}"]
         elif match := re.fullmatch(rf"({NUMBER}(?: to {NUMBER})?) of flutter", item):
             name = next(name for name in columns if name.endswith("over_flutter"))
@@ -345,7 +345,7 @@ def _drag_sentences(view, page, start, chosen, numbers):
     found, alike = [], _alike_but_for_drag(view)
     sentence = rf"{start}the results of an arm vary over the NUMBER drags of its range: (.*)$"
     for line, match in read(page, sentence):
-        why = [] if int(match[1]) == len(DRAG_NAMES) else ["drags"]
+        why = [] if int(match[1]) == len(DRAG_ESTIMATE_NAMES) else ["drags"]
         items = re.findall(
             rf"([a-z ]+?) by (up to )?(?:({NUMBER}) %|a factor of ({NUMBER}))(?:, |$)", match[2]
         )

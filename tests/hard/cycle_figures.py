@@ -14,7 +14,7 @@ from matplotlib.quiver import Quiver
 
 import rodsweep as rs
 from rodsweep.discretization.elements.trigonometric import interpolate_samples
-from rodsweep.model.parameters import LINEAR_PARAMETERS
+from rodsweep.model.parameters import NON_OPTIONAL_LINEAR_PARAMETERS
 from rodsweep.model.rod import Rod
 from rodsweep.post.branch_curves import RodBranches
 
@@ -209,7 +209,7 @@ def _on_hopf_rows(d, axes, vertices, view, x, y):
     d.marks += len(vertices[0])
     for value in np.unique(columns[y]):
         on = np.isclose(vertices[1], value, rtol=1e-9)
-        rod = Rod(**{n: (shared | {y: float(value)})[n] for n in LINEAR_PARAMETERS})
+        rod = Rod(**{n: (shared | {y: float(value)})[n] for n in NON_OPTIONAL_LINEAR_PARAMETERS})
         low, high = float(columns[x].min()), float(columns[x].max())
         for at in vertices[0][on]:
             rate = (
@@ -493,10 +493,10 @@ def _straight(d, axes, line, view, rod):
     """Why the straight rod is not as stable as its line says, in the middle of it and inside of its ends."""
     columns, (low, high) = view.point_columns, line.get_xdata()
     stable = line.get_linestyle() == "-"
-    name = next(n for n in LINEAR_PARAMETERS if f"branch_{n}" in view.variables)
+    name = next(n for n in NON_OPTIONAL_LINEAR_PARAMETERS if f"branch_{n}" in view.variables)
     d.marks += 1
     for share in (0.001, 0.5, 0.999):
-        values = {n: float(columns[n][rod]) for n in LINEAR_PARAMETERS if n in columns} | {
+        values = {n: float(columns[n][rod]) for n in NON_OPTIONAL_LINEAR_PARAMETERS if n in columns} | {
             name: low + share * (high - low)
         }
         rate = leading(Rod(**values))[0].real

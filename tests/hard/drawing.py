@@ -18,7 +18,7 @@ from matplotlib.spines import Spine
 from matplotlib.text import Annotation, Text
 from scipy.spatial import cKDTree
 
-from rodsweep.model.parameters import LINEAR_PARAMETERS
+from rodsweep.model.parameters import NON_OPTIONAL_LINEAR_PARAMETERS
 from rodsweep.model.rod import Rod
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
@@ -293,8 +293,8 @@ def unloaded(view):
     """The rods of a file at F = 0, and up to where these were searched."""
     columns, tops = view.point_columns, view.variables["F_end"].ravel()
     rods = [
-        Rod(F=0.0, **dict(zip(LINEAR_PARAMETERS[1:], map(float, row), strict=True)))
-        for row in zip(*(columns[n] for n in LINEAR_PARAMETERS[1:]), strict=True)
+        Rod(F=0.0, **dict(zip(NON_OPTIONAL_LINEAR_PARAMETERS[1:], map(float, row), strict=True)))
+        for row in zip(*(columns[n] for n in NON_OPTIONAL_LINEAR_PARAMETERS[1:]), strict=True)
     ]
     return [(rod, float(top)) for rod, top in zip(rods, tops, strict=True)]
 

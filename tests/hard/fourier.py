@@ -52,8 +52,8 @@ def solved_cycle(form, X, frequency):
         residual = np.append((frequency * form.M * dX - mixed.rate(form, X)).ravel(), dX[0] @ form.tip_y_row)
         step = np.linalg.solve(J, -residual)
         X, frequency = X + step[:-1].reshape(m, unknowns), frequency + step[-1]
-        moved = np.abs(step[:-1].reshape(m, unknowns)[:, : form.stress_count]).max()
-        if moved <= SOLVED * np.abs(X[:, : form.stress_count]).max():
+        moved = np.abs(step[:-1].reshape(m, unknowns)[:, : form.unknown_stress_count]).max()
+        if moved <= SOLVED * np.abs(X[:, : form.unknown_stress_count]).max():
             return X, frequency
     raise AssertionError("no cycle")
 

@@ -18,7 +18,7 @@ import rodsweep as rs
 from rodsweep.api.dataset import view_of_dataset
 from rodsweep.determinant.certificate.winding_number import count_right_of
 from rodsweep.model.arm.arm import SlenderArm
-from rodsweep.model.parameters import LINEAR_PARAMETERS
+from rodsweep.model.parameters import NON_OPTIONAL_LINEAR_PARAMETERS
 from rodsweep.model.rod import Rod
 from rodsweep.post.branch_curves import RodBranches
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
@@ -281,7 +281,12 @@ def threshold_sentences(view, page):
             why += [near_one_of(text, columns) for text in match.groups() if text]
         for _, match in read(page, r", found on NUMBER of NUMBER lines? of points along", only=line):
             lines = [each for each in lines_along(view.point_columns, name) if len(each.x)]
-            having = len({tuple(getattr(rod, n) for n in LINEAR_PARAMETERS if n != name) for rod, *_ in true})
+            having = len(
+                {
+                    tuple(getattr(rod, n) for n in NON_OPTIONAL_LINEAR_PARAMETERS if n != name)
+                    for rod, *_ in true
+                }
+            )
             # Between two points of a spectrum with several changes only one of them is located.
             is_number = int(match[1]) == having or (view.task != "thresholds" and int(match[1]) < having)
             right = is_number and int(match[2]) == len(lines)
@@ -390,7 +395,10 @@ def thresholds_sentences(view, page, keywords, _):
     """Of a grid the first thresholds of every kind, of a single rod all with their errors."""
     columns, v = view.point_columns, view.variables
     count = v["status"].size
-    rods = [rod_of(0.0, *(float(columns[name][i]) for name in LINEAR_PARAMETERS[1:])) for i in range(count)]
+    rods = [
+        rod_of(0.0, *(float(columns[name][i]) for name in NON_OPTIONAL_LINEAR_PARAMETERS[1:]))
+        for i in range(count)
+    ]
     top = keywords.get("F_max", 200.0)
     every = [changes_over_force(rod, top) for rod in rods]
     found = _search_sentences(view, page, every, "rod")
@@ -767,7 +775,9 @@ def diagram_sentences(view, page, keywords, fine):
     line, row = "F", next(name for name in view.parameters if len(view.parameter_values[name]) > 1)
     v, values, rows = view.variables, view.variables[line], view.parameter_values[row]
     fixed = {
-        name: float(view.parameter_values[name][0]) for name in view.parameters if name in LINEAR_PARAMETERS
+        name: float(view.parameter_values[name][0])
+        for name in view.parameters
+        if name in NON_OPTIONAL_LINEAR_PARAMETERS
     }
     every, table = [], []
     for value in rows:

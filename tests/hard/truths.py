@@ -6,7 +6,7 @@ import numpy as np
 from rods import rod_of
 
 from rodsweep.determinant.parameter_path import ParameterPath
-from rodsweep.model.parameters import LINEAR_PARAMETERS
+from rodsweep.model.parameters import NON_OPTIONAL_LINEAR_PARAMETERS
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.thresholds_along_path import find_thresholds
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
@@ -21,7 +21,7 @@ SHORT_OF_CRUSHED = 1 - 1e-6
 def rods_of(view):
     """The rod of every point, in their order."""
     columns = view.point_columns
-    rows = zip(*(columns[name] for name in LINEAR_PARAMETERS), strict=True)
+    rows = zip(*(columns[name] for name in NON_OPTIONAL_LINEAR_PARAMETERS), strict=True)
     return [rod_of(*map(float, row)) for row in rows]
 
 
@@ -65,7 +65,7 @@ def changes_on_lines(view, name):
     for line in lines_along(view.point_columns, name):
         low, high = float(line.x.min()), float(line.x.max())
         low = min(low, 0.0) if name == "F" and view.task == "limit_cycle" and low < high else low
-        rod = Rod(**{n: line.parameters.get(n, low) for n in LINEAR_PARAMETERS})
+        rod = Rod(**{n: line.parameters.get(n, low) for n in NON_OPTIONAL_LINEAR_PARAMETERS})
         for crossing in changes_along(rod, name, low, high) if low < high else ():
             kind, after = crossing.kind.name, crossing.unstable_after
             if kind == "onset" or (kind, after) in (("hopf", 2), ("restabilization", 0)):

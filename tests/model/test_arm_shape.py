@@ -8,9 +8,9 @@ from scipy.integrate import solve_ivp
 
 from rodsweep.errors import InputError
 from rodsweep.model.arm.arm import SlenderArm
-from rodsweep.model.arm.drag import DRAG_NAMES, cox_drag, gray_hancock_drag, lighthill_drag
+from rodsweep.model.arm.drag import DRAG_ESTIMATE_NAMES, cox_drag, gray_hancock_drag, lighthill_drag
 from rodsweep.model.arm.neglected import SELF_BUCKLING_WEIGHT, neglected_effects, smallest_drag
-from rodsweep.model.arm.shape import MAX_RADIUS_RATIO
+from rodsweep.model.arm.shape import MAX_NEIGHBOURING_RADIUS_RATIO
 
 ROUND = {"length": "10 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "50 Pa s", "pressure": "2 kPa"}
 PARAMETERS = ("k1", "k2", "gamma3", "gamma1", "F", "tau2", "taper", "material", "crushing_force")
@@ -74,7 +74,7 @@ def test_the_drags_of_a_cone_are_those_of_its_local_radius(taper):
     assert local.gamma3 == pytest.approx(values["gamma3"] * (1 - (1 - taper) * u) ** 2, rel=1e-12)
     radii = 1 - (1 - taper) * cone.material.breaks
     steps = np.maximum(radii[1:] / radii[:-1], radii[:-1] / radii[1:])
-    assert steps.max() <= MAX_RADIUS_RATIO * (1 + 1e-12)
+    assert steps.max() <= MAX_NEIGHBOURING_RADIUS_RATIO * (1 + 1e-12)
 
 
 def test_factors_of_segments_by_hand():
@@ -102,7 +102,7 @@ def test_many_segments_have_the_coefficients_of_a_cone():
     middles = (np.arange(count) + 0.5) / count
     radii = 5 - 3 * middles
     steps = segmented(*(f"4 mm: radius {float(r)!r} mm" for r in radii), young="100 kPa")
-    for number in range(len(DRAG_NAMES)):
+    for number in range(len(DRAG_ESTIMATE_NAMES)):
         found = []
         for arm in (cone, steps):
             values = {name: arm.parameter(name) for name in ("k1", "k2", "taper")}

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from rodsweep.model.dispersion import most_amplified_local_waves, most_amplified_wave
+from rodsweep.model.dispersion import largest_growth_and_wave_number, local_growths_and_wave_numbers
 from rodsweep.model.rod import Rod
 
 
@@ -24,7 +24,7 @@ def test_no_wave_grows_faster_than_the_most_amplified_wave(seed: int) -> None:
     k1 = 10 ** random.uniform(0, 6)
     F = k1 * 10 ** random.uniform(-3, -0.01)
     rod = Rod(F=F, k1=k1, k2=10 ** random.uniform(-2, 6), gamma3=10 ** random.uniform(-8, 2))
-    rate, wave_number = most_amplified_wave(rod)
+    rate, wave_number = largest_growth_and_wave_number(rod)
     others = F * rod.g * np.linspace(1e-3, 1, 400)
     assert growth_rate(rod, np.array([wave_number**2]))[0] == pytest.approx(rate, rel=1e-6)
     assert np.all(growth_rate(rod, others) <= rate * (1 + 1e-6))
@@ -34,30 +34,30 @@ def test_no_wave_grows_faster_than_the_most_amplified_wave(seed: int) -> None:
 def test_growth_of_a_pulled_soft_rod_is_attained(gamma3: float) -> None:
     """A pulled rod with F < -k2, soft in shear, is unstable by shear, perhaps without a largest rate."""
     rod = Rod(F=-30.0, k1=1e4, k2=1.0, gamma3=gamma3)
-    rate, wave_number = most_amplified_wave(rod)
+    rate, wave_number = largest_growth_and_wave_number(rod)
     assert rate > 100
     assert rate == pytest.approx(growth_rate(rod, np.array([wave_number**2]))[0], rel=1e-6)
 
 
 def test_rod_without_load_or_with_small_pull_has_no_growing_wave() -> None:
     for F in (0.0, -5.0):
-        assert most_amplified_wave(Rod(F=F, k1=1e4, k2=1e4, gamma3=1e-4)) == (0.0, 0.0)
+        assert largest_growth_and_wave_number(Rod(F=F, k1=1e4, k2=1e4, gamma3=1e-4)) == (0.0, 0.0)
 
 
 def test_waves_at_extreme_forces_do_not_overflow() -> None:
     """Without drag of rotation K = F g/2 exactly; c2 > 0 lowers the wave number, not its order."""
     for F in (1e100, 1e160, 1e300):
-        assert most_amplified_wave(Rod(F=F, k1=math.inf, k2=math.inf, gamma3=0.0))[1] == pytest.approx(
-            math.sqrt(F / 2), rel=1e-12
-        )
-    assert math.isfinite(most_amplified_wave(Rod(F=1e140, k1=math.inf, k2=1e4, gamma3=1e-4))[1])
+        assert largest_growth_and_wave_number(Rod(F=F, k1=math.inf, k2=math.inf, gamma3=0.0))[
+            1
+        ] == pytest.approx(math.sqrt(F / 2), rel=1e-12)
+    assert math.isfinite(largest_growth_and_wave_number(Rod(F=1e140, k1=math.inf, k2=1e4, gamma3=1e-4))[1])
 
 
 def test_local_waves_of_a_slightly_tapered_arm_are_those_of_the_uniform_rod() -> None:
     uniform = Rod(F=50.0, k1=200.0, k2=1e4, gamma3=1e-4)
-    rates, wave_numbers = most_amplified_local_waves(
+    rates, wave_numbers = local_growths_and_wave_numbers(
         Rod(F=50.0, k1=200.0, k2=1e4, gamma3=1e-4, taper=1 - 1e-9)
     )
-    rate, wave_number = most_amplified_wave(uniform)
+    rate, wave_number = largest_growth_and_wave_number(uniform)
     np.testing.assert_allclose(rates, rate, rtol=1e-7)
     np.testing.assert_allclose(wave_numbers, wave_number, rtol=1e-7)

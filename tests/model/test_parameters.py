@@ -9,8 +9,8 @@ import pytest
 import rodsweep
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.model.parameters import (
-    CRUSHING_PARAMETERS,
-    LINEAR_PARAMETERS,
+    FORCE_AND_STRETCH_STIFFNESS,
+    NON_OPTIONAL_LINEAR_PARAMETERS,
     NONLINEAR_PARAMETERS,
     OPTIONAL_PARAMETERS,
     PARAMETERS,
@@ -22,10 +22,10 @@ from rodsweep.results.layouts.variables import DIMENSIONS
 
 def test_the_rod_has_all_parameters():
     assert tuple(field.name for field in fields(Rod) if field.init) == (*PARAMETERS, "material")
-    assert NONLINEAR_PARAMETERS[:4] == LINEAR_PARAMETERS
+    assert NONLINEAR_PARAMETERS[:4] == NON_OPTIONAL_LINEAR_PARAMETERS
     assert OPTIONAL_PARAMETERS == ("taper",)
-    assert parameter_names_except("F") == LINEAR_PARAMETERS[1:]
-    assert set(CRUSHING_PARAMETERS) <= set(LINEAR_PARAMETERS)
+    assert parameter_names_except("F") == NON_OPTIONAL_LINEAR_PARAMETERS[1:]
+    assert set(FORCE_AND_STRETCH_STIFFNESS) <= set(NON_OPTIONAL_LINEAR_PARAMETERS)
 
 
 def test_every_config_has_every_parameter_as_a_key_and_every_file_as_a_dimension():

@@ -9,7 +9,7 @@ from known_cycles import UNSTABLE, hopf_variables, make_view, store
 from rodsweep.post.figures.cycle.amplitudes.amplitude import draw_amplitude
 from rodsweep.post.figures.cycle.amplitudes.square_root import square_root_laws
 from rodsweep.post.located_thresholds import LocatedThreshold, StoredThresholds, UnlocatedThreshold
-from rodsweep.post.summary.stability import stability_lines
+from rodsweep.post.summary.stability import rod_and_arm_stability_lines
 from rodsweep.sweep.points.points import lines_along
 from rodsweep.tasks.protocol import solve_on_one_rank
 from rodsweep.tasks.running.job import job_of_file
@@ -97,7 +97,7 @@ def test_a_change_that_no_search_has_located_lies_between_two_points():
     view = swept((100,), constant)
     view.variables.update(hopf_variables("F", []))
     assert changes_on(view) == [UnlocatedThreshold(27.0, 28.0, "hopf")]
-    (line,), _ = stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on)
+    (line,), _ = rod_and_arm_stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on)
     assert line == "F** (straight rod starts to flutter): between 27 and 28"
 
 
@@ -239,7 +239,7 @@ def test_no_hopf_point_is_marked_over_another_parameter():
     view.variables["linear_growth_rate"][0, 0, 2] = -1
     figure = draw_amplitude([view])[0]
     assert dotted(figure.axes[1]) == []
-    assert stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on) == ([], [])
+    assert rod_and_arm_stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on) == ([], [])
 
 
 def test_lines_over_a_parameter_hold_every_point_once_in_the_order_of_the_file():
@@ -271,7 +271,7 @@ def test_lines_over_a_parameter_hold_every_point_once_in_the_order_of_the_file()
     ],
 )
 def test_the_summary_tells_hopf_points_one_by_one_or_their_range(view, expected):
-    (line,), _ = stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on)
+    (line,), _ = rod_and_arm_stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on)
     assert line == f"F** (straight rod starts to flutter): {expected}"
 
 
@@ -282,7 +282,7 @@ def test_the_summary_tells_every_window_of_flutter_on_a_line():
     places = [9.0, 29.0, 49.0, 69.0, 89.0]
     kinds = ["hopf", "restabilization"] * 2 + ["hopf"]
     view.variables.update(hopf_variables("F", [(F, 1e4, 1e2, 1e-2) for F in places], kinds=kinds))
-    (beats, again), _ = stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on)
+    (beats, again), _ = rod_and_arm_stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on)
     assert re.findall(r"(\d+)\.0+", beats) == ["9", "49", "89"]
     assert re.findall(r"(\d+)\.0+", again) == ["29", "69"]
 
@@ -325,5 +325,5 @@ def test_a_threshold_below_the_first_force_is_told(tmp_path):
     assert [point.position for point in stored.thresholds_up_to_end(line)] == pytest.approx(
         WINDOW[:1], rel=1e-12
     )
-    (sentence,), _ = stability_lines(view, "F", stored.thresholds_up_to_end)
+    (sentence,), _ = rod_and_arm_stability_lines(view, "F", stored.thresholds_up_to_end)
     assert sentence.startswith("F** (straight rod starts to flutter): 49.7580049161")

@@ -15,7 +15,7 @@ from surveyed import RODS, only
 from rodsweep.post.figures.cycle.point_map import cell_centres, cell_edges
 from rodsweep.post.report import write_report
 from rodsweep.post.report.label_text import label_text
-from rodsweep.post.report.vector_picture import MIN_CONTRAST, _contrast, dark_page_colour
+from rodsweep.post.report.vector_picture import MIN_CONTRAST, _contrast_with_dark_page, dark_page_colour
 from rodsweep.post.summary import summary_of
 from rodsweep.results.file.view import read_view
 from rodsweep.tasks import TASKS
@@ -258,7 +258,9 @@ def test_centres_of_cells_are_the_values_that_made_the_edges():
 @pytest.mark.parametrize("colour", ["0072b2", "6a3d9a", "440154", "d55e00", "ffff00", "000000", "000001"])
 def test_colours_are_lightened_until_they_stand_out_on_a_dark_page(colour):
     found = dark_page_colour(colour)
-    assert _contrast([int(found[place : place + 2], 16) for place in (0, 2, 4)]) >= MIN_CONTRAST
+    assert (
+        _contrast_with_dark_page([int(found[place : place + 2], 16) for place in (0, 2, 4)]) >= MIN_CONTRAST
+    )
 
 
 @pytest.mark.long

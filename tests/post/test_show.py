@@ -16,7 +16,7 @@ from rodsweep.post.located_thresholds import LocatedThreshold, StoredThresholds,
 from rodsweep.post.summary import summary_of
 from rodsweep.post.summary.errors import absolute_errors, known_range_text
 from rodsweep.post.summary.number_texts import axis_values_text, number_with_error
-from rodsweep.post.summary.stability import stability_lines
+from rodsweep.post.summary.stability import rod_and_arm_stability_lines
 from rodsweep.results.file.view import read_view
 from rodsweep.solve.changes.status import ThresholdStatus
 from rodsweep.sweep.points.points import lines_along
@@ -103,7 +103,7 @@ def test_a_change_that_is_not_understood_is_a_bracket(command):
     view = replace(view, variables=dict(view.variables) | {v.name: values for v, values in located})
     (line,) = lines_along(view.point_columns, "F")
     assert StoredThresholds(view, "F").thresholds_on(line) == [UnlocatedThreshold(40, 60, "hopf")]
-    (told,), _ = stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on)
+    (told,), _ = rod_and_arm_stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on)
     assert told == "F** (straight rod starts to flutter): between 40 and 60"
 
 

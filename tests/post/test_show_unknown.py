@@ -15,7 +15,7 @@ from rodsweep.post.summary import show_summary
 from rodsweep.results.file.provenance import (
     FAILURE_REASONS_ATTRIBUTE,
     MAX_FAILURE_REASONS,
-    joined_failure_reasons,
+    joined_reasons_attribute,
     merged_history,
 )
 from rodsweep.results.layouts.phase_diagram import CURVE_ENDS, STABILITY_CLASSES
@@ -165,7 +165,7 @@ EARLY = {"k1": np.inf, "gamma3": 0.0, "F_max": 60.0} | {
 
 def test_beyond_a_search_that_ended_early_nothing_is_known(tmp_path, monkeypatch):
     """A smaller limit of the a-priori bound leaves none for the stepped arm beyond a force."""
-    monkeypatch.setattr(hull, "HULL_SETTINGS", replace(hull.HULL_SETTINGS, min_remainder=0.995))
+    monkeypatch.setattr(hull, "HULL_SETTINGS", replace(hull.HULL_SETTINGS, min_one_minus_c=0.995))
     view = view_of_sweep(tmp_path, "thresholds", k2=1e4, **EARLY)
     end = float(view.variables["F_end"].ravel()[0])
     lines = told(view)
@@ -206,13 +206,13 @@ def test_files_that_are_merged_keep_the_reasons_of_both():
     # Without an empty line, which is no failed point, where only the second file has reasons.
     assert merged_history([{}, {FAILURE_REASONS_ATTRIBUTE: one}])[FAILURE_REASONS_ATTRIBUTE] == one
     assert (
-        joined_failure_reasons("F=1.0: failed after 3 steps", "F=2.0: failed after 4 steps")[
+        joined_reasons_attribute("F=1.0: failed after 3 steps", "F=2.0: failed after 4 steps")[
             FAILURE_REASONS_ATTRIBUTE
         ].count("F=")
         == 1
     )
     many = "\n".join(f"F={i}.0: failed {'x' * i}" for i in range(2 * MAX_FAILURE_REASONS))
-    assert len(joined_failure_reasons(many)[FAILURE_REASONS_ATTRIBUTE].splitlines()) == MAX_FAILURE_REASONS
+    assert len(joined_reasons_attribute(many)[FAILURE_REASONS_ATTRIBUTE].splitlines()) == MAX_FAILURE_REASONS
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ import pytest
 from surveyed import few
 
 from rodsweep.post.branch_curves import StoredBranch
-from rodsweep.post.figures.smooth_branch import branch_corners, smooth_curve_of_branch
+from rodsweep.post.figures.smooth_branch import corners_by_previous_cycle, smooth_curve_of_branch
 
 
 def branch_of(u, second_maximum):
@@ -49,7 +49,7 @@ def test_a_corner_is_drawn_where_another_maximum_becomes_the_largest(offset, ris
 
     curve = curve_through(u, second)
     places = np.column_stack([curve.parameter, curve.y, np.log(curve.period)])
-    assert len(branch_corners(places, np.ptp(places, axis=0))) == 1
+    assert len(corners_by_previous_cycle(places, np.ptp(places, axis=0))) == 1
     assert farthest(u, second) < 5e-4
 
 
@@ -58,7 +58,7 @@ def test_a_branch_of_one_maximum_has_no_corner(count):
     u = np.linspace(0, 1, count)
     curve = curve_through(u, lambda u: 0.0 * u)
     places = np.column_stack([curve.parameter, curve.y, np.log(curve.period)])
-    assert not branch_corners(places, np.ptp(places, axis=0))
+    assert not corners_by_previous_cycle(places, np.ptp(places, axis=0))
     assert farthest(u, lambda u: 0.0 * u) < 5e-4
 
 
@@ -67,7 +67,7 @@ def test_a_corner_may_lie_behind_the_second_cycle_from_a_hopf_point():
     at, y, period = 30 + 170 * u, np.maximum(u, 4 * u - 0.48), np.exp(-u)
     curve = StoredBranch(at, y, period, np.ones(8, dtype=int), np.ones(9, dtype=bool), ())
     places = np.column_stack([at, y, np.log(period)])
-    (corner,) = branch_corners(places, np.ptp(places, axis=0)).items()
+    (corner,) = corners_by_previous_cycle(places, np.ptp(places, axis=0)).items()
     assert corner[0] == 1
     assert corner[1] == pytest.approx([30 + 170 * 0.16, 0.16, -0.16], rel=1e-9)
     x, drawn, drawn_period, _ = smooth_curve_of_branch(curve)

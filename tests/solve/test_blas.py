@@ -8,8 +8,8 @@ from kernels import other_kernels
 from rodsweep.results.file.provenance import (
     KERNELS_ATTRIBUTE,
     blas_kernels_in,
-    kernels_sentence,
     merged_blas_kernels,
+    several_kernels_warning,
 )
 from rodsweep.results.file.view import read_view
 from rodsweep.solve.backend import petsc as blas_module
@@ -67,8 +67,8 @@ def test_kernels_of_several_runs_are_kept_once_each():
     assert merged_blas_kernels(["b", "a"], ["a"]) == "a\nb"
     assert blas_kernels_in({KERNELS_ATTRIBUTE: "a\nb"}) == ["a", "b"]
     assert blas_kernels_in({}) == ["unknown"], "an earlier version did not ask"
-    assert kernels_sentence("a") == ""
-    assert "2 BLAS kernels (a; b)" in kernels_sentence("a\nb")
+    assert several_kernels_warning("a") == ""
+    assert "2 BLAS kernels (a; b)" in several_kernels_warning("a\nb")
 
 
 @pytest.fixture(scope="module")

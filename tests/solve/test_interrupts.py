@@ -15,7 +15,7 @@ import pytest
 from conftest import NOT_FITTED
 
 from rodsweep import solve_progress
-from rodsweep.solve.solve_lock import DeferredSignals, one_at_a_time
+from rodsweep.solve.solve_lock import SignalDeferral, one_at_a_time
 
 INTERRUPTS = int(os.environ.get("RODSWEEP_INTERRUPTS", "1"))
 TASKS = """
@@ -133,14 +133,14 @@ def test_a_handler_runs_at_a_safe_place_and_not_before():
     try:
         with (
             pytest.raises(TimeoutError),
-            DeferredSignals() as held,
+            SignalDeferral() as held,
             solve_progress.reporting_to(held.call_due_handlers),
         ):
             signal.raise_signal(signal.SIGUSR2)
             assert place == []
             solve_progress.report()
             pytest.fail("the handler's exception was lost")
-        with pytest.raises(TimeoutError), DeferredSignals():
+        with pytest.raises(TimeoutError), SignalDeferral():
             signal.raise_signal(signal.SIGUSR2)
         assert place == [signal.SIGUSR2] * 2
         assert signal.getsignal(signal.SIGUSR2) == handler

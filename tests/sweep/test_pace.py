@@ -7,7 +7,12 @@ import numpy as np
 import pytest
 
 from rodsweep.sweep.progress import on_terminal
-from rodsweep.sweep.remaining_time import RECORD_RATIO, RemainingTimeEstimator, duration_text, rate_in_words
+from rodsweep.sweep.remaining_time import (
+    RECORDED_POINT_COUNT_RATIO,
+    RemainingTimeEstimator,
+    duration_text,
+    rate_in_words,
+)
 
 RANDOM = np.random.default_rng(3)
 COLD, WARM = 0.1, 0.01
@@ -116,7 +121,7 @@ def test_memory_does_not_grow_with_the_points():
     pace = RemainingTimeEstimator(10**6)
     for done in range(1, 10**5):
         pace.remaining_seconds(done, done * 1e-3)
-    assert len(pace.records) < 3 * np.log(10**5) / np.log(RECORD_RATIO)
+    assert len(pace.records) < 3 * np.log(10**5) / np.log(RECORDED_POINT_COUNT_RATIO)
 
 
 @pytest.mark.parametrize(

@@ -20,10 +20,10 @@ from rodsweep.model.arm.neglected import (
 )
 from rodsweep.post.figures import draw
 from rodsweep.post.summary.arm.answer import arm_answer
-from rodsweep.post.summary.arm.validity_sentences import row_motion_clause, validity_sentence
+from rodsweep.post.summary.arm.validity_sentences import judged_row_motion_clause, validity_sentence
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.phase_diagram import STABILITY_CLASSES
-from rodsweep.results.layouts.si_variables import VALIDITY_NOT_KNOWN, VALIDITY_VARIABLES
+from rodsweep.results.layouts.si_variables import UNKNOWN_VALIDITY_NUMBER, VALIDITY_VARIABLES
 from rodsweep.results.layouts.thresholds import HOPF_CROSSING_CODES
 from rodsweep.tasks.arm.validity import MOTION_OF_TASK, ArmValidity
 
@@ -91,7 +91,7 @@ def test_a_short_list_of_crossings_of_a_diagram_hides_no_effect(crossings):
     if crossings == 8:
         assert (data.model_applies > Validity.applies).all()
         return
-    assert (data.model_applies == VALIDITY_NOT_KNOWN).all()
+    assert (data.model_applies == UNKNOWN_VALIDITY_NUMBER).all()
     assert np.isnan(data.neglected_excess).all()
     validity = {v.name: data[v.name].values.ravel() for v in VALIDITY_VARIABLES}
     said = (
@@ -139,10 +139,10 @@ def test_rows_with_and_without_a_hopf_point_are_counted():
     data = rs.sweep("phase_diagram", arm=arm, k1=[100.0, 1600.0], curves=False, progress=False)
     view = view_of_dataset(data, Path("a.h5"))
     every = np.ones(data.status.shape, bool)
-    assert row_motion_clause(view, every) == (
+    assert judged_row_motion_clause(view, every) == (
         ", judged at the first Hopf point of each row, and at rest without load on 1 row without"
     )
-    assert row_motion_clause(view, ~every) == ""
+    assert judged_row_motion_clause(view, ~every) == ""
 
 
 def test_a_search_that_failed_is_no_arm_at_rest():
@@ -159,7 +159,8 @@ def test_a_search_that_failed_is_no_arm_at_rest():
     judge = ArmValidity(made.config, made.points, solver.statuses)
     failed = next(status for status in solver.statuses if status.name == "failed")
     assert (
-        judge.variables_of_points(record | {"status": int(failed)}, 0)["model_applies"] == VALIDITY_NOT_KNOWN
+        judge.variables_of_points(record | {"status": int(failed)}, 0)["model_applies"]
+        == UNKNOWN_VALIDITY_NUMBER
     )
 
 

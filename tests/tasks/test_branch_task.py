@@ -177,7 +177,7 @@ def test_figure_holds_the_amplitude_against_the_normal_form_from_both_hopf_point
     """Both ends of the branch tend to the law, the subcritical one from above: its cycles lead to a fold."""
     shown(command, CONFIG.format(k1=150, stop=200))
     (curve,) = RodBranches(read_view(command.directory / "c.h5")).curves
-    (first, y_first, stable), (last, y_last, unstable) = curve.near_hopf_points()
+    (first, y_first, stable), (last, y_last, unstable) = curve.scaled_curves_near_hopf_points()
     assert first[:2] == pytest.approx(y_first[:2] ** 2, rel=0.02)
     # The error of F is below a hundredth of the accuracy; the nearest cycle may lie within it.
     assert last[0] == pytest.approx(y_last[0] ** 2, rel=0.02, abs=1e-7)

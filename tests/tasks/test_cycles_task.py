@@ -494,7 +494,7 @@ def test_stopped_chain_goes_on_with_the_next_point(points):
     for _, outcome in chain_solver([(0, 6)], kept, [], stop)(0):
         done.append(outcome)
         if len(done) == points:
-            stop.adopt("SIGUSR1")
+            stop.adopt_request_of_rank("SIGUSR1")
     assert done == whole[:points]
     solved = []
     rest = [outcome for _, outcome in chain_solver([(points, 6)], kept, solved)(0)]

@@ -227,7 +227,7 @@ from rodsweep.solve.unsolvable import Unsolvable
 def lost(*given):
     raise Unsolvable("it is lost")
 
-search.branch_through = lost
+search.complete_branch_through = lost
 """
     run = whole("run", "c.yaml", "-o", "lost.h5", patch=patch)
     assert run.returncode == 1, run.stderr

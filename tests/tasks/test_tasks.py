@@ -16,7 +16,7 @@ from surveyed import few
 import rodsweep as rs
 from rodsweep.discretization.elements.resolution import Resolution
 from rodsweep.post.summary import POINT_NOUNS, show_summary
-from rodsweep.post.summary.curve_extrema import curve_extremum_lines
+from rodsweep.post.summary.curve_extrema import fold_curve_extremum_lines
 from rodsweep.post.summary.diagram_curves import cycle_curve_lines
 from rodsweep.results.file.creation import FilePlan, FinalVariables
 from rodsweep.results.file.store import ResultFileWriter
@@ -31,8 +31,8 @@ from rodsweep.solve.continuation.curve_search import TracedCurves
 from rodsweep.solve.spectrum.search import Spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
 from rodsweep.tasks import modes, spectrum, thresholds
-from rodsweep.tasks.diagram.curve_extrema import curve_extremum_values
-from rodsweep.tasks.diagram.curve_variables import cycle_curve_values
+from rodsweep.tasks.diagram.curve_extrema import fold_curve_extremum_values
+from rodsweep.tasks.diagram.curve_variables import fold_and_torus_curve_values
 from rodsweep.tasks.running.job import job_of_file
 from rodsweep.tasks.thresholds import crossing_values
 
@@ -355,7 +355,7 @@ def test_a_curve_of_one_point_has_the_reasons_of_both_ends():
         (CurveEndReason.edge, CurveEndReason.not_followed),
         (None, None),
     )
-    filled = cycle_curve_values(
+    filled = fold_and_torus_curve_values(
         TracedCurves((curve,), max_seed_curve_distance=0.0, untraced_count=0), ("F", "k1")
     )
     view = SimpleNamespace(variables={variable.name: values for variable, values in filled})
@@ -385,7 +385,7 @@ def test_an_extremum_of_the_row_parameter_along_a_curve_of_folds_is_stored_and_s
     curves = [SpecialPointCurve(SpecialKind.fold, points[2:], (CurveEndReason.edge,) * 2, (None, None))]
     curves.append(replace(curves[0], points=points))
     traced = TracedCurves(tuple(curves), max_seed_curve_distance=0.0, untraced_count=0)
-    filled = curve_extremum_values(traced, ("F", "k1"))
+    filled = fold_curve_extremum_values(traced, ("F", "k1"))
     view = SimpleNamespace(variables={variable.name: values for variable, values in filled})
     assert {name: values.tolist() for name, values in view.variables.items()} == {
         "cycle_extremum_curve": [2],
@@ -394,18 +394,18 @@ def test_an_extremum_of_the_row_parameter_along_a_curve_of_folds_is_stored_and_s
         "cycle_extremum_F_error": [1e-6],
         "cycle_extremum_k1_error": [4e-7],
     }
-    (line,) = curve_extremum_lines(view, "F", "k1")
+    (line,) = fold_curve_extremum_lines(view, "F", "k1")
     assert line.startswith(
         "extremum of k1 along curve 2 of folds of cycles: k1 = 133.0145143 (+- 4e-07), "
         "F = 79.004070 (+- 1e-06); "
     )
-    assert curve_extremum_values(replace(traced, curves=(curves[0],)), ("F", "k1")) == []
+    assert fold_curve_extremum_values(replace(traced, curves=(curves[0],)), ("F", "k1")) == []
     unlocated = replace(curves[0], points=(points[0], replace(points[2], row_extremum_error=np.nan)))
-    ((variable, count),) = curve_extremum_values(replace(traced, curves=(unlocated,) * 2), ("F", "k1"))
+    ((variable, count),) = fold_curve_extremum_values(replace(traced, curves=(unlocated,) * 2), ("F", "k1"))
     assert (variable.name, int(count)) == ("cycle_extrema_unlocated", 2)
-    (line,) = curve_extremum_lines(SimpleNamespace(variables={variable.name: count}), "F", "k1")
+    (line,) = fold_curve_extremum_lines(SimpleNamespace(variables={variable.name: count}), "F", "k1")
     assert line.startswith("extrema of k1 along curves of folds of cycles that could not be located: 2;")
-    assert curve_extremum_lines(SimpleNamespace(variables={}), "F", "k1") == []
+    assert fold_curve_extremum_lines(SimpleNamespace(variables={}), "F", "k1") == []
 
 
 def test_a_row_that_a_curve_of_folds_meets_without_a_fold_of_its_own_is_named():
@@ -414,7 +414,7 @@ def test_a_row_that_a_curve_of_folds_meets_without_a_fold_of_its_own_is_named():
         for at, k1, x in ((60.0, 150.0, 0.5), (70.0, 200.0, 1.0))
     )
     curve = SpecialPointCurve(SpecialKind.fold, points, (CurveEndReason.edge,) * 2, (None, None))
-    filled = cycle_curve_values(
+    filled = fold_and_torus_curve_values(
         TracedCurves((curve,), max_seed_curve_distance=0.0, untraced_count=0), ("F", "k1")
     )
     nan = float("nan")

@@ -90,7 +90,7 @@ def test_pressure_on_a_tube_pushes_on_the_whole_face_of_its_closed_tip():
     assert rod.k1 == pytest.approx(4 * 0.01 / 34e-6)
     assert rod.tip_force == pytest.approx(2000 * math.pi * 25e-6)
     assert rod.F * rod.pressure_scale == pytest.approx(2000)
-    assert rod.mass_at(rod.shape.base) == pytest.approx(math.pi * (16e-6 * 1100 + 9e-6 * 1000))
+    assert rod.mass_per_length_at(rod.shape.base) == pytest.approx(math.pi * (16e-6 * 1100 + 9e-6 * 1000))
     crushing = 1e5 * 16 / 25
     assert arm(inner_radius="3 mm", pressure=0.999 * crushing).k1 > 0
     with pytest.raises(

@@ -14,7 +14,7 @@ from rodsweep.api.keyword_arguments import config_tree, job_of_tree
 from rodsweep.config.arm.section import ArmConfig
 from rodsweep.config.arm.status import CRUSHED, NO_FLUTTER
 from rodsweep.model.arm.arm import SlenderArm
-from rodsweep.model.arm.drag import DRAG_NAMES
+from rodsweep.model.arm.drag import DRAG_ESTIMATE_NAMES
 from rodsweep.model.arm.neglected import CURVATURE_OVER_AMPLITUDE, LARGE_AMPLITUDE, wall_flattening_effect
 from rodsweep.model.rod import Rod
 from rodsweep.post.figures import draw
@@ -46,10 +46,10 @@ limit_cycle: {start: neighbour, harmonics: 2}
 def test_thresholds_over_the_drags_are_those_of_the_verdict():
     data = rs.sweep("thresholds", arm=SILICONE | {"drag": "range"}, crossings=4)
     arm = rs.Arm(**SILICONE)
-    assert data.drag.attrs["flag_meanings"].split() == list(DRAG_NAMES)
+    assert data.drag.attrs["flag_meanings"].split() == list(DRAG_ESTIMATE_NAMES)
     assert data.drag.values.tolist() == [0, 1, 2, 3, 4]
-    for drag, found in zip(DRAG_NAMES, arm.flutter.by_drag, strict=True):
-        here = data.sel(drag=DRAG_NAMES.index(drag))
+    for drag, found in zip(DRAG_ESTIMATE_NAMES, arm.flutter.by_drag, strict=True):
+        here = data.sel(drag=DRAG_ESTIMATE_NAMES.index(drag))
         force = found.first_force(ThresholdKind.hopf) * arm.pressure_scale
         assert here.pressure_hopf.item() == pytest.approx(force, rel=1e-9)
         assert here.frequency_hopf_hz.item() == pytest.approx(
@@ -63,7 +63,7 @@ def test_cycles_over_the_drags_are_those_of_arms_with_each():
     data = rs.sweep("limit_cycle", arm=SILICONE | {"drag": ["least", "most"], "pressure": pressure}, **QUICK)
     for drag in ("least", "most"):
         alone = rs.Arm(**SILICONE, pressure=pressure, drag=drag).limit_cycle(**QUICK)
-        here = data.sel(drag=DRAG_NAMES.index(drag))
+        here = data.sel(drag=DRAG_ESTIMATE_NAMES.index(drag))
         assert here.period_si.item() == pytest.approx(alone.period_si, rel=1e-12)
         assert here.gamma1.item() == alone.data.gamma1.item()
 
@@ -74,7 +74,7 @@ def test_a_phase_diagram_has_the_drags_along_gamma3():
     assert data.drag.dims == data.tau2.dims == ("gamma3",)
     assert (np.diff(data.gamma3) > 0).all()
     for place, gamma3, tau2 in zip(data.drag.values, data.gamma3.values, data.tau2.values, strict=True):
-        arm = SlenderArm(**SILICONE, drag=DRAG_NAMES[place])
+        arm = SlenderArm(**SILICONE, drag=DRAG_ESTIMATE_NAMES[place])
         assert (gamma3, tau2) == (arm.gamma3, arm.tau2)
     with pytest.raises(
         rs.InputError, match=r"arm\.pressure is relative to flutter; the axes of a phase diagram"

@@ -17,7 +17,7 @@ from ...config.document.call_arguments import refusing_wrong_arguments, unknown_
 from ...errors import InputError, short_repr
 from ...post.figures import draw
 from ...post.figures.grid_slices import checked_slice_values, slice_at_values
-from ...post.figures.request import FIGURE_KINDS, ROOT_CHOICES, FigureClass, FigureLook, ShapeFunction
+from ...post.figures.request import FIGURE_KINDS, ROOT_CHOICES, CycleShapeSolver, FigureClass, FigureLook
 from ...results.file.view import ResultView
 from ...solve.solve_lock import one_at_a_time
 from ...tasks.cycle_shapes import with_shapes
@@ -40,7 +40,7 @@ ARGUMENTS_OF_OPTIONS = (
     (re.compile(r"--(at|what|output|roots|width|style|title)\b"), r"\1"),
 )
 """Regular expressions of options of `rodsweep plot`, each with the corresponding argument of `rs.plot`."""
-SAVE_EXAMPLE = 'picture.save("figure.pdf")'
+SAVE_PICTURE_EXAMPLE = 'picture.save("figure.pdf")'
 """Example of a call of `Picture.save`, for messages."""
 PLOT_EXAMPLE = 'rs.plot(data, "figure.pdf", width="single")'
 
@@ -104,7 +104,7 @@ class CachedShapeSolver:
     """Function that adds the shapes of cycles to a view; each set of cycles is solved once and cached. solve:
     function that computes the shapes."""
 
-    solve: ShapeFunction = with_shapes
+    solve: CycleShapeSolver = with_shapes
     solved: dict[tuple[int, ...], ResultView] = field(default_factory=dict)
     """Views with shapes, by the numbers of the solved points, which are counted from 1."""
 
@@ -132,12 +132,12 @@ class Picture:
     """The rendered figure, PNG, or GIF for an animation."""
 
     @one_at_a_time
-    @refusing_wrong_arguments(SAVE_EXAMPLE)
+    @refusing_wrong_arguments(SAVE_PICTURE_EXAMPLE)
     @naming_python_arguments
     def save(self, path: str | Path) -> str:
         """Draws the figure into a file (.png, .pdf, .svg; .gif or .mp4 for an animation) and returns a
         sentence about the figure."""
-        return draw(self.views, named_file_path(path, SAVE_EXAMPLE), **self.choices)
+        return draw(self.views, named_file_path(path, SAVE_PICTURE_EXAMPLE), **self.choices)
 
     @one_at_a_time
     @refusing_wrong_arguments("picture.figure()")

@@ -90,7 +90,7 @@ def heading_lines(
 def brief_text(printed: PrintedAnswer) -> str:
     """Short text of an answer, about ten lines: the heading, the main numbers and the main list."""
     lines = [*_folded_heading(printed), *_number_lines(printed)]
-    remaining_line = _remaining_numbers_line(printed)
+    remaining_line = _full_listing_hint(printed)
     lines += _brief_list(printed, MAX_BRIEF_LINES - len(lines) - remaining_line.count("\n") - 1)
     return "\n".join([*lines, remaining_line])
 
@@ -100,11 +100,11 @@ def brief_html(printed: PrintedAnswer) -> str:
     blocks = [_html_heading(printed)]
     if pairs := _main_number_texts(printed):
         blocks.append(_html_table([], pairs))
-    columns, _ = _brief_cells(printed, MAX_BRIEF_LINES)
+    columns, _ = _main_list_columns(printed, MAX_BRIEF_LINES)
     if columns:
         name, unit, *rows = zip(*columns, strict=True)
         blocks.append(_html_table([name, unit], rows))
-    return "".join([*blocks, f"<p>{escape(' '.join(_remaining_numbers_line(printed).split()))}</p>"])
+    return "".join([*blocks, f"<p>{escape(' '.join(_full_listing_hint(printed).split()))}</p>"])
 
 
 def whole_text(printed: PrintedAnswer) -> str:
@@ -181,7 +181,7 @@ def _number_lines(printed: PrintedAnswer) -> list[str]:
     return ["", *(COLUMN_GAP.join(row).rstrip() for row in zip(*filled_columns, strict=True))]
 
 
-def _brief_cells(printed: PrintedAnswer, max_rows: int) -> tuple[list[list[str]], int]:
+def _main_list_columns(printed: PrintedAnswer, max_rows: int) -> tuple[list[list[str]], int]:
     """Returns (columns of the main list, number of rows of the complete list). A column consists of the cells
     name, unit, and values; errors form a separate column. The first column that would make a line longer than
     LINE_WIDTH, and all later columns, are omitted. Returns ([], 0) for a task without a main list."""
@@ -209,16 +209,16 @@ def _brief_list(printed: PrintedAnswer, max_lines: int) -> list[str]:
     """Lines of the main list, after an empty line; empty if the list has no rows. max_lines: desired maximum
     number of lines; at least MIN_ROWS rows are printed."""
     rows = max(max_lines - 3, MIN_ROWS)  # below an empty line, the names and the units
-    columns, row_count = _brief_cells(printed, rows)
+    columns, row_count = _main_list_columns(printed, rows)
     if row_count == rows + 1:  # the line "and 1 more" has room for the row
-        columns, row_count = _brief_cells(printed, row_count)
+        columns, row_count = _main_list_columns(printed, row_count)
     if not columns:
         return []
     (block,) = table_blocks(columns)
     return ["", *block] + ([f"and {row_count - rows} more"] if row_count > rows + 1 else [])
 
 
-def _remaining_numbers_line(printed: PrintedAnswer) -> str:
+def _full_listing_hint(printed: PrintedAnswer) -> str:
     """Line that names `.table()` for all numbers, and the lists with their numbers of rows."""
     row_counts = {name: len(columns[0].values) for name, columns in printed.lists.items()}
     row_counts.update(printed.row_counts)

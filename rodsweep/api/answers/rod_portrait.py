@@ -12,7 +12,7 @@ from ...post.figures.request import FigureClass
 from ...post.rod_portrait.paragraph import paragraph
 from ...post.rod_portrait.picture import portrait_figure
 from ...post.rod_portrait.results import RodResults
-from ...post.rod_portrait.writing import require_portrait, write_portrait
+from ...post.rod_portrait.writing import require_portrait_path, write_portrait
 from ...post.tables.alignment import wrap_cell_text
 from ...results.file.view import ResultView
 from ...solve.solve_lock import one_at_a_time
@@ -38,7 +38,7 @@ class RodPortrait:
 
     rod: str
     results: RodResults = field(repr=False)
-    answers: Mapping[str, Answer] = field(repr=False)
+    answers_by_config: Mapping[str, Answer] = field(repr=False)
     """Answers by the YAML text of their configs."""
 
     @cached_property
@@ -80,7 +80,7 @@ class RodPortrait:
         return dict(self.results.missing)
 
     def _task_answer(self, view: ResultView) -> Answer:
-        return self.answers[view.attributes["config"]]
+        return self.answers_by_config[view.attributes["config"]]
 
     def _answer(self, task: str) -> Answer | None:
         view = self.results.views.get(task)
@@ -98,7 +98,7 @@ class RodPortrait:
         """Writes the portrait (.png, .pdf, .svg, or .html with tables) and returns a sentence about the
         file."""
         output = named_file_path(path, SAVE_PORTRAIT_EXAMPLE)
-        require_portrait(output)
+        require_portrait_path(output)
         return write_portrait(self.results, output)
 
     def __repr__(self) -> str:
@@ -115,13 +115,13 @@ def solved_portrait(rod: str, request: PortraitRequest, progress: bool | None) -
     """Solves all results of a portrait in this process, and returns the portrait. rod: text of the rod.
     progress: whether to display progress; None: only in a terminal or a notebook. Raises InputError for an
     invalid request."""
-    answers: dict[str, Answer] = {}
+    answers_by_config: dict[str, Answer] = {}
     plain_values = {name: plain_keyword(name, getattr(request, name)) for name in ("F_max", "accuracy")}
 
     def solve(job: Job) -> ResultView:
         solved = solve_in_process(job, progress=progress)
-        answers[job.config_text] = Answer(rod, solved, solved.messages[0])
+        answers_by_config[job.config_text] = Answer(rod, solved, solved.messages[0])
         return view_of_dataset(solved.dataset, Path(job.title))
 
     results = solve_rod_results(replace(request, **plain_values), solve)
-    return RodPortrait(rod, results, answers)
+    return RodPortrait(rod, results, answers_by_config)

@@ -16,12 +16,12 @@ from ...solve.motion.integrator import EndReason, Trajectory, integrator
 from ...solve.motion.time_scheme import TimeScheme
 from ..study import TimedMethod
 
-TIGHT_TOLERANCE = 3e-7
-"""Newton's method has the tolerance TIGHT_NEWTON_TOLERANCE at integrator tolerances up to this number,
+MAX_TIGHT_TOLERANCE = 3e-7
+"""Newton's method has the tolerance TIGHT_NEWTON_TOLERANCE_RATIO at integrator tolerances up to this number,
 because the default tolerance would limit the accuracy of ARKIMEX 5."""
-TIGHT_NEWTON_TOLERANCE = 0.03
+TIGHT_NEWTON_TOLERANCE_RATIO = 0.03
 """Convergence tolerance of Newton's method divided by the tolerance of the integrator, at integrator
-tolerances up to TIGHT_TOLERANCE."""
+tolerances up to MAX_TIGHT_TOLERANCE."""
 
 
 class IntegrationTask(NamedTuple):
@@ -71,7 +71,9 @@ def petsc_trajectory(ts_type: str, scheme_name: str, tolerance: float, task: Int
     ArithmeticError if the integration fails. ts_type, scheme_name: type of TS and name of the scheme, such as
     "arkimex" and "5". tolerance: see the module."""
     newton_ratio = (
-        TimeScheme().newton_tolerance_ratio if tolerance > TIGHT_TOLERANCE else TIGHT_NEWTON_TOLERANCE
+        TimeScheme().newton_tolerance_ratio
+        if tolerance > MAX_TIGHT_TOLERANCE
+        else TIGHT_NEWTON_TOLERANCE_RATIO
     )
     scheme = TimeScheme(ts_type, scheme_name, tolerance, newton_ratio, prefix="bench_")
     result = integrator(task.system.mesh, scheme).run(task.system, task.z, task.duration)

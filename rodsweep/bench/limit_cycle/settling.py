@@ -20,7 +20,7 @@ from .tracking import (
     orbit_of,
     solve_cycle_at_force,
     state_on_cycle,
-    tip_returns,
+    tip_angle_returns,
 )
 
 NEAR_HOPF_F = 27.43
@@ -123,7 +123,7 @@ def _integrate_until_periodic(reference: ReferenceCycle, contenders: Sequence[Ti
     failed: tuple[str, ...] = ()
     for contender in contenders:
         try:
-            returns = tip_returns(reference.system, contender.run(task))
+            returns = tip_angle_returns(reference.system, contender.run(task))
         except ArithmeticError:
             failed += (contender.setting,)
             continue
@@ -132,7 +132,7 @@ def _integrate_until_periodic(reference: ReferenceCycle, contenders: Sequence[Ti
         periodic_indices = list(map(int, np.flatnonzero(distances <= SETTLING_TOLERANCE)))
         for k in periodic_indices[:1]:
             period = float(returns.times[k + 1] - returns.times[k])
-            error = _cycle_error(reference, period, float(returns.heights[k]))
+            error = _cycle_error(reference, period, float(returns.tip_y_max_between_returns[k]))
             if error <= SETTLING_TOLERANCE:
                 run = partial(contender.run, task._replace(duration=float(returns.times[k + 1])))
                 setting = contender.setting

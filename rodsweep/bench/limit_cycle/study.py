@@ -16,8 +16,8 @@ from .settling import compare_settling
 from .sweeping import measure_sweep_points, sweep_introduction, sweep_table
 from .swept_rods import QUICK_RODS, RODS
 from .tracking import (
+    CYCLE_ELEMENT_ORDER,
     CYCLE_FORCE,
-    CYCLE_ORDER,
     FIG5_ROD,
     FOLLOWED_PERIODS,
     TARGET_ERROR,
@@ -52,7 +52,7 @@ def run_limit_cycle_study(quick: bool, peers: PeerContribution) -> BenchmarkRepo
     blocks = [
         introduction(round_count),
         *peers.notes,
-        work_table(measurements),
+        following_table(measurements),
         time_at_error_table(measurements),
     ]
     settling = [*DEFAULT_INTEGRATOR.settling_contenders(), *peers.of(WAITING_RACE)]
@@ -77,15 +77,16 @@ def introduction(round_count: int) -> str:
     k1, k2, gamma3, gamma1 = (FIG5_ROD.values[name] for name in NONLINEAR_PARAMETERS[1:])
     return (
         f"The limit cycle of k1 = {k1:g}, k2 = {k2:g}, gamma3 = {gamma3:g}, gamma1 = {gamma1:g}, "
-        f"F = {CYCLE_FORCE:g}, followed for {FOLLOWED_PERIODS} periods; one element of order {CYCLE_ORDER}, "
-        f"{3 * CYCLE_ORDER} unknowns. All integrators call the same compiled functions for the rate and its "
-        "Jacobian; the tolerance is the allowed error of each component of the state, divided by the largest "
-        "value of this component. Errors of the period and of the largest tip y are relative and rms over 5 "
+        f"F = {CYCLE_FORCE:g}, followed for {FOLLOWED_PERIODS} periods; one element of order "
+        f"{CYCLE_ELEMENT_ORDER}, {3 * CYCLE_ELEMENT_ORDER} unknowns. All integrators call the same compiled "
+        "functions for the rate and its Jacobian; the tolerance is the allowed error of each component of "
+        "the state, divided by the largest value of this component. Errors of the period and of the "
+        "largest tip y are relative and rms over 5 "
         f"returns. Times are medians of {counted(round_count, 'interleaved round')}."
     )
 
 
-def work_table(measurements: Sequence[Measurement]) -> str:
+def following_table(measurements: Sequence[Measurement]) -> str:
     """Table of the race FOLLOWING_RACE: steps, time and errors of every method at every tolerance."""
     no_values = dict.fromkeys(("steps", "period_error", "amplitude_error"), nan)
     return markdown_table(

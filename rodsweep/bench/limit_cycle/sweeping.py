@@ -46,7 +46,7 @@ SWEEP_PREFIX, COLD_PREFIX = "sweep over ", "cold, "
 """Prefixes, in the table, of the names of solutions from a neighbour's cycle and without a neighbour."""
 COLD_STARTS = {"leading mode": "mode", "Hopf point": "hopf"}
 """Values of the option `start` for solutions without a neighbour, by name in the table."""
-FAILED_COLUMNS = dict.fromkeys(
+FAILED_POINT_CELLS = dict.fromkeys(
     ("period_error", "amplitude_error", "estimate", "multipliers", "order", "intervals", "stages"), nan
 )
 """Values, nan, in the columns of the table for a failed point."""
@@ -118,7 +118,7 @@ def earlier_rod(rod: Rod, parameter_name: str, step_count: int) -> Rod:
     return replace(rod, **{parameter_name: getattr(rod, parameter_name) * STEP_RATIO**step_count})
 
 
-def solve_from_neighbour(parameter_name: str, accuracy: float, rod: SweptRod) -> CycleOutcome:
+def solve_timed_points(parameter_name: str, accuracy: float, rod: SweptRod) -> CycleOutcome:
     """The last cycle of the timed points of a sweep along `parameter_name`, each solved from its neighbour;
     raises ArithmeticError if a point has no stable cycle. accuracy: relative."""
     start = rod.neighbours[parameter_name]
@@ -154,7 +154,7 @@ def cycle_contenders(accuracy: float) -> list[TimedMethod]:
             SWEEP_PREFIX + parameter_name,
             setting,
             SWEEP_PREFIX,
-            partial(solve_from_neighbour, parameter_name, accuracy),
+            partial(solve_timed_points, parameter_name, accuracy),
         )
         for parameter_name in SWEPT_PARAMETERS
     ]
@@ -212,14 +212,14 @@ def sweep_table(measurements: Sequence[Measurement]) -> str:
     """Table of the cost of a point: one line for each rod and start, and medians over the rods."""
     lines = [
         {"rod": m.case, "way": m.method, "ms": milliseconds_per_point(m), "failure": m.failure}
-        | FAILED_COLUMNS
+        | FAILED_POINT_CELLS
         | m.extra
         for m in measurements
     ]
     medians = []
     for (method_name,), measured in grouped_by_fields(measurements, "method").items():
         ms = nan_median(map(milliseconds_per_point, measured))
-        numbers = {name: nan_median(m.extra.get(name, nan) for m in measured) for name in FAILED_COLUMNS}
+        numbers = {name: nan_median(m.extra.get(name, nan) for m in measured) for name in FAILED_POINT_CELLS}
         medians.append({"rod": "median", "way": method_name, "ms": ms, "failure": ""} | numbers)
     return markdown_table(
         "F, k1, k2, gamma3, gamma1 | start | ms | error of period | error of amplitude | estimate | "

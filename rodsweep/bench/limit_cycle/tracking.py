@@ -35,7 +35,7 @@ FIG5_ROD = Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2)
 """The rod of the paper's Fig. 5, at F = 0."""
 CYCLE_FORCE = 50.0
 """F of the followed cycle."""
-CYCLE_ORDER = 18
+CYCLE_ELEMENT_ORDER = 18
 """Order of the single element in space; at F = 50 its relative errors of period and amplitude are 1e-9."""
 REFERENCE_INTERVALS, REFERENCE_STAGES = 32, 6
 """Number of time intervals in half a period, and number of stages of an interval, on the mesh of the
@@ -109,7 +109,7 @@ def state_on_cycle(orbit: Orbit) -> tuple[ExplicitSystem, Array]:
 def solve_reference() -> ReferenceCycle:
     """The reference cycle at CYCLE_FORCE, on one element in space, by collocation on a fine mesh in time."""
     solved = orbit_of(solve_cycle_at_force(CYCLE_FORCE))
-    start = solved.on_mesh(uniform_mesh(1, CYCLE_ORDER), REFERENCE_INTERVALS, REFERENCE_STAGES)
+    start = solved.on_mesh(uniform_mesh(1, CYCLE_ELEMENT_ORDER), REFERENCE_INTERVALS, REFERENCE_STAGES)
     orbit = newton(start, REFERENCE_NEWTON_TOLERANCE, NewtonWorkspace()).orbit
     height = float(abs(orbit.form.tip_coordinates(orbit.start_state)[1]))
     return ReferenceCycle(*state_on_cycle(orbit), orbit.period, height)
@@ -131,9 +131,9 @@ def measure_following(
 def trajectory_measurement_fields(reference: ReferenceCycle, trajectory: Trajectory) -> dict[str, Any]:
     """Fields of `Measurement` for a trajectory: relative rms errors of the period and of the largest tip y,
     without the first return, and steps per period."""
-    returns = tip_returns(reference.system, trajectory)
+    returns = tip_angle_returns(reference.system, trajectory)
     period = _rms(np.diff(returns.times)[1:] / reference.period - 1)
-    amplitude = _rms(returns.heights[1:] / reference.tip_y_max - 1)
+    amplitude = _rms(returns.tip_y_max_between_returns[1:] / reference.tip_y_max - 1)
     steps_per_period = (len(trajectory.times) - 1) / FOLLOWED_PERIODS
     values = {"steps": steps_per_period, "period_error": period, "amplitude_error": amplitude}
     return {"error": max(period, amplitude), "extra": values}
@@ -144,20 +144,20 @@ def _rms(values: NDArray[np.floating]) -> float:
 
 
 @dataclass(frozen=True, eq=False)
-class TipReturns:
+class TipAngleReturns:
     """Returns of the tip in a run, at which the tip angle theta rises through 0.
 
-    times: times of the returns, in tau2, (k,). states: z at the returns, (k, unknowns). heights: largest y of
-    the tip, in L, between successive returns, (k - 1,).
+    times: times of the returns, in tau2, (k,). states: z at the returns, (k, unknowns).
+    tip_y_max_between_returns: largest y of the tip, in L, between successive returns, (k - 1,).
     """
 
     times: Array
     states: Array
-    heights: Array
+    tip_y_max_between_returns: Array
 
 
-def tip_returns(system: ExplicitSystem, run: Trajectory) -> TipReturns:
-    """Returns of the tip in a run, see `TipReturns`: time and state by Newton's method with small steps,
+def tip_angle_returns(system: ExplicitSystem, run: Trajectory) -> TipAngleReturns:
+    """Returns of the tip in a run, see `TipAngleReturns`: time and state by Newton's method with small steps,
     largest y of the tip from a repetition of the run with small steps."""
     row = tip_angle_row(system)
     y = system.tip_coordinates(run.states)[1]
@@ -165,7 +165,7 @@ def tip_returns(system: ExplicitSystem, run: Trajectory) -> TipReturns:
     upward_steps = list(map(int, np.flatnonzero((angle[:-1] < 0) & (angle[1:] >= 0))))
     times = []
     states = []
-    heights = []
+    tip_y_max_between_returns = []
     for k in upward_steps:
         step = SMALL_STEPS_DURATION_RATIO * (run.times[k + 1] - run.times[k])
         fine_run = _integrate_in_small_steps(system, run.states[k], step)
@@ -176,8 +176,10 @@ def tip_returns(system: ExplicitSystem, run: Trajectory) -> TipReturns:
         times.append(run.times[k] + duration)
         states.append(_integrate_in_small_steps(system, run.states[k], duration).states[-1])
     for start, end in pairwise(upward_steps):
-        heights.append(largest_y_near(system, run, start + int(np.argmax(y[start : end + 1]))))
-    return TipReturns(np.array(times), np.array(states), np.array(heights))
+        tip_y_max_between_returns.append(
+            largest_y_near(system, run, start + int(np.argmax(y[start : end + 1])))
+        )
+    return TipAngleReturns(np.array(times), np.array(states), np.array(tip_y_max_between_returns))
 
 
 def largest_y_near(system: ExplicitSystem, run: Trajectory, k: int) -> float:

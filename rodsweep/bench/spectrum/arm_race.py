@@ -50,12 +50,12 @@ ARM_RODS = {
 }
 ELEMENT_ORDERS = (6, 8, 10, 12, 14, 16, 20)
 """Orders of the elements on which eigensolvers are run."""
-EDGE_ACCURACY = 1e-2
+ELEMENT_EDGE_ACCURACY = 1e-2
 """Relative accuracy for which the edges of the elements are chosen; the orders in ELEMENT_ORDERS make the
 mesh more accurate."""
 TARGET_ERROR = 1e-10
 """Relative error at which the methods are compared."""
-REFERENCE_W_RATIO = 16.0
+REFERENCE_RESOLVED_W_RATIO = 16.0
 """The elements of the reference D resolve moduli |w| up to this number times the |w| of the arm."""
 NEWTON_STEP_COUNT = 3
 """Number of Newton steps with the reference D."""
@@ -81,7 +81,7 @@ def exact_arm_spectrum(rod: Rod) -> list[complex]:
     determinant = ArmDeterminant(rod)
     roots: list[complex] = rodsweep_spectrum(rod, certify=True).tolist()
     for _ in range(NEWTON_STEP_COUNT):
-        values = [determinant.value_on_finer_elements(w, REFERENCE_W_RATIO) for w in roots]
+        values = [determinant.value_on_finer_elements(w, REFERENCE_RESOLVED_W_RATIO) for w in roots]
         roots = [w - value.D / value.D_w for w, value in zip(roots, values, strict=True)]
     return roots
 
@@ -121,7 +121,7 @@ def _cheapest_time_cell(measurements: Sequence[Measurement]) -> str:
 
 def mesh_of_arm(rod: Rod, order: int) -> ArmMesh:
     """Mesh of an arm with as few elements of the order `order` as resolve the variation of the arm."""
-    return ArmMesh(arm_mesh(rod, MODE_COUNT, EDGE_ACCURACY).edges, order)
+    return ArmMesh(arm_mesh(rod, MODE_COUNT, ELEMENT_EDGE_ACCURACY).edges, order)
 
 
 def solve_next_arm(solve: Callable[[Rod, Any], Complex], option: int, arms: UncachedArms) -> Complex:

@@ -17,7 +17,7 @@ GUARD_DIGIT_COUNT = 25
 """Number of additional digits in the computation, more than are lost by cancellation in D."""
 SECANT_STEP = mp.mpf(10) ** -12
 """Relative distance between the two starting points of the secant method."""
-MAX_ROOT_DISTANCE = 20
+MAX_ROOT_DISTANCE_RATIO = 20
 """Largest distance of a root from its starting value, divided by the estimated error of the starting value; a
 root at a larger distance is a different root."""
 
@@ -62,7 +62,7 @@ def exact_spectrum(rod: Rod, mode_count: int) -> list[Any]:
             # Near a simple root |D| is proportional to the distance: the limit is |D| at the relative
             # distance 10^-DIGIT_COUNT.
             rounding_limit = abs(D(root * (1 + SECANT_STEP))) * mp.mpf(10) ** -DIGIT_COUNT / SECANT_STEP
-            if abs(root - start) > MAX_ROOT_DISTANCE * error or abs(D(root)) > rounding_limit:
+            if abs(root - start) > MAX_ROOT_DISTANCE_RATIO * error or abs(D(root)) > rounding_limit:
                 raise ArithmeticError(f"{rod}: {complex(w)} does not lead to a root of D")
             roots.append(root)
     return roots

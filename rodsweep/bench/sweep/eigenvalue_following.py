@@ -92,7 +92,7 @@ def followed_measurement(case: SweepCase, method: str, run: CommandRunCost) -> M
         "microseconds_solving": 1e6 * run.solver_seconds / case.points,
         "meshes": float((variables["elements"] > 0).sum()),
         "uncertified": float((variables["certified"] == 0).sum()),
-        "rss_megabytes": max(run.peak_memory) / 1e6,
+        "rss_megabytes": max(run.first_and_other_peak_memory) / 1e6,
     }
     points = f"{case.points} points"
     return Measurement(f"axis, {case.name}", method, points, run.stated_seconds, nan, extra=values)

@@ -1,8 +1,8 @@
 """Runs of sweeps started as by a user: time, memory of each rank, and size of the files.
 
 The caller gives the first arguments of the measured command. Further arguments are appended: a directory, in
-which every rank writes its peak memory in bytes into a file FIRST_RANK_PREFIX-PID or OTHER_RANKS_PREFIX-PID;
-the kind of solver, SOLVED, INSTANT or KILLED; and the arguments of `rodsweep`.
+which every rank writes its peak memory in bytes into a file FIRST_RANK_MEMORY_PREFIX-PID or
+OTHER_RANKS_MEMORY_PREFIX-PID; the kind of solver, SOLVED, INSTANT or KILLED; and the arguments of `rodsweep`.
 """
 
 import os
@@ -24,9 +24,9 @@ from ...results.run.journal import journal_directory
 
 RESULT, NOTES = "c.h5", "notes"
 """Names of the result file and of the folder with the ranks' peak memory, in the directory of a sweep."""
-FIRST_RANK_PREFIX = "first"
+FIRST_RANK_MEMORY_PREFIX = "first"
 """Prefix of the name of the file with the peak memory of the first rank."""
-OTHER_RANKS_PREFIX = "other"
+OTHER_RANKS_MEMORY_PREFIX = "other"
 """Prefix of the names of the files with the peak memory of the remaining ranks."""
 SOLVED, INSTANT, KILLED = "solved", "instant", "killed"
 """Kinds of solver: the real solver; random results at once; random results at once, and the process is killed
@@ -114,7 +114,7 @@ class CommandRunCost:
     killed."""
     solver_seconds: float
     """Time in the solver, in s, summed over the ranks."""
-    peak_memory: tuple[int, ...]
+    first_and_other_peak_memory: tuple[int, ...]
     """Peak memory of the first rank, and largest peak memory of the other ranks, in bytes."""
     file_bytes: int
     """Size of the result files in bytes."""
@@ -140,7 +140,7 @@ def run_case(command: Sequence[str], case: SweepCase, rank_count: int, fresh: bo
 
     command: first arguments of the measured command.
     """
-    seconds_of_others = _other_process_seconds()
+    seconds_of_others = _processor_seconds_without_children()
     start = time.monotonic()
     full_command = [*launcher_arguments(rank_count), *command]
     solver_kind = case.solver_kind
@@ -149,18 +149,18 @@ def run_case(command: Sequence[str], case: SweepCase, rank_count: int, fresh: bo
     ]
     stated_seconds = [_wait_for_printed_seconds(process, solver_kind) for process in processes]
     seconds = time.monotonic() - start
-    other_load = np.maximum(0.0, (_other_process_seconds() - seconds_of_others) / seconds)
+    other_load = np.maximum(0.0, (_processor_seconds_without_children() - seconds_of_others) / seconds)
     files = [directory / RESULT for directory in case.directories]
     solve_times = [
         _solver_time_and_busy_fraction(file) if solver_kind == SOLVED else (0.0, nan) for file in files
     ]
     journals = [journal for file in files for journal in journal_directory(file).glob("rank-*")]
-    prefixes = (FIRST_RANK_PREFIX, OTHER_RANKS_PREFIX)[:rank_count]
+    prefixes = (FIRST_RANK_MEMORY_PREFIX, OTHER_RANKS_MEMORY_PREFIX)[:rank_count]
     return CommandRunCost(
         seconds=seconds,
         stated_seconds=max(stated_seconds),
         solver_seconds=sum(solve_seconds for solve_seconds, _ in solve_times),
-        peak_memory=tuple(_peak_memory(case, prefix) for prefix in prefixes),
+        first_and_other_peak_memory=tuple(_peak_memory(case, prefix) for prefix in prefixes),
         file_bytes=sum(file.stat().st_size for file in files),
         journal_bytes=sum(journal.stat().st_size for journal in journals),
         processors_busy_elsewhere=float(other_load),
@@ -198,7 +198,7 @@ def _wait_for_printed_seconds(process: subprocess.Popen[str], solver_kind: str) 
 
 def _peak_memory(case: SweepCase, rank: str) -> int:
     """Peak memory of the first rank, or largest peak memory of the other ranks, in bytes. rank:
-    FIRST_RANK_PREFIX or OTHER_RANKS_PREFIX."""
+    FIRST_RANK_MEMORY_PREFIX or OTHER_RANKS_MEMORY_PREFIX."""
     notes = (file for directory in case.directories for file in (directory / NOTES).glob(f"{rank}-*"))
     return max((int(file.read_text()) for file in notes), default=0)
 
@@ -212,7 +212,7 @@ def _solver_time_and_busy_fraction(file: Path) -> tuple[float, float]:
     return float(view.variables["seconds"].sum(dtype=float)), busy_seconds / (busy_seconds + idle_seconds)
 
 
-def _other_process_seconds() -> float:
+def _processor_seconds_without_children() -> float:
     """Processor time, in s, of all processes of the machine except the finished children of this process; nan
     if unknown."""
     try:

@@ -70,7 +70,7 @@ def run_sweep_study(quick: bool, command: Sequence[str]) -> BenchmarkReport:
         followed = measure_followed_sweeps(Path(folder), run, quick)
         instant = measure_instant_sweeps(Path(folder), run, quick, ranks)
     blocks = [INTRODUCTION.strip(), solved_table(solved), followed_table(followed)]
-    blocks += [instant_table(instant), growth_table(instant)]
+    blocks += [instant_table(instant), added_point_cost_table(instant)]
     if len(ranks) == 1:
         blocks.append("Two ranks are skipped: there is no mpiexec in the folder of this Python or on PATH.")
     return BenchmarkReport("sweep", "\n\n".join(blocks), [*solved, *followed, *instant])
@@ -130,7 +130,10 @@ def sweep_measurement(case: SweepCase, rank_count: int, runs: Sequence[CommandRu
     """Measurement of a sweep from its runs; times are medians, the error is nan."""
     seconds = nan_median(run.seconds for run in runs)
     processes = rank_count * len(case.directories)
-    memory = [max(values) / MEGABYTE for values in zip(*(run.peak_memory for run in runs), strict=True)]
+    memory = [
+        max(values) / MEGABYTE
+        for values in zip(*(run.first_and_other_peak_memory for run in runs), strict=True)
+    ]
     journal_bytes, is_killed = runs[0].journal_bytes, case.solver_kind == KILLED
     overheads = (processes * run.stated_seconds - run.solver_seconds for run in runs)
     extra = {
@@ -195,7 +198,7 @@ def instant_table(measurements: Sequence[Measurement]) -> str:
     )
 
 
-def growth_table(measurements: Sequence[Measurement]) -> str:
+def added_point_cost_table(measurements: Sequence[Measurement]) -> str:
     """Explained table of the time, memory and file size of a further point, between sizes of sweeps."""
     rows = []
     for (case, method), sizes in grouped_by_fields(measurements, "case", "method").items():

@@ -67,7 +67,7 @@ class RunStatistics:
     """Number of points to be solved in this run."""
     unsolved_points: int
     """Number of points of this run that are not solved."""
-    stored_points: int
+    points_stored_at_end: int
     """Number of points that the file holds at the end of the run."""
     seconds: float
     """Time spent on the points, in s."""
@@ -78,7 +78,7 @@ class RunStatistics:
     solved_items: dict[str, int] | None
     """Number of work items for the curves that this run solved, by kind of item: the phrase
     `WorkItems.outcome`. None if no curves were to be computed."""
-    stored_items: int | None
+    items_for_next_run: int | None
     """Number of work items for the curves whose results are stored for the next run, because the curves are
     incomplete; else None."""
 
@@ -94,7 +94,7 @@ class RunStatistics:
                 f"{counted(points, 'point')} in {self.seconds:.2f} s on {ranks_text}{per_point_text}"
             )
         if self.solved_items is not None:
-            word = "curves in" if self.stored_items is None else "curves stopped after"
+            word = "curves in" if self.items_for_next_run is None else "curves stopped after"
             clauses = [f"{word} {self.curve_seconds:.2f} s on {ranks_text}"]
             for outcome, number in self.solved_items.items():
                 item, _, action = outcome.partition(" ")
@@ -104,9 +104,9 @@ class RunStatistics:
 
     def stored_points_clause(self) -> str:
         """Clause with the numbers of points, and of results for the curves, that a stopped run has stored."""
-        points_text = f"{counted(self.stored_points, 'point')} kept"
-        if self.stored_items is not None:
-            results_text = counted(self.stored_items, "result")
+        points_text = f"{counted(self.points_stored_at_end, 'point')} kept"
+        if self.items_for_next_run is not None:
+            results_text = counted(self.items_for_next_run, "result")
             return f"{points_text}, {results_text} for the curves kept, the other results are missing"
         if self.interrupted_points:
             return f"{points_text}, {self.interrupted_points} interrupted, to be solved again"

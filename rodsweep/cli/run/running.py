@@ -91,7 +91,7 @@ class _RankRun:
             points = self.job.points.count
             shard_clause = f"; shard {self.shard}" if self.shard.shard_count > 1 else ""
             kept_clause = f", {points - index_count(missing)} kept" if points > index_count(missing) else ""
-            if self.sweep_wide and self._lacks_sweep_wide_variables(index_count(missing) - requested_count):
+            if self.sweep_wide and self._lacks_only_sweep_wide(index_count(missing) - requested_count):
                 kept_clause += ", then the curves"
             self._print_message(
                 f"{self.output}: {requested_count} of {counted(points, 'point')} to "
@@ -112,7 +112,7 @@ class _RankRun:
             lambda: self._finish(requested_count, contributions, pending, solved, exceptions)
         )
 
-    def _lacks_sweep_wide_variables(self, missing: int) -> bool:
+    def _lacks_only_sweep_wide(self, missing: int) -> bool:
         """Whether the file lacks only the variables that depend on all points; called on the first rank."""
         return not missing and "finished" not in self.store.attributes()
 
@@ -127,7 +127,7 @@ class _RankRun:
             history = run_history(contributions, self.ranks.MPI.Get_library_version())
             attributes = {"started": self.date_at_start, "stopped": self.stop.name}
             self.store.add_journals(last_run_attributes(self.plan) | history | attributes)
-        if not self._lacks_sweep_wide_variables(index_count(self.store.missing())):
+        if not self._lacks_only_sweep_wide(index_count(self.store.missing())):
             return PendingSweepWideVariables(False)
         if not self.sweep_wide:
             return PendingSweepWideVariables(True)
@@ -143,7 +143,7 @@ class _RankRun:
     def _open_store(self) -> list[IndexRange]:
         """Opens or creates the result file; returns the ranges of the flat indices of missing points."""
         self.store = ResultFileWriter(self.output, self.plan, self.request.fresh, self.request.extend)
-        if self.sweep_wide and (self.request.fresh or not self._lacks_sweep_wide_variables(0)):
+        if self.sweep_wide and (self.request.fresh or not self._lacks_only_sweep_wide(0)):
             self.sweep_wide.item_results.remove_all()
         self._print_store_notes()
         return self.store.missing()
@@ -161,13 +161,13 @@ class _RankRun:
         kernels = provenance.merged_blas_kernels(stored, self.kernels.splitlines())
         if kernels != attributes.get(provenance.KERNELS_ATTRIBUTE):
             self.store.add_journals({provenance.KERNELS_ATTRIBUTE: kernels})
-        if sentence := provenance.kernels_sentence(kernels):
+        if sentence := provenance.several_kernels_warning(kernels):
             click.echo(f"{self.output}: {sentence}")
 
     def _point_text(self, index: int) -> str:
         return parameters_text(self.job.points.values(index))
 
-    def _finish_file(self, pending: PendingSweepWideVariables) -> bool:
+    def _write_variables_and_check_missing(self, pending: PendingSweepWideVariables) -> bool:
         """Writes the variables that depend on all points into the file; returns whether these are still
         missing."""
         if not pending.is_missing:
@@ -187,7 +187,7 @@ class _RankRun:
         """Prints the first failed points, and the name of the file with the tracebacks of exceptions."""
         failures = [failure for contribution in contributions for failure in contribution.failures]
         for failure in failures[:MAX_FAILURES_PRINTED]:
-            click.echo(f"  {provenance.failure_sentence(failure)}")
+            click.echo(f"  {provenance.example_failure_sentence(failure)}")
         if exceptions:
             exceptions_text = counted(exceptions, "unforeseen exception")
             click.echo(
@@ -209,7 +209,7 @@ class _RankRun:
     ) -> int:
         """Completes the result file, prints how the run ended, and returns the exit status. pending, solved:
         as from `solve_all`. exceptions: number of unforeseen exceptions on all ranks."""
-        lacks_sweep_wide_variables = self._finish_file(pending)
+        lacks_sweep_wide_variables = self._write_variables_and_check_missing(pending)
         sweep_wide = self.sweep_wide
         missing_points = self.store.missing()
         self._print_store_notes()
@@ -221,12 +221,12 @@ class _RankRun:
             ranks=self.ranks.size,
             requested_points=requested_count,
             unsolved_points=unsolved_count,
-            stored_points=self.job.points.count - index_count(missing_points),
+            points_stored_at_end=self.job.points.count - index_count(missing_points),
             seconds=self.seconds,
             curve_seconds=time.monotonic() - self.clock_at_start - self.seconds,
             interrupted_points=sum(contribution.statistics.was_interrupted for contribution in contributions),
             solved_items=solved if pending.is_missing and sweep_wide else None,
-            stored_items=len(sweep_wide.results) if sweep_wide and lacks_sweep_wide_variables else None,
+            items_for_next_run=len(sweep_wide.results) if sweep_wide and lacks_sweep_wide_variables else None,
         )
         for sentence in run_end.time_sentences() or [f"{text} is complete, nothing to do"]:
             self._print_message(sentence)

@@ -21,7 +21,7 @@ which several parameters depend are not included."""
 PARAMETER_CHANGED_ALONG = SINGLE_PARAMETER_OF | dict.fromkeys(LOAD_OF_RATIO, "F")
 """Name of the parameter that changes along an axis of a grid over an arm's quantities, by name of the
 axis."""
-PARAMETER_STORED_ALONG = SINGLE_PARAMETER_OF | {"drag": "gamma3", "tau2": "gamma3"}
+STORAGE_AXIS_OF_QUANTITY = SINGLE_PARAMETER_OF | {"drag": "gamma3", "tau2": "gamma3"}
 """Name of the parameter along whose axis a result file stores several values of a quantity or a unit of the
 arm, by name of this quantity or unit."""
 FLUID_QUANTITIES = ("viscosity", "fluid_density", "density_difference")
@@ -41,7 +41,7 @@ def grid_axis_names(sizes: Mapping[str, int], in_diagram: bool) -> tuple[str, ..
     """
     names = (name for name in (*NON_LOAD_KEYS, *LOAD_KEYS) if name in sizes)
     quantities = [name for name in names if sizes[name] > 1 or name in LOAD_OF_RATIO]
-    if all(name in (PARAMETER_STORED_ALONG if in_diagram else SINGLE_PARAMETER_OF) for name in quantities):
+    if all(name in (STORAGE_AXIS_OF_QUANTITY if in_diagram else SINGLE_PARAMETER_OF) for name in quantities):
         return ()
     return (*quantities, *(name for name in PARAMETERS if sizes.get(name, 1) > 1))
 

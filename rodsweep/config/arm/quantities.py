@@ -6,7 +6,7 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
 
 from ...errors import InputError, short_repr
-from ...model.arm.drag import DRAG_NAMES, DRAG_RANGE_NAME
+from ...model.arm.drag import ALL_DRAG_ESTIMATES_NAME, DRAG_ESTIMATE_NAMES
 from ...model.arm.quantities import LOAD_OF_RATIO, UNITS
 from ...model.units import load_over_flutter, quantity_in_si, split_quantity, value_in_unit
 from ..axis import AXIS_SCHEMA, RANGE_ENDS, Axis, as_axis
@@ -88,26 +88,28 @@ def _loads_over_flutter_load(value: Any) -> tuple[list[float | None], bool]:
 
 
 def drag_axis(value: Any) -> Axis:
-    """Axis of indices into DRAG_NAMES, from a drag's name, a list of names, or "range"; ValueError
+    """Axis of indices into DRAG_ESTIMATE_NAMES, from a drag's name, a list of names, or "range"; ValueError
     otherwise."""
     if isinstance(value, Axis):
         return value
     names = value if isinstance(value, list | tuple) else [value]
-    if value == DRAG_RANGE_NAME:
-        names = list(DRAG_NAMES)
-    if not names or not all(isinstance(name, str) and name in DRAG_NAMES for name in names):
+    if value == ALL_DRAG_ESTIMATES_NAME:
+        names = list(DRAG_ESTIMATE_NAMES)
+    if not names or not all(isinstance(name, str) and name in DRAG_ESTIMATE_NAMES for name in names):
         raise ValueError(
-            f"{short_repr(value)} is not a drag; write {DRAG_RANGE_NAME}, one of the names "
-            f"{', '.join(DRAG_NAMES)}, or a list of these names"
+            f"{short_repr(value)} is not a drag; write {ALL_DRAG_ESTIMATES_NAME}, one of the names "
+            f"{', '.join(DRAG_ESTIMATE_NAMES)}, or a list of these names"
         )
     if len(set(names)) < len(names):
         raise ValueError(f"{short_repr(value)} names a drag twice; list each name once")
-    return Axis(values=tuple(float(index) for index in sorted({DRAG_NAMES.index(name) for name in names})))
+    return Axis(
+        values=tuple(float(index) for index in sorted({DRAG_ESTIMATE_NAMES.index(name) for name in names}))
+    )
 
 
 def drag_names_of_indices(indices: list[float]) -> list[str]:
-    """Names of the drag estimates with the `indices` in DRAG_NAMES, which are whole numbers."""
-    return [DRAG_NAMES[int(index)] for index in indices]
+    """Names of the drag estimates with the `indices` in DRAG_ESTIMATE_NAMES, which are whole numbers."""
+    return [DRAG_ESTIMATE_NAMES[int(index)] for index in indices]
 
 
 def typed_unit(name: str, axis: Axis) -> str:
@@ -128,9 +130,8 @@ def quantities_as_typed(quantities: Mapping[str, Axis]) -> str:
         end_values = axis.array()[[0, -1]].tolist()
         if name == "drag":
             drag_list = drag_names_of_indices(axis.array().tolist())
-            typed.append(
-                f"drag {DRAG_RANGE_NAME if len(drag_list) == len(DRAG_NAMES) else ' and '.join(drag_list)}"
-            )
+            has_all = len(drag_list) == len(DRAG_ESTIMATE_NAMES)
+            typed.append(f"drag {ALL_DRAG_ESTIMATES_NAME if has_all else ' and '.join(drag_list)}")
             continue
         unit = typed_unit(name, axis) if name in UNITS else ""
         texts = [f"{value_in_unit(end, unit, UNITS[name][0]) if unit else end:.6g}" for end in end_values]
@@ -159,8 +160,8 @@ def _quantity_schema() -> dict[str, Any]:
     return {"anyOf": [*item["anyOf"], values | {"items": item}, quantity_range]}
 
 
-DRAG_LIST_SCHEMA = {"type": "array", "items": {"enum": list(DRAG_NAMES)}, "minItems": 1}
+DRAG_LIST_SCHEMA = {"type": "array", "items": {"enum": list(DRAG_ESTIMATE_NAMES)}, "minItems": 1}
 """JSON schema of a list of names of drag estimates."""
-DRAG_SCHEMA = {"anyOf": [{"enum": [DRAG_RANGE_NAME, *DRAG_NAMES]}, DRAG_LIST_SCHEMA]}
+DRAG_SCHEMA = {"anyOf": [{"enum": [ALL_DRAG_ESTIMATES_NAME, *DRAG_ESTIMATE_NAMES]}, DRAG_LIST_SCHEMA]}
 QuantityAxis = Annotated[Axis, BeforeValidator(quantity_axis), WithJsonSchema(_quantity_schema())]
 DragAxis = Annotated[Axis, BeforeValidator(drag_axis), WithJsonSchema(DRAG_SCHEMA)]

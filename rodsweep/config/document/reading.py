@@ -25,7 +25,7 @@ from ..values import printable_name
 from .parsing import MAX_KEY_DEPTH, parsed_yaml, read_config_text
 from .refusals import MAX_KEY_LENGTH, dotted_key, message_of_problem, similar_keys
 
-ROUNDING_TOLERANCE = 1e-12
+EQUAL_AXIS_VALUES_TOLERANCE = 1e-12
 """Two values of an axis with at most this relative difference are equal within rounding."""
 MAX_HEADER_LENGTH = 10_000
 """Maximum number of characters of a CSV file's header. `read_points` refuses a file with a longer first
@@ -117,7 +117,7 @@ def _without_arm_axes(parameters: dict[str, Any], in_diagram: bool) -> dict[str,
         axis = dimensionless.get(name)
         if axis is None or not isinstance(value, Axis) or axis.size != value.size:
             return False
-        return np.allclose(value.array(), axis.array(), rtol=ROUNDING_TOLERANCE, atol=0)
+        return np.allclose(value.array(), axis.array(), rtol=EQUAL_AXIS_VALUES_TOLERANCE, atol=0)
 
     return {name: value for name, value in parameters.items() if not follows_from_arm(name, value)}
 

@@ -67,14 +67,14 @@ class LimitCycleConfig(Config):
         By default the parameter with the most values; the first parameter if several have equally many
         values.
         """
-        value_counts = self.parameters.single_parameter_sizes
+        value_counts = self.parameters.sizes_of_single_parameter_axes
         parameter = self.limit_cycle.along
         if parameter == LONGEST_AXIS:
             return max(value_counts, key=lambda name: value_counts[name], default=parameter)
         return SINGLE_PARAMETER_OF.get(parameter, parameter)
 
     @property
-    def options_without_effect(self) -> dict[str, str]:
+    def remedies_of_options_without_effect(self) -> dict[str, str]:
         options = self.limit_cycle
         required_settings: dict[str, str] = {}
         if options.start != "neighbour":
@@ -121,7 +121,7 @@ class LimitCycleConfig(Config):
 
     def _require_chain_parameter(self) -> None:
         """Raises ValueError if no axis changes only the parameter along which chains of cycles go."""
-        names = self.parameters.single_parameter_sizes
+        names = self.parameters.sizes_of_single_parameter_axes
         parameter = self.chain_parameter
         if parameter in names:
             return

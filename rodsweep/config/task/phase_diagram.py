@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from ...model.arm.quantities import LOAD_OF_RATIO
-from ...model.parameters import LINEAR_PARAMETERS, PARAMETERS, TRANSVERSE_PARAMETERS
+from ...model.parameters import NON_OPTIONAL_LINEAR_PARAMETERS, PARAMETERS, TRANSVERSE_PARAMETERS
 from ...wording import enumeration
 from ..arm.axes import FLUID_QUANTITIES, SINGLE_PARAMETER_OF
 from ..axis import Axis
@@ -88,7 +88,7 @@ class PhaseDiagramConfig(LinearConfig):
     def plane_parameters(self) -> tuple[str, ...]:
         """(parameter along a row, parameter across rows): names of the parameters with several values.
 
-        The names are in the order of LINEAR_PARAMETERS and OPTIONAL_PARAMETERS.
+        The names are in the order of NON_OPTIONAL_LINEAR_PARAMETERS and OPTIONAL_PARAMETERS.
         """
         return tuple(name for name, axis in self.parameters.axes.items() if axis.size > 1)
 
@@ -107,7 +107,7 @@ class PhaseDiagramConfig(LinearConfig):
         return DEFAULT_VALUES_OF_PARAMETERS["gamma1"]
 
     @property
-    def options_without_effect(self) -> dict[str, str]:
+    def remedies_of_options_without_effect(self) -> dict[str, str]:
         return {} if self.phase_diagram.cycles else {"cycle_accuracy": "cycles: true"}
 
     @property
@@ -157,13 +157,13 @@ class PhaseDiagramConfig(LinearConfig):
 
     @model_validator(mode="after")
     def _require_two_axes(self) -> "PhaseDiagramConfig":
-        allowed = enumeration(LINEAR_PARAMETERS, "and")
+        allowed = enumeration(NON_OPTIONAL_LINEAR_PARAMETERS, "and")
         if self.parameters.points is not None:
             raise ValueError(
                 "parameters.points is given but the task phase_diagram needs axes; remove it and give "
                 f"{allowed}"
             )
-        self.parameters.require_points(LINEAR_PARAMETERS, or_points=False)
+        self.parameters.require_points(NON_OPTIONAL_LINEAR_PARAMETERS, or_points=False)
         if self.parameters.arm_axes:
             varied = next(
                 name for name in self.parameters.arm_axes if name not in (*SINGLE_PARAMETER_OF, "drag")
@@ -187,7 +187,8 @@ class PhaseDiagramConfig(LinearConfig):
         line_axis = self.parameters.axes[varied_names[0]]
         if inf in (line_axis.values or ()):
             stiffnesses_text = enumeration(
-                tuple(name for name in LINEAR_PARAMETERS if PARAMETERS[name].rigid_adjective), "and"
+                tuple(name for name in NON_OPTIONAL_LINEAR_PARAMETERS if PARAMETERS[name].rigid_adjective),
+                "and",
             )
             raise ValueError(
                 f"parameters.{varied_names[0]} contains inf, which is not allowed on the axis along which a "

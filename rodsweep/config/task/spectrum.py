@@ -5,7 +5,7 @@ from typing import Any, ClassVar, Literal
 
 from pydantic import model_validator
 
-from ...model.parameters import LINEAR_PARAMETERS
+from ...model.parameters import NON_OPTIONAL_LINEAR_PARAMETERS
 from ..base_config import LinearConfig, ModeCount, NodeCount
 from ..values import StrictConfigSection
 
@@ -41,13 +41,13 @@ class SpectrumConfig(LinearConfig):
     @classmethod
     def rod_parameters_used(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
         return (
-            (*LINEAR_PARAMETERS, *cls.nonlinear_parameters_used)
+            (*NON_OPTIONAL_LINEAR_PARAMETERS, *cls.nonlinear_parameters_used)
             if options.get("longitudinal")
-            else LINEAR_PARAMETERS
+            else NON_OPTIONAL_LINEAR_PARAMETERS
         )
 
     @property
-    def options_without_effect(self) -> dict[str, str]:
+    def remedies_of_options_without_effect(self) -> dict[str, str]:
         required_settings = {} if self.spectrum.vectors else {"nodes": "vectors: true"}
         if self.spectrum.method == "krylov_schur":
             required_settings |= dict.fromkeys(("certify", "follow"), "method: determinant")

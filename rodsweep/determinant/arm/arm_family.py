@@ -40,7 +40,7 @@ class ArmFamilySettings(KernelConstants):
     converged_tail_ratio: float = 1e-15
     """The series has converged if the last two Chebyshev coefficients of every propagator are at most this
     number times its largest entry."""
-    coefficient_tail_factor: float = 10.0
+    coefficient_tolerance_factor: float = 10.0
     """The tolerance for series of the coefficients along the arms is `converged_tail_ratio` times this
     factor."""
 
@@ -111,7 +111,7 @@ def has_smooth_coefficients(path: ParameterPath, low: float, high: float) -> boo
 
 def _series_converges(samples: CoefficientSamples) -> bool:
     """Whether the Chebyshev series in p of the coefficients along the arms converges at every sample."""
-    tolerance = ARM_FAMILY_SETTINGS.coefficient_tail_factor * ARM_FAMILY_SETTINGS.converged_tail_ratio
+    tolerance = ARM_FAMILY_SETTINGS.coefficient_tolerance_factor * ARM_FAMILY_SETTINGS.converged_tail_ratio
     # The series are in p, so the axis of the arms comes first.
     return _has_small_coefficient_tail(np.moveaxis(np.array(samples.local), 1, 0), tolerance)
 

@@ -40,12 +40,12 @@ class CompletenessSettings(KernelConstants):
     point_counts: tuple[int, ...] = (3, 6)
     """Numbers k of points x_j of successive trials. Fewer points can lie closer to the hull; more points
     suffice for a wider hull."""
-    max_last_point_ratios: tuple[float, ...] = (1.5, 6.0)
+    max_last_points_over_w: tuple[float, ...] = (1.5, 6.0)
     """Largest x_k divided by the largest known |w|, for each of `point_counts`. Most proofs with a larger x_k
     fail, because unknown and known eigenvalues then contribute almost equally."""
-    min_first_point_ratio: float = 0.35
+    min_first_point_over_line: float = 0.35
     """Smallest x_1 divided by the distance of the line from the imaginary axis."""
-    min_first_distance: float = 1e-6
+    min_first_point: float = 1e-6
     """Smallest x_1, in 1/tau2; needed if the line and the hull are close to 0."""
     point_spread: float = 1.0
     """(x_k - x_1)/x_1."""
@@ -63,7 +63,7 @@ class CompletenessSettings(KernelConstants):
 
     def proof_trials(self) -> list[tuple[int, float]]:
         """Pairs (k, largest x_k divided by the largest known |w|) of all trials, in order."""
-        return list(zip(self.point_counts, self.max_last_point_ratios, strict=True))
+        return list(zip(self.point_counts, self.max_last_points_over_w, strict=True))
 
 
 COMPLETENESS_SETTINGS = CompletenessSettings()
@@ -164,8 +164,8 @@ def points_right_of_hull(line: float, a: float, c: float, k: int) -> Array:
     """Points x_1 < ... < x_k, (k,), so far right that each term of R has real part >= 0; empty if such points
     would overflow. line: Re w of the vertical line. k: number of points. a, c: constants of the hull."""
     # As close to the hull as allowed: from farther away all eigenvalues contribute alike.
-    x = max(a * a, COMPLETENESS_SETTINGS.min_first_point_ratio * abs(line))
-    x = max(x, COMPLETENESS_SETTINGS.min_first_distance)
+    x = max(a * a, COMPLETENESS_SETTINGS.min_first_point_over_line * abs(line))
+    x = max(x, COMPLETENESS_SETTINGS.min_first_point)
     points = x * (1 + COMPLETENESS_SETTINGS.point_spread * np.arange(k) / max(k - 1, 1))
     while not _largest_angle_sum(points, a, c) < math.pi / 2:
         if not points[0] < 1 / EXPONENT_SETTINGS.min_divisor:

@@ -57,7 +57,7 @@ class ArmDeterminant:
         )
         return determinant_from_propagators(complex(w), W, polynomials)
 
-    def mean_wave_number(self, w: complex) -> float:
+    def mean_wave_number_bound(self, w: complex) -> float:
         """Mean along the arm of the local bounds of |q| in the exponentials exp(+-q u) at w, in 1/L."""
         return mean_wave_number_and_w_scale(w, self.samples)[0]
 
@@ -101,7 +101,7 @@ class CoefficientSamples(NamedTuple):
     squares: Array
 
 
-class PropagatorElements(NamedTuple):
+class ArmElements(NamedTuple):
     """Elements of n arms: their lengths, (elements,), and `LocalCoefficients` at their Gauss points,
     (6, n, elements, stages)."""
 
@@ -117,7 +117,7 @@ def coefficient_samples(rods: list[Rod]) -> CoefficientSamples:
     return CoefficientSamples(points, coefficients, exponent_samples(forces, coefficients, weights).squares)
 
 
-def elements_for(rods: list[Rod], samples: CoefficientSamples, W: float) -> PropagatorElements:
+def elements_for(rods: list[Rod], samples: CoefficientSamples, W: float) -> ArmElements:
     """The elements that resolve every arm of `rods` for |w| <= W; all arms have the same material. Raises
     FloatingPointError if `max_elements` elements do not resolve an arm."""
     tapers = np.array([rod.taper for rod in rods])
@@ -135,7 +135,7 @@ def elements_for(rods: list[Rod], samples: CoefficientSamples, W: float) -> Prop
         )
         halved_edges = halved_where_coarse(edges, W, forces, coefficients)
         if halved_edges is edges:
-            return PropagatorElements(lengths, coefficients)
+            return ArmElements(lengths, coefficients)
         edges = halved_edges
     max_elements = ARM_ELEMENT_SETTINGS.max_elements
     raise FloatingPointError(
@@ -155,7 +155,7 @@ def eigenfunction_wave_number(rod: Rod, w: complex) -> float:
     bound."""
     if rod.is_uniform_and_linear:
         return newton_correction_and_scales(w, rod.coefficients)[2]
-    return arm_determinant(rod).mean_wave_number(w)
+    return arm_determinant(rod).mean_wave_number_bound(w)
 
 
 def forget_arm_determinants() -> None:

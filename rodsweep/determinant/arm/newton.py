@@ -31,7 +31,7 @@ class ArmRootSettings(KernelConstants):
     min_remaining_ratio: float = 1e-8
     """If a Newton step leaves at most this fraction of |w|, the next step starts from w = 0: the remainder
     has lost half of its digits. The leading eigenvalue of a strongly pulled arm is exponentially small."""
-    max_w_ratio: float = 16.0
+    max_later_w_ratio: float = 16.0
     """If D is needed later at a larger |w|, at most this number times |w| of the roots, the roots use the
     elements for the larger |w|: at most four times as many. Rounding errors grow with their number."""
 

@@ -60,7 +60,7 @@ def refine_mesh_eigenvalues(
     near = [i for i in resolved if errors[i] <= ROOT_SETTINGS.max_pair_correction_ratio * scale[i]]
     near_errors = [errors[i] for i in near]
     # From two close guesses Newton's method may find one root twice, so these are moved apart first.
-    near_w, half_distances = _separate_close_roots([guesses[i] for i in near], near_errors, determinant)
+    near_w, half_distances = _separated_close_roots([guesses[i] for i in near], near_errors, determinant)
     refined = [
         k
         for k, i in enumerate(near)
@@ -74,13 +74,13 @@ def refine_mesh_eigenvalues(
     error = _errors_of_located_roots(located, determinant)
     lengths: Array = np.array([scale[i] for i in mesh_indices.tolist()], float)
     displacement = np.abs(w - np.array(guesses, complex)[mesh_indices]) / np.maximum(np.abs(w), lengths)
-    is_on_axis = np.abs(w.real) <= np.maximum(
+    is_imaginary = np.abs(w.real) <= np.maximum(
         ROOT_SETTINGS.axis_tolerance_in_errors * error, ROOT_SETTINGS.axis_tolerance * np.abs(w)
     )
     leading_growth = w[0].real if len(w) else -math.inf
     # An eigenvalue inside the hull that approximates no root is spurious, or hides one that leads.
     spurious_count = sum(mesh_w[i].real > leading_growth for i in in_box if i not in near)
-    return Roots(mesh_indices, w, error, displacement, wave_number, is_on_axis, spurious_count)
+    return Roots(mesh_indices, w, error, displacement, wave_number, is_imaginary, spurious_count)
 
 
 def _scales_and_resolved(
@@ -100,9 +100,9 @@ def _scales_and_resolved(
 
 
 def _prepare_elements(determinant: ArmDeterminant, needed_w: float, later_w: float) -> None:
-    """Makes elements for all |w| up to `later_w` if `later_w` is at most `max_w_ratio` times `needed_w`, else
-    for all |w| up to `needed_w`."""
-    if needed_w < later_w <= ARM_ROOT_SETTINGS.max_w_ratio * needed_w:
+    """Makes elements for all |w| up to `later_w` if `later_w` is at most `max_later_w_ratio` times
+    `needed_w`, else for all |w| up to `needed_w`."""
+    if needed_w < later_w <= ARM_ROOT_SETTINGS.max_later_w_ratio * needed_w:
         with suppress(FloatingPointError):  # too many elements: they are needed later, if at all
             determinant.propagators_for(later_w)
     determinant.propagators_for(needed_w)
@@ -116,7 +116,7 @@ def _is_in_eigenvalue_box(w: complex, hull: EigenvalueHull) -> bool:
     return w.real <= max_real and abs(w.imag) <= max_imag
 
 
-def _separate_close_roots(
+def _separated_close_roots(
     w: list[complex], errors: list[float], determinant: ArmDeterminant
 ) -> tuple[list[complex], list[float]]:
     """Returns (w, half_distance): w with every two eigenvalues closer than their errors moved to roots of D.
@@ -155,8 +155,8 @@ class _LocatedRoot(NamedTuple):
 
 
 def _refine_guesses(guesses: list[tuple[complex, float]], determinant: ArmDeterminant) -> list[_LocatedRoot]:
-    """The root of D near each guess (w, half_distance), a pair of results of `_separate_close_roots`. For
-    conjugate guesses only the first is refined."""
+    """The root of D near each guess (w, half_distance), a pair of results of
+    `_separated_close_roots`. For conjugate guesses only the first is refined."""
     is_conjugate = [
         k > 0 and w.imag != 0 and w == guesses[k - 1][0].conjugate() for k, (w, _) in enumerate(guesses)
     ]

@@ -14,21 +14,21 @@ import numpy as np
 from ...arrays import Array
 from ...model.compiled.compilation import compiled, compiled_for_vectors
 from ...model.compiled.kernel_constants import KernelConstants
-from ..exponents import ROUNDING_UNIT
+from ..exponents import TWO_MACHINE_EPSILONS
 from ..parameter_path import PathDeterminantValue
 from ..value import DeterminantValue
 from .elements.evaluation import (
     apply_propagator,
-    apply_propagator_with_change,
     apply_real_propagator,
-    apply_real_propagator_with_change,
     fill_propagator,
     fill_propagator_value,
     fill_real_propagator,
     fill_real_propagator_value,
-    modulus_sum_of_products,
-    modulus_sum_of_real_products,
+    minor_sm_modulus_sum,
     powers_and_derivatives,
+    propagate_real_tangent,
+    propagate_tangent,
+    real_minor_sm_modulus_sum,
 )
 from .elements.minor_rates import PADDED, SM
 from .elements.settings import MINORS
@@ -100,14 +100,14 @@ def _multiply_along_chain(
     for e in range(elements):
         fill_propagator(polynomials[e], powers, C)
         apply_propagator(C, minors[0], next_minors[0])
-        apply_propagator_with_change(C, minors[1], C[2:], minors[0], next_minors[1])
+        propagate_tangent(C, minors[1], C[2:], minors[0], next_minors[1])
         if has_p_derivative:
             fill_propagator_value(p_derivatives[e], powers, C_p)
-            apply_propagator_with_change(C, minors[2], C_p, minors[0], next_minors[2])
+            propagate_tangent(C, minors[2], C_p, minors[0], next_minors[2])
         size = _norm(next_minors[0])
         # At the tip D is scaled by its terms, because its rounding error is relative to them, not to D.
         if e == elements - 1:
-            size = max(size, modulus_sum_of_products(C, minors[0]))
+            size = max(size, minor_sm_modulus_sum(C, minors[0]))
         if _needs_rescaling(size) or e == elements - 1:
             next_minors /= size
             S += math.log(size)
@@ -134,13 +134,13 @@ def _multiply_along_real_chain(
     for e in range(elements):
         fill_real_propagator(polynomials[e], powers, C)
         apply_real_propagator(C[0], minors[0], next_minors[0])
-        apply_real_propagator_with_change(C[0], minors[1], C[1], minors[0], next_minors[1])
+        propagate_real_tangent(C[0], minors[1], C[1], minors[0], next_minors[1])
         if has_p_derivative:
             fill_real_propagator_value(p_derivatives[e], powers, C_p)
-            apply_real_propagator_with_change(C[0], minors[2], C_p, minors[0], next_minors[2])
+            propagate_real_tangent(C[0], minors[2], C_p, minors[0], next_minors[2])
         size = _real_norm(next_minors[0])
         if e == elements - 1:
-            size = max(size, modulus_sum_of_real_products(C[0], minors[0]))
+            size = max(size, real_minor_sm_modulus_sum(C[0], minors[0]))
         if _needs_rescaling(size) or e == elements - 1:
             next_minors /= size
             S += math.log(size)
@@ -187,7 +187,7 @@ def path_value_from_propagators(
         D, D_w, D_p, S = _multiply_along_real_chain(w.real / W, W, polynomials, p_derivatives)
     else:
         D, D_w, D_p, S = _multiply_along_chain(w / W, W, polynomials, p_derivatives)
-    return PathDeterminantValue(D, D_w, D_p, S, (len(polynomials) + 2) * ROUNDING_UNIT)
+    return PathDeterminantValue(D, D_w, D_p, S, (len(polynomials) + 2) * TWO_MACHINE_EPSILONS)
 
 
 @compiled

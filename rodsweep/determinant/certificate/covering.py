@@ -47,7 +47,7 @@ class BoxProofSettings(KernelConstants):
     """An undecided box is left open, undivided, if half-widths are below this number times eta and |p|."""
     max_boxes: int = 1_000_000
     """After this number of examined boxes, further undecided boxes are left open, not divided."""
-    same_zero_distance: float = 1.5
+    max_known_zero_distance: float = 1.5
     """Distance from the centre of a regular box, in half-widths of the box, up to which a known zero is the
     only zero in the doubled box."""
     outside_distance: float = 0.01
@@ -56,7 +56,7 @@ class BoxProofSettings(KernelConstants):
     field_ranges: ClassVar = {
         "first_radius_ratio": (0.0, 1.0),
         "radius_ratio_factor": (0.0, 1.0),
-        "same_zero_distance": (1.0, 2.0),
+        "max_known_zero_distance": (1.0, 2.0),
     }
 
 
@@ -65,8 +65,8 @@ BOX_PROOF_SETTINGS = BoxProofSettings()
 EMPTY_BOX = 0
 REGULAR_BOX = 1
 UNDECIDED_BOX = 2
-"""Outcomes of `examine_box`. EMPTY_BOX: D has no zero in the box. REGULAR_BOX: D has at most one zero in the
-doubled box. UNDECIDED_BOX: neither is proved."""
+"""Outcomes of `box_outcome_and_costs`. EMPTY_BOX: D has no zero in the box. REGULAR_BOX: D has at
+most one zero in the doubled box. UNDECIDED_BOX: neither is proved."""
 
 
 class Box(NamedTuple):
@@ -92,7 +92,7 @@ def distance_from_zero_bound(value: complex, a: complex, b: complex) -> float:
 
 
 @compiled
-def mean_growth_rates(centre: BidiscCentre) -> DerivativePair:
+def mean_exponent_slopes(centre: BidiscCentre) -> DerivativePair:
     """(L, K): the slopes d sqrt(z)/dw and d sqrt(z)/dp of the exponents, averaged over the two exponentials
     of D with their moduli as weights."""
     root_plus = cmath.sqrt(centre.z_plus)
@@ -129,7 +129,7 @@ def is_remainder_below(
 
 
 @compiled
-def examine_box(
+def box_outcome_and_costs(
     w: complex, coefficients: Coefficients, direction: Coefficients, half: tuple[float, float]
 ) -> tuple[int, float, float]:
     """Returns (outcome, cost in eta, cost in p) for the box about w = i eta with half-widths `half`.
@@ -140,14 +140,14 @@ def examine_box(
     """
     D, D_w, D_p, S, rounding_error = determinant_along_path(w, coefficients, direction)
     centre = bidisc_centre(w, coefficients, dispersion_coefficient_derivatives(coefficients, direction), S)
-    mean = mean_growth_rates(centre)
+    mean = mean_exponent_slopes(centre)
     rounding = DISC_BOUND_SETTINGS.rounding_safety_factor * rounding_error
     if abs(D) > 2 * rounding:
         # The logarithmic derivatives are best where one exponential dominates, the mean where both matter.
         for rates in ((D_w / D, D_p / D), mean):
             a = 1j * (D_w - rates[0] * D) * half[0]
             b = (D_p - rates[1] * D) * half[1]
-            margin = DISC_BOUND_SETTINGS.max_relative_change * distance_from_zero_bound(D, a, b) - rounding
+            margin = DISC_BOUND_SETTINGS.max_D_change_ratio * distance_from_zero_bound(D, a, b) - rounding
             if margin > 0 and is_remainder_below(centre, rates, half, margin, 1):
                 return EMPTY_BOX, 0.0, 0.0
     # In the doubled box each derivative of f changes by at most 3 M t^2/(1 - t)^2.
@@ -157,7 +157,7 @@ def examine_box(
         # The smallest singular value of the linear map is at least |det| over the sum of its columns: at most
         # one zero.
         min_singular_value = abs((a * b.conjugate()).imag) / (abs(a) + abs(b))
-        margin = (DISC_BOUND_SETTINGS.max_relative_change * min_singular_value - rounding) / 3
+        margin = (DISC_BOUND_SETTINGS.max_D_change_ratio * min_singular_value - rounding) / 3
         doubled_half_widths = (2 * half[0], 2 * half[1])
         if margin > 0 and is_remainder_below(centre, mean, doubled_half_widths, margin, 2):
             return REGULAR_BOX, 0.0, 0.0
@@ -203,18 +203,18 @@ def cover_with_boxes(
         half = (box.eta_to - box.eta_from) / 2, (box.p_to - box.p_from) / 2
         count += 1
         coefficients = coefficients_at(p, origin, direction)
-        outcome, cost_eta, cost_p = examine_box(complex(0.0, eta), coefficients, direction, half)
+        outcome, cost_eta, cost_p = box_outcome_and_costs(complex(0.0, eta), coefficients, direction, half)
         if outcome == EMPTY_BOX:
             continue
         if outcome == REGULAR_BOX:
             zero = crossing_by_newton(eta, p, origin, direction, half)
-            distance = _box_distance(zero, eta, p, half)
+            distance = _distance_from_box_centre(zero, eta, p, half)
             if distance <= 2:  # false if Newton's method failed, which returns nan
                 # A zero outside the box is found from a neighbouring box too.
                 is_known = distance > 1 + BOX_PROOF_SETTINGS.outside_distance
                 for other in zeros:  # the doubled box contains at most one zero
-                    other_distance = _box_distance(other, eta, p, half)
-                    is_known = is_known or other_distance <= BOX_PROOF_SETTINGS.same_zero_distance
+                    other_distance = _distance_from_box_centre(other, eta, p, half)
+                    is_known = is_known or other_distance <= BOX_PROOF_SETTINGS.max_known_zero_distance
                 if not is_known:
                     zeros.append(zero)
                 continue
@@ -233,7 +233,9 @@ def cover_with_boxes(
 
 
 @compiled
-def _box_distance(zero: LocatedEigenvalue, eta: float, p: float, half: tuple[float, float]) -> float:
+def _distance_from_box_centre(
+    zero: LocatedEigenvalue, eta: float, p: float, half: tuple[float, float]
+) -> float:
     """Distance of a zero from the centre (eta, p) of a box: the larger of the distances in eta and p, in
     units of the half-widths `half`."""
     return max(abs(zero.eta_or_x - eta) / half[0], abs(zero.p - p) / half[1])

@@ -25,17 +25,17 @@ class DiscBoundSettings(KernelConstants):
     rounding_safety_factor: float = 4.0
     """|rounding error of D| <= this number times `rounding_error` of the value; the largest ratio of 20 000
     unfavourable values was 0.7."""
-    max_relative_change: float = 0.9
+    max_D_change_ratio: float = 0.9
     """A proof needs a change of D over the disc below this number times |D|; below 1, so that D is not 0."""
-    max_expansion_change: float = 0.5
+    max_expanded_z_change: float = 0.5
     """sqrt(z) is expanded about the centre of a disc if the relative change x of z over the disc is below
     this number. The remainder is proportional to x^2/(1 - x)."""
-    max_factor_change: float = 0.98
+    max_P_factor_change: float = 0.98
     """If either factor of P^2 changes over a disc by more than this fraction, the bound is inf."""
     field_ranges: ClassVar = {
-        "max_relative_change": (0.0, 1.0),
-        "max_expansion_change": (0.0, 1.0),
-        "max_factor_change": (0.0, 1.0),
+        "max_D_change_ratio": (0.0, 1.0),
+        "max_expanded_z_change": (0.0, 1.0),
+        "max_P_factor_change": (0.0, 1.0),
     }
 
 
@@ -121,7 +121,7 @@ def bounds_of_E_on_bidisc(
     simple_bound = math.sqrt(max((abs(z) + z.real) / 2 + change, 0.0)) + rate_change
     growing_exponent = simple_bound
     decaying_exponent = simple_bound
-    if change < DISC_BOUND_SETTINGS.max_expansion_change * abs(z):
+    if change < DISC_BOUND_SETTINGS.max_expanded_z_change * abs(z):
         w_slope = slopes[0] / (2 * root)
         p_slope = slopes[1] / (2 * root)
         nonlinear_root_change = nonlinear_root_bound(root, nonlinear_change, change / abs(z))
@@ -200,8 +200,8 @@ def bound_for_distinct_exponents(centre: BidiscCentre, rates: DerivativePair, ra
     e1 = rho / abs(w)
     max_change = dG + X * rho + dX * (abs(w) + rho)
     e2 = max_change / modulus if modulus > max_change else 1.0
-    if e1 > DISC_BOUND_SETTINGS.max_factor_change or (
-        max_change > 0 and e2 > DISC_BOUND_SETTINGS.max_factor_change
+    if e1 > DISC_BOUND_SETTINGS.max_P_factor_change or (
+        max_change > 0 and e2 > DISC_BOUND_SETTINGS.max_P_factor_change
     ):
         return math.inf
     # If g nu and X are 0, the second factor is 0 on the whole bidisc and does not change.

@@ -27,12 +27,12 @@ from .discs import DISC_BOUND_SETTINGS, bounds_of_E_on_bidisc, nonlinear_root_bo
 class DominanceSettings(KernelConstants):
     """Settings for discs in which one exponential of D dominates."""
 
-    first_radius: float = 0.25
+    first_radius_over_branch_distance: float = 0.25
     """Radius of the first trial disc divided by the distance of the start of the step from a branch point of
     z+-."""
     max_halvings: int = 2
     """The segment of proved dominance ends if a trial disc halved this many times is still not proved."""
-    overlap_fraction: float = 1e-3
+    overlap_enlargement_fraction: float = 1e-3
     """The radius of a disc exceeds half the step that the disc covers by this fraction, so that rounding
     leaves no gap between discs."""
     end_rounding: float = 1e-15
@@ -41,13 +41,16 @@ class DominanceSettings(KernelConstants):
     max_factor_change: float = 0.5
     """Dominance is proved only on discs over which no factor of A changes by more than this fraction; the
     phase of each factor then changes by less than a right angle."""
-    field_ranges: ClassVar = {"first_radius": (0.0, 1.0), "max_factor_change": (0.0, 1.0)}
+    field_ranges: ClassVar = {
+        "first_radius_over_branch_distance": (0.0, 1.0),
+        "max_factor_change": (0.0, 1.0),
+    }
 
 
 DOMINANCE_SETTINGS = DominanceSettings()
 
 
-class Exponent(NamedTuple):
+class SquaredExponent(NamedTuple):
     """z+ or z- at a point w, with slope dz/dw and root sqrt(z)."""
 
     z: complex
@@ -56,19 +59,21 @@ class Exponent(NamedTuple):
 
 
 @compiled
-def _dominant_and_recessive(w: complex, coefficients: Coefficients) -> tuple[complex, Exponent, Exponent]:
+def _dominant_and_recessive(
+    w: complex, coefficients: Coefficients
+) -> tuple[complex, SquaredExponent, SquaredExponent]:
     """Returns (P, dominant exponent, recessive exponent) at w; the dominant one has the larger Re sqrt(z)."""
     P, P_w, _, plus, minus = exponent_derivatives(w, coefficients)
     drag = coefficients.c2 + coefficients.gamma3
-    plus_exponent = Exponent(plus, drag + 2 * P_w, cmath.sqrt(plus))
-    minus_exponent = Exponent(minus, drag - 2 * P_w, cmath.sqrt(minus))
+    plus_exponent = SquaredExponent(plus, drag + 2 * P_w, cmath.sqrt(plus))
+    minus_exponent = SquaredExponent(minus, drag - 2 * P_w, cmath.sqrt(minus))
     if plus_exponent.root.real >= minus_exponent.root.real:
         return P, plus_exponent, minus_exponent
     return P, minus_exponent, plus_exponent
 
 
 @compiled
-def _nonlinearity_bounds(
+def _nonlinear_change_bounds(
     w: complex, rho: float, P: complex, coefficients: Coefficients
 ) -> tuple[float, float]:
     """Returns upper bounds (nonlinear part of z+-, change of dz+-/dw) over the disc |dw| <= rho about w; inf
@@ -95,7 +100,7 @@ def is_dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
     P, (z, slope, root), (z_other, slope_other, root_other) = _dominant_and_recessive(w, coefficients)
     if P == 0 or root.real <= root_other.real:
         return False
-    nonlinear_change, slope_change = _nonlinearity_bounds(w, rho, P, coefficients)
+    nonlinear_change, slope_change = _nonlinear_change_bounds(w, rho, P, coefficients)
     total_change = abs(slope) * rho + nonlinear_change
     x = total_change / abs(z)
     if x > DOMINANCE_SETTINGS.max_factor_change or slope_change > DOMINANCE_SETTINGS.max_factor_change * abs(
@@ -126,7 +131,7 @@ def is_dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
     )
     E = bounds_of_E_on_bidisc(z_other, (slope_other, 0j), (L, 0j), (rho, 0.0), nonlinear_change, S)[0]
     remainder += max_w / 2 * (abs(slope_other) + slope_change) * E
-    return remainder < DISC_BOUND_SETTINGS.max_relative_change * A
+    return remainder < DISC_BOUND_SETTINGS.max_D_change_ratio * A
 
 
 @compiled
@@ -163,16 +168,16 @@ def phase_over_dominated_segment(
     wave = (0j, 0j)
     first_wave = (0j, 0j)
     while t < length:
-        rho = DOMINANCE_SETTINGS.first_radius * abs(w)
+        rho = DOMINANCE_SETTINGS.first_radius_over_branch_distance * abs(w)
         if X > 0:
-            rho = min(rho, DOMINANCE_SETTINGS.first_radius * abs(gn + X * w) / X)
+            rho = min(rho, DOMINANCE_SETTINGS.first_radius_over_branch_distance * abs(gn + X * w) / X)
         # A disc covers the step with its diameter.
         rho = min(rho, (length - t) / 2)
         proved = False
         for _ in range(DOMINANCE_SETTINGS.max_halvings + 1):
             disc_count += 1
             # The disc is a little wider than the step, so that rounding leaves no gap between discs.
-            radius = (1 + DOMINANCE_SETTINGS.overlap_fraction) * rho
+            radius = (1 + DOMINANCE_SETTINGS.overlap_enlargement_fraction) * rho
             if is_dominated(w + direction * rho, radius, coefficients):
                 proved = True
                 break

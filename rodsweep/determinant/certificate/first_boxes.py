@@ -26,7 +26,7 @@ class CoveringSettings:
     """Largest ratio of the upper to the lower end of a first box in eta."""
     max_nu_decrease_fraction: float = 0.5
     """nu decreases over an interval of p by at most this fraction of nu at the start of the interval."""
-    min_interval_ratio: float = 1e-6
+    min_interval_over_longest: float = 1e-6
     """Shortest interval divided by the longest interval. Near p = 0 intervals are short, because a drag or
     compliance p at most doubles over an interval."""
     min_last_interval_ratio: float = 1e-3
@@ -51,7 +51,7 @@ def path_intervals(path: ParameterPath, p_start: float, p_stop: float) -> list[t
         if slope < 0:  # the rod is crushed at nu = 0
             step = min(step, COVERING_SETTINGS.max_nu_decrease_fraction * nu / -slope)
         if path.name != "F":  # drag and compliances vary over decades
-            step = min(step, max(p, COVERING_SETTINGS.min_interval_ratio * width))
+            step = min(step, max(p, COVERING_SETTINGS.min_interval_over_longest * width))
         end = p + step
         # On a path of a few roundings, p + step is p.
         is_last = end <= p or p_stop - end < COVERING_SETTINGS.min_last_interval_ratio * step

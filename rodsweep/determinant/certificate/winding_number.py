@@ -34,7 +34,7 @@ class WindingSettings(KernelConstants):
     """Factor on the width of the box. Wider is cheaper: one exponential dominates D far from eigenvalues."""
     additional_width: float = 50.0
     """Length added to the width of the box, in 1/tau2, because a wider box is cheaper to walk around."""
-    min_height_ratio: float = 0.5
+    min_height_over_line_distance: float = 0.5
     """Smallest height of the box divided by the distance of the line from the imaginary axis."""
     integer_tolerance: float = 1e-3
     """The count fails if the computed winding number differs from the nearest integer by more than this."""
@@ -44,13 +44,13 @@ class WindingSettings(KernelConstants):
     max_step_ratio: float = 1.9
     """The first step tried from a node is this number times its zero-free radius. A step beyond the zero-free
     radius needs a next node whose zero-free radius covers the step."""
-    safe_step_ratio: float = 0.999
+    safe_step_over_radius: float = 0.999
     """If the first step fails, the step is this times the zero-free radius: below 1, because of rounding."""
     min_zero_free_radius_ratio: float = 1e-13
     """The count fails if the zero-free radius of a node is below this times |w|: a zero is too close."""
     max_edge_nodes: int = 20_000
     """Maximum number of nodes on one edge of the box; the paper's rods need about 30 nodes on all edges."""
-    field_ranges: ClassVar = {"safe_step_ratio": (0.0, 1.0)}
+    field_ranges: ClassVar = {"safe_step_over_radius": (0.0, 1.0)}
 
 
 WINDING_SETTINGS = WindingSettings()
@@ -138,7 +138,7 @@ def phase_change_by_nodes(start: complex, end: complex, coefficients: Coefficien
                 node.zero_free_radius, next_node.zero_free_radius
             ):
                 break
-            distance = WINDING_SETTINGS.safe_step_ratio * node.zero_free_radius
+            distance = WINDING_SETTINGS.safe_step_over_radius * node.zero_free_radius
         # The linear part of the change may exceed 2 pi; the values of D give the rest, less than pi/2.
         # The linear part of the larger disc, which contains the step, leaves less than pi/2.
         linear_change = (
@@ -210,5 +210,5 @@ def upper_contour_corner(line: float, box: tuple[float, float]) -> complex:
     max_real, max_imag = box
     return complex(
         WINDING_SETTINGS.width_factor * max_real + WINDING_SETTINGS.additional_width,
-        max(max_imag, WINDING_SETTINGS.min_height_ratio * abs(line)),
+        max(max_imag, WINDING_SETTINGS.min_height_over_line_distance * abs(line)),
     )

@@ -89,7 +89,7 @@ def zero_free_disc_at(w: complex, coefficients: Coefficients) -> ZeroFreeDiscNod
     exp(-L dw) changes by less than pi/2. The radius and L are 0 if |D| is not above its rounding error."""
     D, D_w, S, rounding_error = scaled_determinant(w, coefficients)
     max_remainder = (
-        DISC_BOUND_SETTINGS.max_relative_change * abs(D)
+        DISC_BOUND_SETTINGS.max_D_change_ratio * abs(D)
         - DISC_BOUND_SETTINGS.rounding_safety_factor * rounding_error
     )
     # |D| below its rounding error proves nothing; the zero-free radius of 0 ends the walk.

@@ -69,7 +69,7 @@ def crossing_by_newton(
         ) or (
             # Small steps that stop halving are rounding errors above their estimate.
             step > ROOT_NEWTON_SETTINGS.converging_step_ratio * last
-            and step * scale[1] < ROOT_NEWTON_SETTINGS.stagnant_step_ratio * abs(p)
+            and step * scale[1] < ROOT_NEWTON_SETTINGS.stagnant_step_over_p * abs(p)
         ):
             return LocatedEigenvalue(eta, p, max(e_eta, abs(eta_step)), max(e_p, abs(p_step)))
         last = step

@@ -36,7 +36,7 @@ class Roots(NamedTuple):
 
     mesh_indices: index of each root in the list of eigenvalues of the mesh. error: absolute error estimates.
     displacement: |eigenvalue of the mesh - root| / max(|w|, length over which D changes). wave_number:
-    largest |q|, in 1/L. is_on_axis: whether the root is imaginary within its error. unmatched_count: number
+    largest |q|, in 1/L. is_imaginary: whether the root is imaginary within its error. unmatched_count: number
     of eigenvalues of the mesh that lie in the a-priori box right of all roots and do not approximate a root.
     """
 
@@ -45,7 +45,7 @@ class Roots(NamedTuple):
     error: Array
     displacement: Array
     wave_number: Array
-    is_on_axis: NDArray[np.bool_]
+    is_imaginary: NDArray[np.bool_]
     unmatched_count: int
 
 
@@ -63,7 +63,7 @@ def root_error_and_scales(w: complex, coefficients: Coefficients) -> tuple[float
     if error > ROOT_SETTINGS.ill_conditioned_ratio * abs(w):
         D, D1, S, _ = scaled_determinant(w, coefficients)
         rounding_error = rounding_error_at_root(w, coefficients, S)
-        e = max(abs(D), ROOT_SETTINGS.rounding_fraction_at_root * rounding_error)
+        e = max(abs(D), ROOT_SETTINGS.rounding_bound_fraction_at_root * rounding_error)
         error = e / max(abs(D1), EXPONENT_SETTINGS.min_divisor)
         if error > ROOT_SETTINGS.double_root_correction_ratio * abs(w):
             D_ww = abs(second_derivative(w, S, coefficients))
@@ -128,12 +128,12 @@ def _separate_close_pairs(w: Complex, error: Array, coefficients: Coefficients) 
 def _descending_order(w: Complex) -> NDArray:
     """Indices that sort w, (n,), by descending real part, then descending frequency."""
     order = np.arange(len(w))
-    sort_descending(w, order)
+    sort_indices_descending(w, order)
     return order
 
 
 @compiled
-def sort_descending(w: Complex, order: NDArray) -> None:
+def sort_indices_descending(w: Complex, order: NDArray) -> None:
     """Sorts the indices `order` of w, (n,), in place, by descending real part of w, then descending
     frequency. Insertion sort: fast for lists that are almost sorted."""
     for m in range(1, len(order)):
@@ -192,7 +192,8 @@ def refined_roots(raw: Complex, coefficients: Coefficients, sqrt_bound: float, m
     wave = wave[order]
     _increase_errors_of_equal_roots(w, error, coefficients)
     axis = np.abs(w.real) <= np.maximum(
-        ROOT_SETTINGS.axis_tolerance_in_errors * error, ROOT_SETTINGS.axis_tolerance * np.abs(w)
+        ROOT_SETTINGS.axis_tolerance_in_errors * error,
+        ROOT_SETTINGS.axis_tolerance * np.abs(w),
     )
     # An eigenvalue in the box that leads all roots is spurious, or the trace of a root that was missed.
     spurious_count = (inside & ~is_near & (raw.real > (w[0].real if len(w) else -math.inf))).sum()

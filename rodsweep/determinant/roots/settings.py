@@ -30,7 +30,7 @@ class RootSettings(KernelConstants):
     ill_conditioned_ratio: float = 1e-15
     """An eigenvalue w is ill-conditioned if its error by the typical rounding error of D exceeds this number
     times |w|. Below, `SpectrumErrorSettings.rounding_in_ulps` covers the largest rounding errors of D."""
-    rounding_fraction_at_root: float = 0.22
+    rounding_bound_fraction_at_root: float = 0.22
     """The rounding error of D at an ill-conditioned eigenvalue is estimated by this fraction of its bound
     `rounding_error_at_root`. The estimate must cover nearly all errors: of 46000 ill-conditioned eigenvalues
     of random rods near double eigenvalues, 3 in 10000 have larger errors, by up to 1.13 times."""
@@ -65,7 +65,7 @@ class RootNewtonSettings(KernelConstants):
     converging_step_ratio: float = 0.5
     """A Newton step of at least this number times the previous step is rounding error: the method has
     converged as far as rounding allows."""
-    stagnant_step_ratio: float = 1e-9
+    stagnant_step_over_p: float = 1e-9
     """Newton's method for a crossing has also converged if |step| is below this number times |p| and above
     `converging_step_ratio` times the previous |step|."""
     real_tolerance: float = 1e-14

@@ -17,7 +17,7 @@ from .quadrature import gauss_lobatto_rule
 class ElementSettings:
     """Settings of elements: points close to the ends of elements, and maximum sizes of caches."""
 
-    end_distance: float = 1e-15
+    one_sided_node_offset: float = 1e-15
     """Distance of the first and last `Elements.one_sided_nodes` from the ends of an element, in L: a
     few rounding errors of u. With 1e-9, the largest y of cycles near the Hopf point of a cone had an error of
     1e-8 on every mesh."""
@@ -93,7 +93,7 @@ class Elements:
     def one_sided_nodes(self) -> Array:
         """Coordinates u of the nodes of every element, (nodes + elements,), with the end nodes moved just
         inside: at a jump, each element evaluates a coefficient on its own side."""
-        distance = ELEMENT_SETTINGS.end_distance
+        distance = ELEMENT_SETTINGS.one_sided_node_offset
         return np.concatenate(
             [
                 np.clip(

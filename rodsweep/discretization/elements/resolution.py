@@ -31,9 +31,10 @@ class ResolutionSettings:
     """Mode n of a rod without load has |q| near (n - 1/2) pi; (n - mode_offset) pi is an upper estimate."""
     start_accuracy: float = 1e-4
     """Relative accuracy of a mesh if its eigenvalues are then refined to roots of D."""
-    max_waves_per_node: float = 2.0
-    """A mesh represents eigenvalues with wave number |q| <= `max_waves_per_node` * (elements * order), where
-    |q| is averaged along the rod; an element, with |q| <= `max_waves_per_node` * order / length."""
+    max_wave_number_per_node: float = 2.0
+    """A mesh represents eigenvalues with wave number |q| <= `max_wave_number_per_node` * (elements * order),
+    where |q| is averaged along the rod; an element, with |q| <= `max_wave_number_per_node` * order /
+    length."""
     max_order: int = 32
     """Maximum order of an element. A further element costs less than a higher order."""
     min_order: int = 6
@@ -41,7 +42,7 @@ class ResolutionSettings:
     max_unknowns: int = 10_000
     """Maximum number of unknowns of a mesh; a sparse factorisation then takes a few seconds. A rod that needs
     more unknowns fails."""
-    refinement_ratio: float = 4 / 3
+    finer_unknowns_ratio: float = 4 / 3
     """Number of unknowns of the next finer mesh, divided by the number of unknowns of the current mesh."""
 
 
@@ -95,7 +96,7 @@ def required_order(wave_number: float, accuracy: float) -> float:
     return settings.order_intercept + settings.order_slope * wave_number + further_digits * order_per_digit
 
 
-def max_element_count(max_order: int) -> int:
+def first_excessive_element_count(max_order: int) -> int:
     """Number of elements of the order `max_order` whose mesh has more than `RESOLUTION_SETTINGS.max_unknowns`
     unknowns. No more elements are counted, because such a mesh is not solved."""
     return RESOLUTION_SETTINGS.max_unknowns // (3 * max_order) + 2
@@ -110,7 +111,7 @@ def resolution_for(wave_number: float, accuracy: float, max_order: int | None = 
     `RESOLUTION_SETTINGS.max_order` by default.
     """
     max_order = max_order or RESOLUTION_SETTINGS.max_order
-    max_count = max_element_count(max_order)
+    max_count = first_excessive_element_count(max_order)
     element_count = 1
     while element_count < max_count and required_order(wave_number / element_count, accuracy) > max_order:
         element_count += 1
@@ -123,9 +124,9 @@ def resolution_for(wave_number: float, accuracy: float, max_order: int | None = 
 def finer_resolution(resolution: Resolution) -> Resolution:
     """The next finer resolution, with a third more unknowns: a higher order up to the maximum order, then
     more elements."""
-    order = ceil(resolution.order * RESOLUTION_SETTINGS.refinement_ratio)
+    order = ceil(resolution.order * RESOLUTION_SETTINGS.finer_unknowns_ratio)
     if order <= RESOLUTION_SETTINGS.max_order:
         return Resolution(resolution.element_count, order)
-    element_count = ceil(resolution.element_count * RESOLUTION_SETTINGS.refinement_ratio)
-    node_count = RESOLUTION_SETTINGS.refinement_ratio * resolution.element_count * resolution.order
+    element_count = ceil(resolution.element_count * RESOLUTION_SETTINGS.finer_unknowns_ratio)
+    node_count = RESOLUTION_SETTINGS.finer_unknowns_ratio * resolution.element_count * resolution.order
     return Resolution(element_count, ceil(node_count / element_count))

@@ -116,7 +116,7 @@ class ArmPencil:
         theta = np.where(y < 0, -1, y + n)
         s = 2 * n + np.arange(n).reshape(self.mesh.element_count, self.order)
         pairs = [(y, s), (s, y), (theta, theta), (y, theta), (theta, s), (s, theta)]
-        keys = [_flat_entry_positions(rows, columns, size) for rows, columns in pairs]
+        keys = [_row_major_positions(rows, columns, size) for rows, columns in pairs]
         # The last key is the entry of the follower force at the tip: row y(1), column theta(1).
         keys += [(s * size + s).ravel(), np.array([(n - 1) * size + 2 * n - 1])]
         all_keys = np.concatenate(keys)
@@ -128,9 +128,7 @@ class ArmPencil:
         return rows.astype(np.int32), columns.astype(np.int32), positions
 
 
-def _flat_entry_positions(
-    rows: NDArray[np.int64], columns: NDArray[np.int64], size: int
-) -> NDArray[np.int64]:
+def _row_major_positions(rows: NDArray[np.int64], columns: NDArray[np.int64], size: int) -> NDArray[np.int64]:
     """row * size + column of each entry of element blocks, flat; -1 if the row or column is the clamp. rows:
     (elements, n). columns: (elements, m). size: number of unknowns."""
     keys = rows[:, :, None] * size + columns[:, None, :]

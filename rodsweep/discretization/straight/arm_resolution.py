@@ -6,10 +6,10 @@ from math import ceil, hypot, log, pi
 import numpy as np
 
 from ...arrays import Array
-from ...model.dispersion import most_amplified_local_waves, sampled_arm, wave_numbers_of_growth_at_ends
+from ...model.dispersion import local_growths_and_wave_numbers, sampled_arm, wave_numbers_of_growth_at_ends
 from ...model.rod import Rod
 from ..elements.elements import Elements
-from ..elements.resolution import RESOLUTION_SETTINGS, max_element_count, required_order
+from ..elements.resolution import RESOLUTION_SETTINGS, first_excessive_element_count, required_order
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,8 +40,8 @@ def arm_mesh(rod: Rod, mode_count: int, accuracy: float) -> ArmMesh:
     """The mesh expected to give `mode_count` leading eigenvalues of the arm `rod` to the relative
     `accuracy`."""
     weights = sampled_arm(rod).weights
-    _, amplified_q = most_amplified_local_waves(rod)
-    unloaded_q = (mode_count - RESOLUTION_SETTINGS.mode_offset) * pi * _relative_wave_number(rod)
+    _, amplified_q = local_growths_and_wave_numbers(rod)
+    unloaded_q = (mode_count - RESOLUTION_SETTINGS.mode_offset) * pi * _wave_number_over_mean(rod)
     wave_numbers = np.hypot(RESOLUTION_SETTINGS.wave_safety_factor * amplified_q, unloaded_q)
     elements = _elements_for_wave(rod, wave_numbers * weights, accuracy, RESOLUTION_SETTINGS.max_order)
     return ArmMesh(elements.edges, elements.order)
@@ -64,7 +64,7 @@ def _inner_edges(length: float, order: int, wave_number: float) -> Array:
     """Distances from an end of the arm, increasing, at which the element of this end is divided, (n,): none
     if elements of the order `order` and the length `length` represent the wave number."""
     ratio = ARM_RESOLUTION_SETTINGS.end_length_ratio
-    wave_count = wave_number * length / (RESOLUTION_SETTINGS.max_waves_per_node * order)
+    wave_count = wave_number * length / (RESOLUTION_SETTINGS.max_wave_number_per_node * order)
     count = ceil(log(max(wave_count, 1.0), ratio))
     return length * ratio ** -np.arange(count, 0, -1.0)
 
@@ -72,13 +72,13 @@ def _inner_edges(length: float, order: int, wave_number: float) -> Array:
 def arm_elements(rod: Rod, wave_number: float, accuracy: float, max_order: int | None = None) -> Elements:
     """Elements that resolve a field along an arm with the mean wave number `wave_number`, in 1/L, to a
     relative accuracy. max_order: of an element, `RESOLUTION_SETTINGS.max_order` by default."""
-    wave_numbers = wave_number * _relative_wave_number(rod)
+    wave_numbers = wave_number * _wave_number_over_mean(rod)
     return _elements_for_wave(
         rod, wave_numbers * sampled_arm(rod).weights, accuracy, max_order or RESOLUTION_SETTINGS.max_order
     )
 
 
-def _relative_wave_number(rod: Rod) -> Array:
+def _wave_number_over_mean(rod: Rod) -> Array:
     """Wave number at each sample of an arm, divided by the mean wave number, (points,), for a bending wave of
     the same frequency along the arm."""
     _, weights, coefficients = sampled_arm(rod)
@@ -91,7 +91,7 @@ def _elements_for_wave(rod: Rod, phases: Array, accuracy: float, max_order: int)
     sample interval, |q| times length, (n,). max_order: maximum order of an element."""
     breaks = rod.material.breaks
     phases_between_breaks = phases.reshape(len(breaks) - 1, -1).sum(axis=1)
-    max_count = max_element_count(max_order)
+    max_count = first_excessive_element_count(max_order)
     edges = [0.0]
     max_element_phase = 0.0
     is_too_fine = False
@@ -115,21 +115,21 @@ def _elements_for_wave(rod: Rod, phases: Array, accuracy: float, max_order: int)
 def finer_arm_mesh(rod: Rod, mesh: ArmMesh) -> ArmMesh:
     """The next finer mesh of an arm: the order is multiplied by 4/3 or, if the result exceeds the maximum
     order, the number of elements by 2 and the order by 2/3."""
-    order = ceil(mesh.order * RESOLUTION_SETTINGS.refinement_ratio)
+    order = ceil(mesh.order * RESOLUTION_SETTINGS.finer_unknowns_ratio)
     if order <= RESOLUTION_SETTINGS.max_order:
         return ArmMesh(mesh.edges, order)
     edges = [0.0]
     for start, stop in zip(mesh.edges[:-1], mesh.edges[1:], strict=True):
         edges += _graded_edges(rod, start, stop, 2)
-    return ArmMesh(tuple(edges), ceil(RESOLUTION_SETTINGS.refinement_ratio / 2 * mesh.order))
+    return ArmMesh(tuple(edges), ceil(RESOLUTION_SETTINGS.finer_unknowns_ratio / 2 * mesh.order))
 
 
 def _element_count_for(phase: float, accuracy: float, max_order: int) -> int:
     """Number of elements of the order `max_order` that resolve an interval in which the phase of the wave
-    grows by `phase`, to the relative accuracy `accuracy`. At most `max_element_count`, with which the mesh
-    has too many unknowns."""
+    grows by `phase`, to the relative accuracy `accuracy`. At most `first_excessive_element_count`, with which
+    the mesh has too many unknowns."""
     count = 1
-    max_count = max_element_count(max_order)
+    max_count = first_excessive_element_count(max_order)
     while count < max_count and required_order(phase / count, accuracy) > max_order:
         count += 1
     return count

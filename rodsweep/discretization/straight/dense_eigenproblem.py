@@ -76,7 +76,7 @@ def _points_moved_inside_elements(mesh: Elements, points: Array) -> Array:
         position = mesh.edges[e] + mesh.lengths[e] * (coordinates + 1) / 2
         points_inside[indices] = np.clip(
             position,
-            mesh.edges[e] + ELEMENT_SETTINGS.end_distance,
-            mesh.edges[e + 1] - ELEMENT_SETTINGS.end_distance,
+            mesh.edges[e] + ELEMENT_SETTINGS.one_sided_node_offset,
+            mesh.edges[e + 1] - ELEMENT_SETTINGS.one_sided_node_offset,
         )
     return points_inside

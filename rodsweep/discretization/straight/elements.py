@@ -61,7 +61,7 @@ class StraightElements:
         coefficients = self.form.rod.balance_coefficients
         E = coefficients.rest_strain[:, None]
         Sigma = coefficients.tip_stress[:, None]
-        WD, W = self._element_matrices
+        WD, W = self._element_derivative_and_weights
         # Local unknowns: stresses at all nodes, then velocities; `half` components of each.
         component_count = len(self.components)
         nodes = np.arange(len(W))
@@ -82,15 +82,16 @@ class StraightElements:
     def M(self) -> Array:
         """Contribution of one element to the diagonal of the matrix M of the mixed form, (local,)."""
         stresses = np.outer(
-            self.form.rod.balance_coefficients.compliance[list(self.components)], self._element_matrices[1]
+            self.form.rod.balance_coefficients.compliance[list(self.components)],
+            self._element_derivative_and_weights[1],
         )
         return np.concatenate([stresses, 0 * stresses]).ravel()
 
     @property
-    def _element_matrices(self) -> tuple[Array, Array]:
+    def _element_derivative_and_weights(self) -> tuple[Array, Array]:
         """Returns (W D, W) of one element. W: quadrature weights, scaled to the length of the element,
         (nodes,). W D: diag(W) times the differentiation matrix D of the element, (nodes, nodes)."""
-        WD, w = _weighted_derivative_matrix(self.form.mesh.order)
+        WD, w = _reference_derivative_and_weights(self.form.mesh.order)
         return WD, w / (2 * self.form.mesh.element_count)
 
     def times_A(self, x: Values) -> Values:
@@ -101,7 +102,7 @@ class StraightElements:
         """Product M x, (unknowns,)."""
         return self.assemble(self.gather(x) * self.M)
 
-    def product_magnitude(self, p: Values, q: Values) -> float:
+    def A_product_magnitude(self, p: Values, q: Values) -> float:
         """The number |p| |A| |q|, with the modulus of every entry. The rounding error of p A q is about
         machine epsilon times this number. p, q: (unknowns,)."""
         return float(np.sum(np.abs(self.gather(p)) * (np.abs(self.gather(q)) @ np.abs(self.A).T)))
@@ -235,7 +236,7 @@ def solve_factorised(factors: LU, right_side: Values, adjoint: bool = False) -> 
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
-def _weighted_derivative_matrix(order: int) -> tuple[Array, Array]:
+def _reference_derivative_and_weights(order: int) -> tuple[Array, Array]:
     """Returns (W D, W) on the element [-1, 1]. W: quadrature weights, (order + 1,). W D: diag(W) times the
     differentiation matrix, (order + 1, order + 1), which is the same for elements of every length."""
     x, w = gauss_lobatto_rule(order)

@@ -11,13 +11,13 @@ import numpy as np
 
 from ...arrays import Array
 from ...model.balance import Values
-from ...model.material.laws import LINEAR, Law
+from ...model.material.laws import LINEAR_CONSTITUTIVE_LAW, Law
 from ...model.rod import Rod
 from ..nodal_rod import NodalRod
 
 
 @dataclass(frozen=True)
-class ForceDerivatives:
+class DerivativesByForce:
     """Derivatives with respect to the force F at all nodes: of the stretch nu of the straight rod,
     (nodes + 1,), and of `LawDerivativesAtRest.tangent`, (3, nodes + 1)."""
 
@@ -30,12 +30,12 @@ class LawDerivativesAtRest:
     """Derivatives of the law s(S) at S = 0, at all nodes of a mesh.
 
     is_nonlinear: False for the linear law, s(S) = S. tangent: diagonal of ds/dS, (3, nodes + 1).
-    force_derivatives: derivatives with respect to F. N11, N33, M13: second derivatives of N and M with
+    derivatives_by_force: derivatives with respect to F. N11, N33, M13: second derivatives of N and M with
     respect to S1 and S3, (nodes + 1,). N111, N133, M113, M333: third derivatives, (nodes + 1,)."""
 
     is_nonlinear: bool
     tangent: Array
-    force_derivatives: ForceDerivatives
+    derivatives_by_force: DerivativesByForce
     N11: Array
     N33: Array
     M13: Array
@@ -77,13 +77,13 @@ def law_derivatives_at_rest(rod: Rod, nodal: NodalRod) -> LawDerivativesAtRest:
     # The force compresses the straight arm: d nu/dF = -c1/(dN/dS1).
     nu_derivative = -c1 / stiffness
     ones = np.ones_like(nu)
-    force_derivatives = ForceDerivatives(
+    derivatives_by_force = DerivativesByForce(
         nu_derivative, np.array([slope * nu_derivative, 0 * ones, bending_slope * nu_derivative])
     )
     derivatives = LawDerivativesAtRest(
-        is_nonlinear=law is not LINEAR,
+        is_nonlinear=law is not LINEAR_CONSTITUTIVE_LAW,
         tangent=np.array([stiffness, ones, bending]),
-        force_derivatives=force_derivatives,
+        derivatives_by_force=derivatives_by_force,
         N11=slope * c1,
         N33=bending_slope * c3,
         M13=bending_slope * c1,
@@ -116,8 +116,8 @@ def _write_derivatives_at_jumps(derivatives: LawDerivativesAtRest, law: Law, nod
     ):
         # Components 0 and 2 of the stress; the shear component 1 is linear in every law.
         derivatives.tangent[2 * component, nodes] = value
-        derivatives.force_derivatives.tangent[2 * component, nodes] = force_derivative
-    derivatives.force_derivatives.nu[nodes] = (means * nu_derivative).sum(axis=-1)
+        derivatives.derivatives_by_force.tangent[2 * component, nodes] = force_derivative
+    derivatives.derivatives_by_force.nu[nodes] = (means * nu_derivative).sum(axis=-1)
     derivatives.N11[nodes] = second[:, 0, 0, 0]
     derivatives.N33[nodes] = second[:, 0, 1, 1]
     derivatives.M13[nodes] = second[:, 1, 0, 1]

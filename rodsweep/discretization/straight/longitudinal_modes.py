@@ -102,14 +102,14 @@ def _displacement_matrix(rod: Rod, edges: Array, order: int) -> Array:
     diagonal = np.arange(element_count)
     # Within the element of the point, the integral ends at the point, so Gauss weights of the full element do
     # not apply.
-    to_points = legendre.legval(points, _legendre_series_of_integrals(order)).T
+    to_points = legendre.legval(points, _legendre_coefficients_of_lagrange_integrals(order)).T
     integrals[diagonal, :, diagonal, :] = half_lengths[:, :, None] * to_points
     matrix: Array = drag_scale[:, None] * integrals.reshape(len(drag_scale), len(strain_scale)) / strain_scale
     return matrix
 
 
 @cache
-def _legendre_series_of_integrals(order: int) -> Array:
+def _legendre_coefficients_of_lagrange_integrals(order: int) -> Array:
     """Legendre coefficients of the integrals from -1 of the Lagrange polynomials through the Gauss points,
     (order + 1, order)."""
     nodes, weights = gauss_legendre_rule(order)

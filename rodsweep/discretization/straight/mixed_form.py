@@ -56,7 +56,7 @@ class MixedForm:
         return plane_layout(self.mesh.node_count, tuple(range(SE2_DIMENSION)))
 
     @property
-    def stress_count(self) -> int:
+    def unknown_stress_count(self) -> int:
         """Number of unknown stresses."""
         return plane_layout(self.mesh.node_count).unknown_count
 
@@ -95,11 +95,11 @@ class MixedForm:
     def A(self) -> Array:
         """The matrix A of the linear terms, (unknowns, unknowns)."""
         N = self.mesh.node_count
-        stresses = slice(self.stress_count)
-        velocities = slice(self.stress_count, None)
+        stresses = slice(self.unknown_stress_count)
+        velocities = slice(self.unknown_stress_count, None)
         WD = -self.mesh.matrices.weak_derivative.T
         identity = np.eye(SE2_DIMENSION)
-        A = self._coupling_matrix()
+        A = self._A_without_derivative_and_drag()
         A[stresses, velocities] -= np.kron(identity, WD.T[:N])
         A[velocities, stresses] += np.kron(identity, WD[:, :N]) * self.law_derivatives.tangent[:, :N].ravel()
         A[velocities, velocities] -= np.diag((self.nodal_rod.drag * self.mesh.quadrature).ravel())
@@ -109,13 +109,13 @@ class MixedForm:
         """Product (dA/dF) X for states X, (..., unknowns): dA/dF is the derivative of A by the force."""
         S, V = self.stresses_and_velocities(X)
         W = self.mesh.quadrature
-        force_derivatives = self.law_derivatives.force_derivatives
-        E = axial_field(force_derivatives.nu)
-        dE = broadcast_to_field(force_derivatives.tangent, S) * S
+        derivatives_by_force = self.law_derivatives.derivatives_by_force
+        E = axial_field(derivatives_by_force.nu)
+        dE = broadcast_to_field(derivatives_by_force.tangent, S) * S
         Sigma = axial_field(-np.ones(len(W)))
         rest_strain = broadcast_to_field(self.nodal_rod.rest_strain, S)
         # F enters through the strain at rest, the tangent at rest, and Sigma1 = -F.
-        forces = coad(broadcast_to_field(E, S), self._linearised_law(S)) + coad(rest_strain, dE)
+        forces = coad(broadcast_to_field(E, S), self._linearised_stress(S)) + coad(rest_strain, dE)
         forces = forces + coad(self._compliance_times_stress(S), broadcast_to_field(Sigma, S))
         return self.state(W * ad(broadcast_to_field(E, V), V), W * forces + self._weighted_derivative(dE))
 
@@ -146,7 +146,7 @@ class MixedForm:
         CS = self._compliance_times_stress(S)
         CT = self._compliance_times_stress(T)
         W = self.mesh.quadrature
-        forces: Values = W * (coad(CS, self._linearised_law(T)) + coad(CT, self._linearised_law(S)))
+        forces: Values = W * (coad(CS, self._linearised_stress(T)) + coad(CT, self._linearised_stress(S)))
         if self.law_derivatives.is_nonlinear:
             second_derivative = self.law_derivatives.second_derivative_form(S, T)
             forces = (
@@ -175,7 +175,7 @@ class MixedForm:
         """The strain C S, relative to the straight rod, at all nodes, (3, ..., nodes + 1)."""
         return broadcast_to_field(self.nodal_rod.compliance, S) * S
 
-    def _linearised_law(self, S: Values) -> Values:
+    def _linearised_stress(self, S: Values) -> Values:
         """The law s(S) to first order in S, at all nodes, (3, ..., nodes + 1)."""
         return broadcast_to_field(self.law_derivatives.tangent, S) * S
 
@@ -183,7 +183,7 @@ class MixedForm:
         """W D times a field at all nodes, both (3, ..., nodes + 1)."""
         return field @ -self.mesh.matrices.weak_derivative
 
-    def _coupling_matrix(self) -> Array:
+    def _A_without_derivative_and_drag(self) -> Array:
         """Matrix of the terms of A without D and drag, (unknowns, unknowns). They are W ad_E V in the
         equations of S, and W (ad*_E T S + ad*_{C S} Sigma) in the equations of V; T: tangent of the law."""
         N = self.mesh.node_count
@@ -193,8 +193,8 @@ class MixedForm:
         C = self.nodal_rod.compliance[:, None, :N]
         T = self.law_derivatives.tangent[:, None, :N]
         Sigma = self.nodal_rod.tip_stress[:, None, None]
-        s = np.arange(self.stress_count).reshape(SE2_DIMENSION, N)
-        v = np.arange(self.stress_count, self.unknown_count).reshape(SE2_DIMENSION, N + 1)[:, :N]
+        s = np.arange(self.unknown_stress_count).reshape(SE2_DIMENSION, N)
+        v = np.arange(self.unknown_stress_count, self.unknown_count).reshape(SE2_DIMENSION, N + 1)[:, :N]
         matrix = np.zeros((self.unknown_count, self.unknown_count))
         # The tip contributes nothing: s = 0, and E enters only the equation of S(1), which is not solved.
         matrix[s[:, None], v[None]] = W * ad(E, identity)

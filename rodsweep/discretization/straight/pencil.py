@@ -42,8 +42,9 @@ class PencilNormSettings(KernelConstants):
     no digits below 1e-8."""
     min_angle_weight: float = 1e-4
     """Minimum weight of theta in the norm. The weight sqrt(gamma3) would tend to 0 for gamma3 -> 0."""
-    min_tip_displacement: float = 1e-10
-    """A mode is normalised to y(1) = 1 if |y(1)| > min_tip_displacement * max(|y|, |theta|) of all nodes."""
+    min_relative_tip_displacement: float = 1e-10
+    """A mode is normalised to y(1) = 1 if |y(1)| > min_relative_tip_displacement * max(|y|, |theta|) of all
+    nodes."""
 
 
 PENCIL_NORM_SETTINGS = PencilNormSettings()
@@ -143,7 +144,9 @@ def factors_to_unit_tip(y: Complex, theta: Complex) -> Complex:
     theta: the modes at all nodes, (nodes + 1, k)."""
     largest_modulus = np.maximum(np.abs(y).max(axis=0), np.abs(theta).max(axis=0))
     return np.where(
-        np.abs(y[-1]) > PENCIL_NORM_SETTINGS.min_tip_displacement * largest_modulus, 1 / y[-1], COMPLEX_NAN
+        np.abs(y[-1]) > PENCIL_NORM_SETTINGS.min_relative_tip_displacement * largest_modulus,
+        1 / y[-1],
+        COMPLEX_NAN,
     )
 
 

@@ -22,7 +22,7 @@ from ..elements.quadrature import gauss_legendre_rule, gauss_lobatto_rule
 class TipLayerSettings:
     """Settings for the elements that resolve the tip layer."""
 
-    max_length_ratio: float = 4.0
+    max_element_to_layer_ratio: float = 4.0
     """Maximum length of the element at the tip, divided by the layer's thickness. Other elements may be
     longer."""
     max_equal_elements: int = 64
@@ -34,11 +34,11 @@ class TipLayerSettings:
 TIP_LAYER_SETTINGS = TipLayerSettings()
 TIP_LAYER_ORDER = 16
 """Order of the elements of the tip layer. This order resolves exp(kappa u) over a length of
-`TIP_LAYER_SETTINGS.max_length_ratio`/kappa to rounding, because T is returned without an error estimate.
-Order 8 would cause an error of 4e-11 in a numerical abscissa."""
+`TIP_LAYER_SETTINGS.max_element_to_layer_ratio`/kappa to rounding, because T is returned without an error
+estimate. Order 8 would cause an error of 4e-11 in a numerical abscissa."""
 
 
-def tip_layer_ratio(rod: Rod) -> float:
+def tip_angle_moment_ratio(rod: Rod) -> float:
     """T = d(1)/m(1) at the tip of a rod without rotational drag; 0 for a rod with rotational drag or without
     shear. d: difference of the angle and the adjoint angle. m = d'/c3: bending moment of d."""
     if rod.rotational_drag > 0 or rod.c2 == 0:
@@ -59,13 +59,13 @@ def tip_layer_ratio(rod: Rod) -> float:
     # From clamp to tip, because the ratio d/m of everything before acts on an element like a spring.
     for element_stiffness, element_foundation in zip(stiffness, foundation, strict=True):
         K = (slope.T * element_stiffness) @ slope + (value.T * element_foundation) @ value
-        ratio = _layer_ratio_at_right_end(K, ratio)
+        ratio = _angle_moment_ratio_at_right_end(K, ratio)
     return ratio
 
 
-def _layer_ratio_at_right_end(K: Array, left_ratio: float) -> float:
-    """The ratio d/m of `tip_layer_ratio` at the right end of an element. left_ratio: d/m at the left end. K:
-    stiffness matrix of the element, (nodes, nodes)."""
+def _angle_moment_ratio_at_right_end(K: Array, left_ratio: float) -> float:
+    """The ratio d/m of `tip_angle_moment_ratio` at the right end of an element. left_ratio: d/m at the left
+    end. K: stiffness matrix of the element, (nodes, nodes)."""
     # At the clamp (left_ratio = 0) d is not an unknown; otherwise all previous elements act as a spring of
     # stiffness 1/left_ratio.
     if left_ratio == 0:
@@ -91,12 +91,17 @@ def _element_edges(rod: Rod) -> Array:
         float(np.abs(coefficients.g * coefficients.nu / coefficients.c2 * coefficients.c3).max())
     )
     element_count = min(
-        max(1, ceil(inverse_thickness / TIP_LAYER_SETTINGS.max_length_ratio)),
+        max(1, ceil(inverse_thickness / TIP_LAYER_SETTINGS.max_element_to_layer_ratio)),
         TIP_LAYER_SETTINGS.max_equal_elements,
     )
     equal_edges = np.linspace(0.0, 1.0, element_count + 1)
     halving_count = max(
-        0, ceil(np.log2(max(inverse_thickness / TIP_LAYER_SETTINGS.max_length_ratio / element_count, 1.0)))
+        0,
+        ceil(
+            np.log2(
+                max(inverse_thickness / TIP_LAYER_SETTINGS.max_element_to_layer_ratio / element_count, 1.0)
+            )
+        ),
     )
     towards_tip = 1 - 0.5 ** np.arange(1, halving_count + 1) / element_count
     return np.unique(np.concatenate([breaks, equal_edges, towards_tip]))

@@ -54,7 +54,7 @@ class WholeRodMatrices:
         """Product M x, (unknowns,)."""
         return self._scatter(self.M * x[self.state_indices])
 
-    def product_magnitude(self, p: Values, q: Values) -> float:
+    def A_product_magnitude(self, p: Values, q: Values) -> float:
         """The number |p| |A| |q|, with the modulus of every entry. The rounding error of p A q is about
         machine epsilon times this number. p, q: (unknowns,)."""
         return float(np.abs(p[self.state_indices]) @ (abs(self.A) @ np.abs(q[self.state_indices])))

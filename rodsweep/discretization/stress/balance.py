@@ -36,7 +36,7 @@ from ...model.compiled.compilation import compiled
 from ...model.compiled.unrolling import UnrolledOverAlgebra
 from ...model.material.jump import stress_at_jump, stress_parameter_derivative_at_jump
 from ...model.material.stress_strain import (
-    LINEAR_LAW,
+    LINEAR_LAW_NUMBER,
     LocalSection,
     stress_beyond_rest,
     stress_parameter_derivative,
@@ -55,7 +55,7 @@ def write_strains_and_stresses(g: LieAlgebra, x: Array, E: Array, S: Array, c: N
         for a in g.components:
             E[a, i] = c.rest_strain[a, i] + c.compliance[a, i] * s[a]
             S[a, i] = s[a]
-    if c.law != LINEAR_LAW:
+    if c.law != LINEAR_LAW_NUMBER:
         replace_by_law_stresses(S, c)
 
 
@@ -73,7 +73,9 @@ def replace_by_law_stresses(S: Array, c: NodalRod) -> None:
 
 
 @UnrolledOverAlgebra
-def write_forces(g: LieAlgebra, E: Array, S: Array, out: Array, c: NodalRod, m: NodeMatrices) -> None:
+def write_force_densities(
+    g: LieAlgebra, E: Array, S: Array, out: Array, c: NodalRod, m: NodeMatrices
+) -> None:
     """Writes the forces per length D*_E Sigma at all nodes into out, (d, nodes + 1). E, S: strains and
     stresses from `write_strains_and_stresses`, (d, nodes + 1) each."""
     size = len(m.weights)
@@ -130,7 +132,7 @@ def write_balance(g: LieAlgebra, x: Array, V: Array, G: Array, c: NodalRod, m: N
     E = np.empty((g.dimension, size))
     S = np.empty((g.dimension, size))
     write_strains_and_stresses(g, x, E, S, c)
-    write_forces(g, E, S, V, c, m)
+    write_force_densities(g, E, S, V, c, m)
     for i in range(size):
         for a in g.components:
             V[a, i] *= c.mobility[a, i]
@@ -150,7 +152,7 @@ def write_velocity_residuals(g: LieAlgebra, x: Array, out: Array, c: NodalRod, m
     S = np.empty((g.dimension, size))
     force = np.empty((g.dimension, size))
     write_strains_and_stresses(g, x, E, S, c)
-    write_forces(g, E, S, force, c, m)
+    write_force_densities(g, E, S, force, c, m)
     for k in range(len(c.unknown_velocities)):
         a = c.unknown_velocities[k]
         for i in range(size):
@@ -196,14 +198,14 @@ def write_balance_derivative(  # noqa: PLR0913, PLR0917 - a tuple of arrays woul
     S = np.empty((g.dimension, size))
     dS = np.zeros((g.dimension, size))
     write_strains_and_stresses(g, x, E, S, c)
-    if c.law != LINEAR_LAW:
+    if c.law != LINEAR_LAW_NUMBER:
         write_law_derivative(x, dS, change, c)
     for i in range(size):
         s = [x[stress_index(a, i, size - 1)] if i < size - 1 else 0.0 for a in g.components]
         dE = [change.rest_strain[a, i] + change.compliance[a, i] * s[a] for a in g.components]
         # The derivative of Gamma V = D* Sigma at a fixed state: Gamma dV = d(force) - dGamma V.
         force = [-change.drag[a, i] * V[a, i] for a in g.components]
-        if c.law != LINEAR_LAW:
+        if c.law != LINEAR_LAW_NUMBER:
             for j in range(size):
                 for a in g.components:
                     force[a] += m.D[i, j] * dS[a, j]

@@ -36,9 +36,9 @@ class StressFormSettings:
 
 STRESS_FORM_SETTINGS = StressFormSettings()
 
-AXIAL_COMPONENT = (0,)
+AXIAL_COMPONENTS = (0,)
 """Index of the axial velocity v1 among the components of V, as a tuple."""
-OMEGA_COMPONENT = (2,)
+OMEGA_COMPONENTS = (2,)
 """Index of the angular velocity Omega among the components of V, as a tuple."""
 
 
@@ -57,20 +57,20 @@ class StressForm(RodOnMesh):
     nodes.
     """
 
-    keeps_omega: bool = False
+    is_omega_always_unknown: bool = False
     """Whether Omega is an unknown for any rotational drag, so that states of rods with small and with large
     drags can be compared."""
 
     @property
     def is_omega_unknown(self) -> bool:
         """Whether the angular velocity Omega is an unknown."""
-        return self.keeps_omega or has_small_rotational_drag(self.rod)
+        return self.is_omega_always_unknown or has_small_rotational_drag(self.rod)
 
     @property
     def unknown_velocities(self) -> tuple[int, ...]:
         is_axial_velocity_unknown = self.rod.least_axial_drag < STRESS_FORM_SETTINGS.min_eliminated_axial_drag
-        axial = AXIAL_COMPONENT if is_axial_velocity_unknown else ()
-        return (*axial, *(OMEGA_COMPONENT if self.is_omega_unknown else ()))
+        axial = AXIAL_COMPONENTS if is_axial_velocity_unknown else ()
+        return (*axial, *(OMEGA_COMPONENTS if self.is_omega_unknown else ()))
 
     def stresses(self, x: Array) -> Array:
         return self.layout.stresses(x)
@@ -79,16 +79,18 @@ class StressForm(RodOnMesh):
         """States x, (..., unknowns), interpolated to the mesh `target`, (..., unknowns on target)."""
         if self.has_continuous_stresses:
             return self.layout.interpolate(x, interpolation_matrix(self.mesh, target))
-        return self._state_on_mesh(target, self.stresses_on_mesh(target, x), x)
+        return self._states_with_stresses_on_mesh(target, self.stresses_on_mesh(target, x), x)
 
     def increments_on_mesh(self, target: Mesh, increments: Array) -> Array:
         """The `increments` of states, (..., unknowns), mapped linearly to `target`, (..., unknowns on
         target)."""
         if self.has_continuous_stresses:
             return self.states_on_mesh(target, increments)
-        return self._state_on_mesh(target, self.stress_increments_on_mesh(target, increments), increments)
+        return self._states_with_stresses_on_mesh(
+            target, self.stress_increments_on_mesh(target, increments), increments
+        )
 
-    def _state_on_mesh(self, target: Mesh, S: Array, x: Array) -> Array:
+    def _states_with_stresses_on_mesh(self, target: Mesh, S: Array, x: Array) -> Array:
         """States on the mesh `target`, (..., unknowns on target), with the stresses S at all nodes of
         `target`, (3, ..., nodes of target + 1), and the velocities of the states x, (..., unknowns)."""
         # Velocities are continuous where stresses jump, so their interpolation needs no correction.

@@ -20,7 +20,7 @@ from ...model.algebra import LieAlgebra
 from ...model.compiled.compilation import compiled
 from ...model.compiled.unrolling import UnrolledOverAlgebra
 from ...model.material.jump import tangent_at_jump
-from ...model.material.stress_strain import LINEAR_LAW, LocalSection, stress_tangent
+from ...model.material.stress_strain import LINEAR_LAW_NUMBER, LocalSection, stress_tangent
 from ..elements.mesh import NodeMatrices
 from ..nodal_rod import NodalRod
 from ..state_layout import stress_index, velocity_index
@@ -42,7 +42,7 @@ def write_jacobian(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count re
     S = np.empty((g.dimension, size))
     write_strains_and_stresses(g, x, E, S, c)
     _write_linear_law_jacobian(g, (E, S, V), J, tip, c.compliance, c, m)
-    if c.law != LINEAR_LAW:
+    if c.law != LINEAR_LAW_NUMBER:
         P = np.empty(J.shape)
         tip_P = np.empty(tip.shape)
         # With compliances of 0 the strain is fixed, so the derivative is P.
@@ -114,7 +114,7 @@ def _write_velocity_derivatives(
             B[o][b] -= sign * compliance[b, i] * (c.tip_stress[a] + S[a, i])
         for o in g.components:
             for b in g.components:
-                if g.coad_pattern[o][b]:
+                if g.coad_derivative_pattern[o][b]:
                     slopes[o, b, i] = c.mobility[o, i] * B[o][b]
 
 
@@ -147,8 +147,8 @@ def _write_rate_derivatives(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what
         for j in range(n):
             weak_entry = m.weak_derivative[i, j]
             slope = m.D[i, j]
-            for a, b in g.distinct_pairs:
-                coupling = weak_entry * slopes[a, b, j] if g.coad_pattern[a][b] else 0.0
+            for a, b in g.ordered_distinct_pairs:
+                coupling = weak_entry * slopes[a, b, j] if g.coad_derivative_pattern[a][b] else 0.0
                 rows[a][stress_index(b, j, n)] = coupling + (
                     rate_block[a][b] * slope if g.ad_pattern[a][b] else 0.0
                 )
@@ -157,10 +157,10 @@ def _write_rate_derivatives(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what
             diagonal_block = [[0.0 for _ in g.components] for _ in g.components]
             for a, b, o, sign in g.structure_constants:
                 diagonal_block[a][b] += sign * m.weights[i] * compliance[b, i] * V[o, i]
-            for a, o in g.distinct_pairs:
+            for a, o in g.ordered_distinct_pairs:
                 for b in g.components:
                     # Unrolling leaves out pairs that are 0 for every strain.
-                    if g.ad_pattern[a][o] and g.coad_pattern[o][b]:
+                    if g.ad_pattern[a][o] and g.coad_derivative_pattern[o][b]:
                         diagonal_block[a][b] += A[a][o] * slopes[o, b, i]
             for a in g.components:
                 for b in g.components:

@@ -22,7 +22,7 @@ class TipMatrices(NamedTuple):
 
     values_at_gauss_points: interpolation from the nodes of an element to its Gauss points, (m, g).
     angles_at_gauss_points: integrals of nodal polynomials from 0 to the Gauss points, (m, g). gauss_weights:
-    Gauss weights, (g,). element_integrals: integrals of nodal polynomials over the element, (m,).
+    Gauss weights, (g,). nodal_polynomial_integrals: integrals of nodal polynomials over the element, (m,).
     element_lengths: lengths of all elements, (elements,). element_nodes: index of the node of the mesh at
     each node of every element, (m,). element_starts: index in m of the first node of each element, then m,
     (elements + 1,)."""
@@ -30,7 +30,7 @@ class TipMatrices(NamedTuple):
     values_at_gauss_points: Array
     angles_at_gauss_points: Array
     gauss_weights: Array
-    element_integrals: Array
+    nodal_polynomial_integrals: Array
     element_lengths: Array
     element_nodes: IntegerArray
     element_starts: IntegerArray
@@ -46,7 +46,7 @@ def tip_matrices(mesh: Elements) -> TipMatrices:
         angles_at_gauss_points=np.concatenate([m.angles_at_gauss_points for m in matrices]),
         # Integrals from 0 to the last node span the whole element: they are the Gauss weights.
         gauss_weights=np.ascontiguousarray(matrices[0].integrals_to_nodes[:, -1]),
-        element_integrals=np.concatenate([m.angles_at_nodes[:, -1] for m in matrices]),
+        nodal_polynomial_integrals=np.concatenate([m.angles_at_nodes[:, -1] for m in matrices]),
         element_lengths=np.ascontiguousarray(mesh.lengths),
         element_nodes=mesh.element_nodes,
         element_starts=np.append(0, np.cumsum([order + 1 for order in mesh.orders])),
@@ -84,8 +84,8 @@ def write_tip_motion(strains: Array, rates: Array, m: TipMatrices, tip: Array, v
                 dx += w * (cos * fields[3, g] - sin * fields[4, g]) - v * fields[5, g]
                 dy += w * (sin * fields[3, g] + cos * fields[4, g]) + u * fields[5, g]
             for j in range(m.element_starts[e], m.element_starts[e + 1]):
-                theta += length * m.element_integrals[j] * strains[2, k, j]
-                angle_rate += length * m.element_integrals[j] * rates[2, k, j]
+                theta += length * m.nodal_polynomial_integrals[j] * strains[2, k, j]
+                angle_rate += length * m.nodal_polynomial_integrals[j] * rates[2, k, j]
         tip[k, 0] = x
         tip[k, 1] = y
         tip[k, 2] = theta

@@ -16,14 +16,14 @@ FOLD_COLOUR, TORUS_COLOUR = "#8a63d2", "#2a9d5c"
 """Colours of curves of folds and of torus points of cycles."""
 TICK_COUNT = 5
 """Desired number of tick labels along the lower axis."""
-PLAIN_DIGITS = 7
+MAX_PLAIN_POWER = 7
 """Tick labels below 10 to this power are written without an exponent."""
 NO_TITLE = "\u00a0"
 """Blank line of a title (a no-break space). Bokeh never shows the title of a figure first drawn with an empty
 title."""
-TITLE_WIDTH = 46
+MAX_TITLE_CHARACTERS = 46
 """Largest number of characters per line of a title; a longer line would be cut in the narrowest figure."""
-AXIS_ALPHAS = (
+AXIS_ALPHA_NAMES = (
     "axis_line_alpha",
     "axis_label_text_alpha",
     "major_label_text_alpha",
@@ -50,7 +50,7 @@ def new_figure(x_label: str, y_label: str, tooltips: Any = None, **options: Any)
     # half a pixel beside its layout.
     plot.stylesheets = [InlineStyleSheet(css=":host { clip-path: inset(2px); }")]
     plot.xaxis.ticker.desired_num_ticks = TICK_COUNT
-    plot.xaxis.formatter.power_limit_high = PLAIN_DIGITS
+    plot.xaxis.formatter.power_limit_high = MAX_PLAIN_POWER
     return plot
 
 
@@ -108,8 +108,8 @@ class Card:
         self.root = Column(self.message, figure, name=name, sizing_mode="stretch_width")
 
     def set_title(self, text: str) -> None:
-        """Sets the title of the figure, wrapped to lines of at most TITLE_WIDTH characters."""
-        lines = wrap(text, TITLE_WIDTH)
+        """Sets the title of the figure, wrapped to lines of at most MAX_TITLE_CHARACTERS characters."""
+        lines = wrap(text, MAX_TITLE_CHARACTERS)
         self.figure.title.text = "\n".join(lines + [NO_TITLE] * (self.title_lines - len(lines)))
 
     def show_sentence_instead(self, sentence: str) -> None:
@@ -134,4 +134,4 @@ class Card:
         """Makes the axes transparent or opaque. Removing and adding axes instead would move the frame and
         leave parts of an earlier title. alpha: opacity, 0 or 1."""
         for axis in self.figure.axis:
-            axis.update(**dict.fromkeys(AXIS_ALPHAS, alpha))
+            axis.update(**dict.fromkeys(AXIS_ALPHA_NAMES, alpha))

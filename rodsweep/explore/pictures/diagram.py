@@ -23,7 +23,7 @@ CYCLE_CURVE_LOOKS = {
     "torus": ("torus points", card.TORUS_COLOUR, "dashed"),
 }
 """(legend entry, colour, line style) of curves of folds and of torus points of cycles, by kind of point."""
-DARKEST_COUNT = 6
+DARKEST_UNSTABLE_COUNT = 6
 """Cells with this number of unstable modes, or more, have the darkest colour."""
 
 
@@ -75,7 +75,9 @@ def stability_colour(unstable_count: int) -> tuple[str, float]:
         return card.NEUTRAL_COLOUR, 0.55 if unstable_count == CRUSHED_CODE else 0.25
     if unstable_count == 0:
         return card.STABLE_COLOUR, 0.18
-    return card.UNSTABLE_COLOUR, 0.2 + 0.5 * min(unstable_count, DARKEST_COUNT) / DARKEST_COUNT
+    return card.UNSTABLE_COLOUR, 0.2 + 0.5 * min(
+        unstable_count, DARKEST_UNSTABLE_COUNT
+    ) / DARKEST_UNSTABLE_COUNT
 
 
 def unstable_count_words(unstable_count: int) -> str:

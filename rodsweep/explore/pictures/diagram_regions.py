@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...arrays import Array
-from ...post.figures.phase_diagram import END_CRUSHING_RATIO
+from ...post.figures.phase_diagram import CURVE_END_CRUSHING_RATIO
 from ...post.figures.stability.regions import PIXEL_COUNT, ClassifiedPoints, DrawnPlane, pixel_classes
 from ..solving.diagrams import CRUSHED_CODE, UNKNOWN_CODE
 
@@ -50,7 +50,7 @@ def region_table(answer: dict[str, Any]) -> RegionTable | None:
             plane.fractions_of_axes(answer["curve_x"][is_of_curve], np.log(answer["curve_y"][is_of_curve]))
         )
     ratio = _crushing_ratio(plane, np.log(y), answer["crushing_load"])
-    pixels = pixel_classes(computed, row_points, curves, ratio > END_CRUSHING_RATIO, UNKNOWN_CODE)
+    pixels = pixel_classes(computed, row_points, curves, ratio > CURVE_END_CRUSHING_RATIO, UNKNOWN_CODE)
     pixels = np.where(ratio < 1, pixels, CRUSHED_CODE)
     column_edges = np.linspace(x[0], x[-1], PIXEL_COUNT + 1)
     row_edges = np.geomspace(y[0], y[-1], PIXEL_COUNT // PIXELS_PER_ROW + 1)

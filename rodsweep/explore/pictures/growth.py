@@ -7,7 +7,7 @@ from bokeh.models import HoverTool, Range1d, Span
 
 from ..slider_scales import PictureAxis
 from . import card
-from .numbers import SI_NAMES
+from .numbers import SI_NAME_BY_VARIABLE
 
 NAMED_THRESHOLDS = ("F_onset", "F_hopf", "F_restabilization")
 """Variables of the thresholds in the title."""
@@ -65,7 +65,7 @@ class GrowthPicture:
     def show_thresholds(self, answer: dict[str, Any], load: PictureAxis) -> None:
         """Draws the thresholds of the answer `answer`, and writes the first threshold of each kind into the
         title."""
-        frequencies = answer.get(SI_NAMES["crossing_frequency"], answer["crossing_frequency"])
+        frequencies = answer.get(SI_NAME_BY_VARIABLE["crossing_frequency"], answer["crossing_frequency"])
         rows = [
             (F * load.factor, *THRESHOLD_LINE_LOOKS[kind], frequency)
             for F, kind, frequency in zip(answer["crossing_F"], answer["kinds"], frequencies, strict=True)
@@ -82,7 +82,7 @@ class GrowthPicture:
 
 def threshold_title(answer: dict[str, Any], load: PictureAxis) -> str:
     """Title with the first threshold of each kind in the answer `answer`, in the unit of the axis `load`."""
-    formats = ARM_THRESHOLD_FORMATS if SI_NAMES["F_hopf"] in answer else ROD_THRESHOLD_FORMATS
+    formats = ARM_THRESHOLD_FORMATS if SI_NAME_BY_VARIABLE["F_hopf"] in answer else ROD_THRESHOLD_FORMATS
     texts = [
         value_format.format(load.factor * float(answer[name]))
         for value_format, name in zip(formats, NAMED_THRESHOLDS, strict=True)

@@ -17,7 +17,7 @@ from . import card
 
 PERIOD_SECONDS = 2.0
 """Duration of one period of a cycle on the screen, in seconds."""
-END_WORDS = {
+REACHED_STATE_CLAUSES = {
     "cycle": "it beats",
     "straight": "it comes to rest",
     "torus": "it beats quasiperiodically (two frequencies)",
@@ -132,7 +132,7 @@ class MovingArmPicture:
         self._draw_path(x, y, is_closed=False)
         self._fit_axes(np.concatenate([x, shape_x]), np.concatenate([y, shape_y]))
         position = ", ".join(f"{coordinate * factor:.3g}" for coordinate in answer["tip"])
-        end = END_WORDS.get(answer["status"], answer["sentence"])
+        end = REACHED_STATE_CLAUSES.get(answer["status"], answer["sentence"])
         beginning_text = "" if answer["is_whole"] else "; only the beginning of the motion is shown"
         self.card.set_title(f"Let go at ({position}) {self.length.label}: {end}{beginning_text}")
 

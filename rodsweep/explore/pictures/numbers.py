@@ -33,9 +33,9 @@ HEADINGS_BY_KIND = {"spectrum": "Leading mode", "cycle": "Cycle", "thresholds": 
 """Heading above the rows of each kind of request."""
 TABLE_DIGITS = 8
 """Number of significant digits in the table."""
-TABLE_UNITS = {"m": ("cm", 1e2), "Pa": ("kPa", 1e-3), "W": ("mW", 1e3)}
+TABLE_UNIT_BY_SI_UNIT = {"m": ("cm", 1e2), "Pa": ("kPa", 1e-3), "W": ("mW", 1e3)}
 """(unit shown in the table, conversion factor), by SI unit."""
-SI_NAMES = {
+SI_NAME_BY_VARIABLE = {
     "growth_rate": "growth_rate_si", "frequency": "frequency_hz",
     "crossing_frequency": "crossing_frequency_hz", "F_onset": "pressure_onset",
     "F_hopf": "pressure_hopf",
@@ -85,9 +85,9 @@ def number_text(value: Any, factor: float = 1.0) -> str:
 def _table_rows(kind: str, answer: dict[str, Any]) -> str:
     row_texts = []
     for name, meaning in ROW_LABELS_BY_KIND[kind].items():
-        if name not in answer or SI_NAMES.get(name, f"{name}_si") in answer:
+        if name not in answer or SI_NAME_BY_VARIABLE.get(name, f"{name}_si") in answer:
             continue
-        unit, factor = TABLE_UNITS.get(answer["units"][name], (answer["units"][name], 1.0))
+        unit, factor = TABLE_UNIT_BY_SI_UNIT.get(answer["units"][name], (answer["units"][name], 1.0))
         if text := number_text(answer[name], factor):
             unit_text = "" if unit == "1" else escape(unit)
             row_texts.append(

@@ -6,7 +6,7 @@ import numpy as np
 from bokeh.models import Range1d
 
 from . import card
-from .numbers import SI_NAMES
+from .numbers import SI_NAME_BY_VARIABLE
 
 
 class SpectrumPicture:
@@ -29,7 +29,9 @@ class SpectrumPicture:
         """Draws the eigenvalues of `answer`, an answer of the task `spectrum`; if no eigenvalue is known,
         shows the meaning of the status instead."""
         own_names = ("growth_rate", "frequency")
-        names = [SI_NAMES[name] if SI_NAMES[name] in answer else name for name in own_names]
+        names = [
+            SI_NAME_BY_VARIABLE[name] if SI_NAME_BY_VARIABLE[name] in answer else name for name in own_names
+        ]
         growth, frequency = (answer[name] for name in names)
         is_finite = np.isfinite(growth)
         if not is_finite.any():

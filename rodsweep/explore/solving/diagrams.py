@@ -12,8 +12,8 @@ from ...api.sweeping import sweep
 from ...errors import InputError
 from ...model.arm.quantities import QUANTITIES
 from ...model.units import quantity_in_si
-from ..state import MATERIAL_CHOICES, PageState, float_or_text
-from .region_bounds import region_bounds
+from ..state import MATERIAL_SECTION_BY_LAW, PageState, float_or_text
+from .region_counts import region_counts
 
 Dataset = Any
 """An xarray.Dataset, or one of its arrays."""
@@ -27,13 +27,13 @@ LOAD_COUNT = 121
 thresholds on this row."""
 ARM_ROW_COUNT = 12
 """Number of values of the second quantity of the diagram, for arms."""
-ARM_SPAN_RATIO = 2.0
-"""The values of an arm's second quantity extend from 1/ARM_SPAN_RATIO to ARM_SPAN_RATIO times the current
-value; the ratio is small, so that all arms are slender."""
+ARM_MAX_OVER_CURRENT = 2.0
+"""The values of an arm's second quantity extend from 1/ARM_MAX_OVER_CURRENT to ARM_MAX_OVER_CURRENT times the
+current value; the ratio is small, so that all arms are slender."""
 CACHED_DIAGRAM_COUNT = 8
 """Number of solved diagrams that a solver process keeps, some 100 kB each: the search of folds and torus
 points adds to the diagram that is drawn."""
-CYCLE_ACCURACY = 1e-4
+DIAGRAM_CYCLE_ACCURACY = 1e-4
 """Relative error of the cycles between special points; the diagram does not show these cycles. For the first
 rod of the page and F up to 200, the default error of 1e-6 takes three times as long, and changes the curves
 of folds and torus points by 2e-8 at most."""
@@ -41,9 +41,9 @@ UNKNOWN_CODE = -1
 """Value of `unstable_count` at a point whose number of unstable modes is unknown."""
 CRUSHED_CODE = -2
 """Value of `unstable_count` at a point whose load crushes the rod."""
-PARAMETER_SPAN_RATIO = 10.0
-"""The values of a rod's second parameter extend from 1/PARAMETER_SPAN_RATIO to PARAMETER_SPAN_RATIO times the
-current value."""
+PARAMETER_MAX_OVER_CURRENT = 10.0
+"""The values of a rod's second parameter extend from 1/PARAMETER_MAX_OVER_CURRENT to
+PARAMETER_MAX_OVER_CURRENT times the current value."""
 TAPER_RANGE = (0.4, 1.6)
 """(smallest, largest) taper of the diagram. Cones with a smaller taper take minutes."""
 
@@ -76,7 +76,11 @@ def cycle_diagram_answer(state: PageState) -> dict[str, Any]:
             "folds and torus points of cycles are followed for uniform rods of linear material only, "
             "on the tab Rod"
         )
-    cycles = {"cycles": True, "cycle_accuracy": CYCLE_ACCURACY, "gamma1": state.parameters()["gamma1"]}
+    cycles = {
+        "cycles": True,
+        "cycle_accuracy": DIAGRAM_CYCLE_ACCURACY,
+        "gamma1": state.parameters()["gamma1"],
+    }
     diagram = _diagram_of_rods(state, SLOW_ROW_COUNT, cycles)
     curve_variables = {name: values for name, values in diagram.items() if name.startswith("cycle_")}
     return _diagram_of_rods(state) | curve_variables
@@ -100,7 +104,7 @@ def second_parameter_values(state: PageState, row_count: int = ROW_COUNT) -> np.
     value = float_or_text(state.rod[state.second])
     if not (0 < value < np.inf):
         raise InputError(f"{state.second} = {value:g} has no diagram; a diagram needs a finite value above 0")
-    return np.geomspace(value / PARAMETER_SPAN_RATIO, value * PARAMETER_SPAN_RATIO, row_count)
+    return np.geomspace(value / PARAMETER_MAX_OVER_CURRENT, value * PARAMETER_MAX_OVER_CURRENT, row_count)
 
 
 def _fixed_parameters(state: PageState) -> dict[str, Any]:
@@ -141,7 +145,7 @@ def diagram_from_phase_result(data: Dataset, second_parameter: str) -> dict[str,
     axes = {"x": data["F"].values, "y": data[second_parameter].values}
     diagram = axes | {"unstable_count": counts} | _empty_curves()
     if "crossing_at" in data:
-        diagram |= region_bounds(data, second_parameter)
+        diagram |= region_counts(data, second_parameter)
     for curve in ("curve", "cycle_curve"):
         if f"{curve}_F" in data and f"{curve}_{second_parameter}" in data:
             names = {"x": "F", "y": second_parameter, "number": "number"}
@@ -155,7 +159,7 @@ def _diagram_from_thresholds(state: PageState) -> dict[str, Any]:
     from the task `thresholds`."""
     row_values = second_parameter_values(state, SLOW_ROW_COUNT)
     keywords: dict[str, Any] = _fixed_parameters(state) | {state.second: row_values}
-    keywords |= {"material": MATERIAL_CHOICES[state.law]} if MATERIAL_CHOICES[state.law] else {}
+    keywords |= {"material": MATERIAL_SECTION_BY_LAW[state.law]} if MATERIAL_SECTION_BY_LAW[state.law] else {}
     data = sweep("thresholds", **keywords, F_max=state.largest_force(), progress=False)
     data = data.squeeze(
         [name for name in ("k1", "k2", "gamma3", "taper") if name in data.dims and name != state.second]
@@ -169,10 +173,12 @@ def _diagram_of_arms(state: PageState) -> dict[str, Any]:
     quantities = {name: text for name, text in state.arm.items() if name != "pressure"}
     quantity = QUANTITIES[state.second]
     typed_value = quantity_in_si(state.second, state.arm[state.second], quantity.unit, quantity.example)
-    row_values = np.geomspace(typed_value / ARM_SPAN_RATIO, typed_value * ARM_SPAN_RATIO, ARM_ROW_COUNT)
+    row_values = np.geomspace(
+        typed_value / ARM_MAX_OVER_CURRENT, typed_value * ARM_MAX_OVER_CURRENT, ARM_ROW_COUNT
+    )
     arm = state.subject()
     assert isinstance(arm, Arm)
-    arms = quantities | MATERIAL_CHOICES[state.law] | {state.second: list(map(float, row_values))}
+    arms = quantities | MATERIAL_SECTION_BY_LAW[state.law] | {state.second: list(map(float, row_values))}
     data = sweep("thresholds", arm=arms, F_max=state.largest_force(), progress=False)
     data = data.squeeze([dimension for dimension in data.dims if data.sizes[dimension] == 1])
     return diagram_from_arm_result(data, row_values, arm.si.pressure)

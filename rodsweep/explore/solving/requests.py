@@ -19,7 +19,7 @@ from ...arrays import Array
 from ...config.parameters_section import DEFAULT_VALUES_OF_PARAMETERS
 from ...errors import InputError
 from ...post.branch_curves import RodBranches, stability_runs
-from ..state import MATERIAL_CHOICES, PageState, dimensionless_parameters_of
+from ..state import MATERIAL_SECTION_BY_LAW, PageState, dimensionless_parameters_of
 from .diagrams import Dataset, cycle_diagram_answer, diagram_answer, flag_words
 from .tip_release import TipPosition, dragged_equilibrium, motion_film_answer, released_motion_answer
 
@@ -93,7 +93,7 @@ def growth_answer(state: PageState) -> AnswerVariables:
     tau2, unit = (rod_or_arm.tau2, "1/s") if isinstance(rod_or_arm, Arm) else (1.0, "1/tau2")
     rod = dimensionless_parameters_of(rod_or_arm)
     keywords: dict[str, Any] = {name: rod[name] for name in ("k1", "k2", "gamma3", "taper") if name in rod}
-    keywords |= {"material": MATERIAL_CHOICES[state.law]} if MATERIAL_CHOICES[state.law] else {}
+    keywords |= {"material": MATERIAL_SECTION_BY_LAW[state.law]} if MATERIAL_SECTION_BY_LAW[state.law] else {}
     F_max = min(state.largest_force(), MAX_CRUSHING_FRACTION * crushing_force(rod))
     F = np.linspace(0, F_max, GROWTH_FORCE_COUNT)
     data = sweep("spectrum", F=F, **keywords, certify=False, progress=False)
@@ -109,7 +109,7 @@ def cycle_answer(state: PageState) -> AnswerVariables:
     return answer_variables(cycle) | dragged_equilibrium(state, None)
 
 
-def load_answer(state: PageState) -> AnswerVariables:
+def load_force_answer(state: PageState) -> AnswerVariables:
     """The load F in k3/L^2. For a load relative to flutter the flutter threshold is solved first."""
     return {"F": dimensionless_parameters_of(state.subject())["F"]}
 
@@ -146,7 +146,7 @@ def crushing_force(rod: Mapping[str, float]) -> float:
 
 
 STATE_SOLVERS: dict[str, Callable[[PageState], AnswerVariables]] = {
-    "load": load_answer,
+    "load": load_force_answer,
     "spectrum": spectrum_answer,
     "thresholds": thresholds_answer,
     "growth": growth_answer,

@@ -13,7 +13,7 @@ from ...tasks.released_motion import FRAMES_PER_RETURN, ReleasedMotion, bent_sha
 from ...tasks.rod_portrait import PortraitRequest
 from ...tasks.running.job import Job
 from ..slider_scales import length_axis
-from ..state import MATERIAL_CHOICES, PageState, dimensionless_parameters_of
+from ..state import MATERIAL_SECTION_BY_LAW, PageState, dimensionless_parameters_of
 
 TipPosition = tuple[float, float]
 """Coordinates (x, y) of the tip, in units of the arm's length L."""
@@ -70,5 +70,5 @@ def _film_shapes(motion: ReleasedMotion) -> dict[str, Any]:
 
 def _limit_cycle_job(state: PageState, **options: int) -> Job:
     rod = dict(dimensionless_parameters_of(state.subject()))
-    request = PortraitRequest(rod=DescribedRod(parameters=rod, material=MATERIAL_CHOICES[state.law]))
+    request = PortraitRequest(rod=DescribedRod(parameters=rod, material=MATERIAL_SECTION_BY_LAW[state.law]))
     return request.job_of_task("limit_cycle", options, rod["F"])

@@ -15,7 +15,7 @@ from ...errors import InputError
 from ..material.rod_material import DEFAULT_MATERIAL, RodMaterial
 from ..parameters import PARAMETERS
 from ..units import GivenQuantity, load_over_flutter
-from .drag import DRAG_NAMES, Drag
+from .drag import DRAG_ESTIMATE_NAMES, Drag
 from .quantities import LOADS, UNITS, arm_quantity_in_si, quoted_quantity
 from .refusals import refuse_crushed, refuse_out_of_range, refuse_wrong_choices, refuse_wrong_combinations
 from .section import Circle, Rectangle, Section, Tube
@@ -33,8 +33,8 @@ class SlenderArm:
     the bore is closed at the tip and filled with the surrounding fluid at ambient pressure. (law, section): a
     key of `rodsweep.model.material.laws.LAWS`. Load: pressure, force, or no load; positive loads push towards
     the base; "1.2 of flutter" is a multiple of the flutter threshold. density_difference: density of the
-    arm's material minus density of the fluid. drag: name in DRAG_NAMES of the drag estimate that the rod
-    uses. Raises InputError, naming the quantity.
+    arm's material minus density of the fluid. drag: name in DRAG_ESTIMATE_NAMES of the drag estimate that the
+    rod uses. Raises InputError, naming the quantity.
     """
 
     length: GivenQuantity | None = None
@@ -53,7 +53,7 @@ class SlenderArm:
     section: str = DEFAULT_MATERIAL.section
     fluid_density: GivenQuantity = "1000 kg/m^3"
     density_difference: GivenQuantity | None = None
-    drag: str = DRAG_NAMES[0]
+    drag: str = DRAG_ESTIMATE_NAMES[0]
     si: SimpleNamespace = field(init=False, repr=False, compare=False)
     """Quantities of UNITS in SI units; nan if not given. `length`, `young` (base): of segments, if any."""
     si_segments: tuple[ArmSegment, ...] = field(init=False, repr=False, compare=False)
@@ -145,7 +145,7 @@ class SlenderArm:
         """Load divided by the flutter load; None for an absolute load and for an arm without load."""
         return None if self.load is None else load_over_flutter(getattr(self, self.load))
 
-    def mass_at(self, station: Station) -> float:
+    def mass_per_length_at(self, station: Station) -> float:
         """Mass per length at the cross-section `station`, in kg/m: material plus fluid in the bore. Without a
         `density_difference` the material has the density of the fluid."""
         fluid = self.si.fluid_density
@@ -202,7 +202,7 @@ class SlenderArm:
 
     @cached_property
     def drags(self) -> tuple[Drag, ...]:
-        """Estimates of the drag at the base, in the order of DRAG_NAMES."""
+        """Estimates of the drag at the base, in the order of DRAG_ESTIMATE_NAMES."""
         return self.shape.drags_at(self.shape.base, self.si.viscosity)
 
     def drags_along(self, drag: Drag) -> tuple[Drag, ...]:
@@ -215,7 +215,7 @@ class SlenderArm:
     @property
     def chosen_drag(self) -> Drag:
         """Drag of the rod at the base: the drag estimate with the name in the field `drag`."""
-        return self.drags[DRAG_NAMES.index(self.drag)]
+        return self.drags[DRAG_ESTIMATE_NAMES.index(self.drag)]
 
     def gamma3_with(self, drag: Drag) -> float:
         """Dimensionless rotational drag gamma3/(gamma2 L^2) for the drag estimate `drag` (Sec. VI)."""

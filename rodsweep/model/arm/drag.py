@@ -13,14 +13,14 @@ MIN_FORMULA_SLENDERNESS = 10.0
 slender-body theory are then meaningless."""
 
 
-DRAG_NAMES = ("likeliest", "least", "most_rotational", "most_translational", "most")
+DRAG_ESTIMATE_NAMES = ("likeliest", "least", "most_rotational", "most_translational", "most")
 
 """Names of the drag estimates in the order of `drag_estimates`: the likeliest, then the corners of the range.
 `least` has the smallest translational and rotational drag, `most` the largest; `most_rotational` combines the
 largest rotational with the smallest translational drag, `most_translational` the reverse."""
 
-DRAG_RANGE_NAME = "range"
-"""Value of the config key `drag` for a sweep over all estimates in DRAG_NAMES."""
+ALL_DRAG_ESTIMATES_NAME = "range"
+"""Value of the config key `drag` for a sweep over all estimates in DRAG_ESTIMATE_NAMES."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -74,8 +74,8 @@ def lighthill_drag(slenderness: float) -> tuple[float, float]:
 
 
 def drag_estimates(viscosity: float, length: float, radius: float, half_height: float) -> tuple[Drag, ...]:
-    """Drag estimates of one arm, in the order of DRAG_NAMES. viscosity: in Pa s. length, radius, half_height
-    (a, also for an ellipse): in m.
+    """Drag estimates of one arm, in the order of DRAG_ESTIMATE_NAMES. viscosity: in Pa s. length, radius,
+    half_height (a, also for an ellipse): in m.
 
     gamma3 is from pi eta a^2 to 4 pi eta a^2; the likeliest estimate has the geometric mean. The smallest is
     for sections that turn about a diameter: the surface velocity -Omega x2 of a long cylinder is axial, and

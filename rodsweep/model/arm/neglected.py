@@ -144,7 +144,8 @@ def arm_inertia_effect(arm: SlenderArm, omega: Array, drag: Drag) -> Effect:
     stations_and_drags = zip(arm.shape.stations, arm.drags_along(drag), strict=True)
     # The value is taken at the section with the largest ratio of mass to drag.
     value = (
-        max(arm.mass_at(station) / local_drag.gamma2 for station, local_drag in stations_and_drags) * omega
+        max(arm.mass_per_length_at(station) / local_drag.gamma2 for station, local_drag in stations_and_drags)
+        * omega
     )
     # omega ~ 1/viscosity and gamma2 ~ viscosity, so the value is proportional to 1/viscosity^2.
     factor = np.sqrt(value / INERTIA_LIMIT)

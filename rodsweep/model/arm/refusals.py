@@ -11,7 +11,7 @@ from ..material.laws import law_of
 from ..material.profile import MIN_ROW_DISTANCE
 from ..parameters import MAX_TAPER, MIN_TAPER
 from ..units import unit_of, value_in_unit
-from .drag import DRAG_NAMES, DRAG_RANGE_NAME, MIN_FORMULA_SLENDERNESS
+from .drag import ALL_DRAG_ESTIMATES_NAME, DRAG_ESTIMATE_NAMES, MIN_FORMULA_SLENDERNESS
 from .quantities import QUANTITIES, SECTION_SIZE_NAMES, UNITS
 from .section import BoreTooWide
 
@@ -41,15 +41,17 @@ def refuse_wrong_choices(arm: "SlenderArm") -> None:
         raise InputError(f"poisson = {short_repr(poisson)} is not a number above -1 and up to 0.5")
     if not isinstance(arm.drag, str):
         raise InputError(
-            f"drag = {short_repr(arm.drag)} is not one name; choose one of {', '.join(DRAG_NAMES)}"
+            f"drag = {short_repr(arm.drag)} is not one name; choose one of {', '.join(DRAG_ESTIMATE_NAMES)}"
         )
-    if arm.drag == DRAG_RANGE_NAME:
+    if arm.drag == ALL_DRAG_ESTIMATES_NAME:
         raise InputError(
             f"drag = {arm.drag!r} is for sweeps over all estimates; for one arm choose one of "
-            f"{', '.join(DRAG_NAMES)}; the report states the results for all estimates"
+            f"{', '.join(DRAG_ESTIMATE_NAMES)}; the report states the results for all estimates"
         )
-    if arm.drag not in DRAG_NAMES:
-        raise InputError(f"drag = {short_repr(arm.drag)} is not known; choose one of {', '.join(DRAG_NAMES)}")
+    if arm.drag not in DRAG_ESTIMATE_NAMES:
+        raise InputError(
+            f"drag = {short_repr(arm.drag)} is not known; choose one of {', '.join(DRAG_ESTIMATE_NAMES)}"
+        )
     allowed_by_name = (
         ("law", arm.law, "linear or neo_hookean"),
         ("section", arm.section, "fixed or swelling"),

@@ -13,13 +13,13 @@ class BoreTooWide(InputError):
 
 @dataclass(frozen=True, slots=True)
 class Circle:
-    """A solid circular cross-section of radius a, in m. formula, shear_formula, pressure_force_formula: texts
-    for reports, on area and second moment, on the shear coefficient, and on the tip force under a pressure
-    p."""
+    """A solid circular cross-section of radius a, in m. formula, shear_coefficient_formula,
+    pressure_force_formula: texts for reports, on area and second moment, on the shear coefficient, and on the
+    tip force under a pressure p."""
 
     radius: float
     formula: ClassVar[str] = "A = pi a^2, I = pi a^4/4"
-    shear_formula: ClassVar[str] = "kappa = 6 (1 + nu)/(7 + 6 nu)"
+    shear_coefficient_formula: ClassVar[str] = "kappa = 6 (1 + nu)/(7 + 6 nu)"
     pressure_force_formula: ClassVar[str] = "p A"
 
     @property
@@ -60,13 +60,13 @@ class Circle:
 @dataclass(frozen=True, slots=True)
 class Tube:
     """A circular cross-section of radius a with a bore of radius b, in m. The bore is closed at the tip.
-    formula, shear_formula, pressure_force_formula: texts for reports, on area and second moment, on the shear
-    coefficient, and on the tip force under a pressure p."""
+    formula, shear_coefficient_formula, pressure_force_formula: texts for reports, on area and second moment,
+    on the shear coefficient, and on the tip force under a pressure p."""
 
     radius: float
     inner_radius: float
     formula: ClassVar[str] = "A = pi (a^2 - b^2), I = pi (a^4 - b^4)/4"
-    shear_formula: ClassVar[str] = (
+    shear_coefficient_formula: ClassVar[str] = (
         "kappa = 6 (1 + nu) (1 + m^2)^2/((7 + 6 nu) (1 + m^2)^2 + (20 + 12 nu) m^2), m = b/a"
     )
     pressure_force_formula: ClassVar[str] = "p pi a^2 on the face of the closed tip"
@@ -104,8 +104,8 @@ class Tube:
         return self.radius
 
     def shear_coefficient(self, poisson: float) -> float:
-        """Shear coefficient kappa of a hollow circle, see `shear_formula` (Cowper 1966); nu = poisson. For a
-        thin wall kappa = 2 (1 + nu)/(4 + 3 nu)."""
+        """Shear coefficient kappa of a hollow circle, see `shear_coefficient_formula` (Cowper 1966); nu =
+        poisson. For a thin wall kappa = 2 (1 + nu)/(4 + 3 nu)."""
         squared = (self.inner_radius / self.radius) ** 2
         solid = (7 + 6 * poisson) * (1 + squared) ** 2
         return 6 * (1 + poisson) * (1 + squared) ** 2 / (solid + (20 + 12 * poisson) * squared)
@@ -114,13 +114,13 @@ class Tube:
 @dataclass(frozen=True, slots=True)
 class Rectangle:
     """A solid rectangular cross-section, in m: height in the plane of motion, width across this plane.
-    formula, shear_formula, pressure_force_formula: texts for reports, on area and second moment, on the shear
-    coefficient, and on the tip force under a pressure p."""
+    formula, shear_coefficient_formula, pressure_force_formula: texts for reports, on area and second moment,
+    on the shear coefficient, and on the tip force under a pressure p."""
 
     width: float
     height: float
     formula: ClassVar[str] = "A = w h, I = w h^3/12"
-    shear_formula: ClassVar[str] = "kappa = 10 (1 + nu)/(12 + 11 nu)"
+    shear_coefficient_formula: ClassVar[str] = "kappa = 10 (1 + nu)/(12 + 11 nu)"
     pressure_force_formula: ClassVar[str] = "p A"
 
     @property

@@ -24,7 +24,7 @@ POWER_ITERATION_TOLERANCE = 1e-12
 """The power iteration stops when the largest eigenvalue changes relatively by at most this."""
 MAX_POWER_ITERATIONS = 1000
 """Maximum number of steps of the power iteration, which usually takes twenty."""
-MAX_RADIUS_RATIO = 1.3
+MAX_NEIGHBOURING_RADIUS_RATIO = 1.3
 """Maximum ratio of the radii of a cone at neighbouring u of its profile. The cubic polynomials of the profile
 then approximate the drags, for tapers from 0.01 to 100, to 6e-4 if the arm is 20 or more radii long, to 5e-3
 at ten radii."""
@@ -71,7 +71,7 @@ class ArmGeometry:
         return max(station.section.drag_radius for station in self.stations)
 
     def drags_at(self, station: Station, viscosity: float) -> tuple[Drag, ...]:
-        """Drag estimates at a station, in the order of DRAG_NAMES. viscosity: in Pa s."""
+        """Drag estimates at a station, in the order of DRAG_ESTIMATE_NAMES. viscosity: in Pa s."""
         section = station.section
         return drag_estimates(viscosity, self.length, section.drag_radius, section.half_height)
 
@@ -79,8 +79,8 @@ class ArmGeometry:
         """Factors of stiffness and drag along the arm, relative to the base; None for a uniform arm.
 
         The profile of a cone contains only the factors that the parameter `taper` does not imply. poisson:
-        Poisson's ratio. drag_index: index of the drag estimate in DRAG_NAMES. Raises ValueError for a factor
-        that overflows or underflows.
+        Poisson's ratio. drag_index: index of the drag estimate in DRAG_ESTIMATE_NAMES. Raises ValueError for
+        a factor that overflows or underflows.
         """
         if not self.varies:
             return None
@@ -101,9 +101,9 @@ class ArmGeometry:
 
     def _cone_profile(self, drag_index: int) -> Profile:
         """Profile of a cone: factors of gamma1 and gamma2. All other factors are 1, because the parameter
-        `taper` implies them. drag_index: index of the drag estimate in DRAG_NAMES."""
+        `taper` implies them. drag_index: index of the drag estimate in DRAG_ESTIMATE_NAMES."""
         # A single interval would be a straight line, as `Profile` has no neighbour for its slopes.
-        interval_count = max(2, ceil(abs(log(self.taper)) / log(MAX_RADIUS_RATIO)))
+        interval_count = max(2, ceil(abs(log(self.taper)) / log(MAX_NEIGHBOURING_RADIUS_RATIO)))
         # Neighbouring radii have equal ratios, since the drag depends on the logarithm of the radius.
         radii = self.taper ** (np.arange(interval_count + 1) / interval_count)
         u = (1 - radii) / (1 - self.taper)
@@ -120,18 +120,20 @@ class ArmGeometry:
 
     def _factors_at_station(self, station: Station, poisson: float, drag_index: int) -> tuple[float, ...]:
         """k1, k2, k3, gamma1, gamma2, gamma3 at a station, each divided by the value at the base. poisson:
-        Poisson's ratio. drag_index: index of the drag estimate in DRAG_NAMES."""
+        Poisson's ratio. drag_index: index of the drag estimate in DRAG_ESTIMATE_NAMES."""
         values, base_values = (
-            np.array(self._stiffnesses_and_drags(place, poisson, drag_index))
+            np.array(self._stiffnesses_and_drag_factors(place, poisson, drag_index))
             for place in (station, self.base)
         )
         # Overflow is refused later, with a message that names the quantities.
         with np.errstate(all="ignore"):
             return tuple((values / base_values).tolist())
 
-    def _stiffnesses_and_drags(self, station: Station, poisson: float, drag_index: int) -> tuple[float, ...]:
+    def _stiffnesses_and_drag_factors(
+        self, station: Station, poisson: float, drag_index: int
+    ) -> tuple[float, ...]:
         """E A, kappa E A, E I at a station, and the axial, normal and rotational drag divided by the
-        viscosity. poisson: Poisson's ratio. drag_index: index of the drag estimate in DRAG_NAMES."""
+        viscosity. poisson: Poisson's ratio. drag_index: index of the drag estimate in DRAG_ESTIMATE_NAMES."""
         section = station.section
         local_drag = self.drags_at(station, 1.0)[drag_index]
         stretch_stiffness = station.young * section.area
@@ -153,7 +155,7 @@ class ArmGeometry:
         Power iteration converges fast: the kernel of the operator is positive, and the second eigenvalue of a
         uniform arm is a seventh of the largest.
         """
-        lengths, area, stiffness = self._sections_at_midpoints()
+        lengths, area, stiffness = self._lengths_areas_and_stiffnesses()
         # Integrals up to a midpoint include half of the interval around the midpoint.
         volume = area * lengths
         # Weight beyond a section, so the sum runs from the tip.
@@ -172,7 +174,7 @@ class ArmGeometry:
                 break
         return weight_density * ratio
 
-    def _sections_at_midpoints(self) -> tuple[Array, Array, Array]:
+    def _lengths_areas_and_stiffnesses(self) -> tuple[Array, Array, Array]:
         """Returns (length, A, E I) of the quadrature's subintervals, (subintervals,), in m, m^2, N m^2."""
         if self.taper != 1:
             u = (np.arange(BUCKLING_NODE_COUNT) + 0.5) / BUCKLING_NODE_COUNT

@@ -39,7 +39,7 @@ COMPILER_VERSIONS = (sys.implementation.cache_tag, numba.__version__, llvmlite._
 code is valid for one combination of versions only."""
 PACKAGE_DIRECTORY = Path(__file__).parents[2]
 """Directory of the package rodsweep."""
-DIGEST_BYTES = 32
+CACHE_CHECKSUM_BYTES = 32
 """Length, in bytes, of the SHA-256 checksum at the start of a cache file, which reveals truncation."""
 _texts_at_first_use: dict[FunctionType, FunctionText] = {}
 """Text of each function at its first use in this process: numba compiled the code of this text."""
@@ -149,8 +149,8 @@ def _read(path: Path) -> bytes | None:
         checked_bytes = path.read_bytes()
     except OSError:
         return None
-    checksum = checked_bytes[:DIGEST_BYTES]
-    content = checked_bytes[DIGEST_BYTES:]
+    checksum = checked_bytes[:CACHE_CHECKSUM_BYTES]
+    content = checked_bytes[CACHE_CHECKSUM_BYTES:]
     # A damaged file would crash the process only when its machine code runs.
     return content if sha256(content).digest() == checksum else None
 

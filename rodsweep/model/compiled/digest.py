@@ -169,9 +169,9 @@ class _ValueTextConverter:
             return f"{self._class_text(type(value))} [{', '.join(map(self.text, value))}]"
         if isinstance(value, type):
             return self._class_text(value)
-        return _array_or_type_text(value) or self._object_text(value)
+        return _array_or_type_text(value) or self._function_or_module_name(value)
 
-    def _object_text(self, value: Any) -> str:
+    def _function_or_module_name(self, value: Any) -> str:
         """Name of a function or module; a function of this package becomes a kernel. Else TypeError."""
         if hasattr(value, "_defn"):  # an intrinsic of numba
             value = value._defn

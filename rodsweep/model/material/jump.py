@@ -20,7 +20,7 @@ from typing import NamedTuple
 from ...arrays import Array
 from ..compiled.compilation import compiled
 from .stress_strain import (
-    LINEAR_LAW,
+    LINEAR_LAW_NUMBER,
     LocalSection,
     Stress,
     TangentMatrix,
@@ -87,7 +87,7 @@ def unknowns_before_jump(law: int, sides: Array, q: LawUnknowns) -> LawUnknowns:
     """The unknowns a on the base side of a jump, from the mean unknowns q. law: number of the constitutive
     law. sides: both sides, (2, 7). Newton's method solves the equations of equal stresses on both sides."""
     # With stresses as unknowns a linear rod has the same unknown on both sides.
-    if law == LINEAR_LAW:
+    if law == LINEAR_LAW_NUMBER:
         return q
     base_side = _section_of_side(sides[0])
     tip_side = _section_of_side(sides[1])

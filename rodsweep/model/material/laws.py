@@ -75,7 +75,7 @@ def _zeros(h1: FloatOrArray) -> FloatOrArray:
     return np.zeros_like(np.asarray(h1, dtype=float))
 
 
-LINEAR = Law(
+LINEAR_CONSTITUTIVE_LAW = Law(
     law_name="linear",
     section_name="fixed",
     energy_over_square=lambda h: 0.5 * _ones(h),
@@ -89,7 +89,7 @@ LINEAR = Law(
     shortening=lambda x: x,
     crushing_load=1.0,
 )
-NEO_HOOKEAN = Law(
+NEO_HOOKEAN_CONSTITUTIVE_LAW = Law(
     law_name="neo_hookean",
     section_name="fixed",
     energy_over_square=lambda h: (h + 2) / (6 * h),
@@ -102,14 +102,17 @@ NEO_HOOKEAN = Law(
     bending_factor_second_derivative=_zeros,
     shortening=_neo_hookean_shortening,
 )
-SWELLING = replace(
-    NEO_HOOKEAN,
+SWELLING_CONSTITUTIVE_LAW = replace(
+    NEO_HOOKEAN_CONSTITUTIVE_LAW,
     section_name="swelling",
     bending_factor=lambda h: (1 + 2 / h**3) / (3 * h),
     bending_factor_slope=lambda h: -(1 + 8 / h**3) / (3 * h**2),
     bending_factor_second_derivative=lambda h: (2 / h**3 + 40 / h**6) / 3,
 )
-LAWS = {(law.law_name, law.section_name): law for law in (LINEAR, NEO_HOOKEAN, SWELLING)}
+LAWS = {
+    (law.law_name, law.section_name): law
+    for law in (LINEAR_CONSTITUTIVE_LAW, NEO_HOOKEAN_CONSTITUTIVE_LAW, SWELLING_CONSTITUTIVE_LAW)
+}
 """All constitutive laws by (law name, section name)."""
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...arrays import Array
 from .factors import factors_along, smallest_factor_along
-from .laws import LAWS, LINEAR, Law, law_of
+from .laws import LAWS, LINEAR_CONSTITUTIVE_LAW, Law, law_of
 from .profile import RADIUS_POWERS, Profile, relative_radius
 
 
@@ -43,8 +43,8 @@ class RodMaterial:
     (law, section): a key of `LAWS`. profile: factors of stiffnesses and drags along the arm; None for
     constant stiffnesses and drags. Raises ValueError for an unknown law."""
 
-    law: str = LINEAR.law_name
-    section: str = LINEAR.section_name
+    law: str = LINEAR_CONSTITUTIVE_LAW.law_name
+    section: str = LINEAR_CONSTITUTIVE_LAW.section_name
     profile: Profile | None = None
 
     def __post_init__(self) -> None:
@@ -53,7 +53,7 @@ class RodMaterial:
     @cached_property
     def is_uniform_and_linear(self) -> bool:
         """Whether the material is linear and constant along the arm."""
-        return self.profile is None and self.constitutive_law is LINEAR
+        return self.profile is None and self.constitutive_law is LINEAR_CONSTITUTIVE_LAW
 
     @property
     def constitutive_law(self) -> Law:

@@ -15,7 +15,7 @@ from typing import NamedTuple
 from ..compiled.compilation import compiled
 from .laws import LAWS
 
-LINEAR_LAW, FIXED_SECTION, SWELLING_SECTION = range(len(LAWS))
+LINEAR_LAW_NUMBER, FIXED_SECTION_LAW_NUMBER, SWELLING_SECTION_LAW_NUMBER = range(len(LAWS))
 """Numbers of the constitutive laws in compiled code, in the order of `LAWS`."""
 
 
@@ -46,7 +46,7 @@ class TangentMatrix(NamedTuple):
 @compiled
 def _bending_factor(law: int, h: float) -> tuple[float, float, float]:
     """Returns (B, B', B''): bending factor of the law number `law` at the stretch h, and derivatives."""
-    if law == SWELLING_SECTION:
+    if law == SWELLING_SECTION_LAW_NUMBER:
         # The law is that of an incompressible rubber whose section shrinks as the rod is stretched.
         a = 1 / h
         b = 1 / h**4
@@ -66,7 +66,7 @@ def _neo_hookean_secant(nu: float, h: float) -> float:
 def stress_beyond_rest(law: int, material: LocalSection, q1: float, q3: float) -> Stress:
     """Stresses N and M at one point, minus their values at rest, for the unknowns q1 and q3. law: number of
     the law. material: stretch at rest and compliances at the point."""
-    if law == LINEAR_LAW:
+    if law == LINEAR_LAW_NUMBER:
         return Stress(q1, q3)
     h = material.nu + material.c1 * q1
     # The energy of bending depends on the stretch, so a bent rod has an axial force from it.
@@ -78,7 +78,7 @@ def stress_beyond_rest(law: int, material: LocalSection, q1: float, q3: float) -
 def stress_tangent(law: int, material: LocalSection, q1: float, q3: float) -> TangentMatrix:
     """Derivatives of the stresses N and M at one point by the unknowns q1 and q3. law: number of the law.
     material: stretch at rest and compliances at the point."""
-    if law == LINEAR_LAW:
+    if law == LINEAR_LAW_NUMBER:
         return TangentMatrix(1.0, 0.0, 0.0, 1.0)
     h = material.nu + material.c1 * q1
     B, B1, B2 = _bending_factor(law, h)
@@ -98,7 +98,7 @@ def stress_parameter_derivative(
 ) -> Stress:
     """Derivatives of the stresses N and M with respect to a parameter, at fixed unknowns q1 and q3. change:
     derivatives of the fields of `material` with respect to the parameter. law: number of the law."""
-    if law == LINEAR_LAW:
+    if law == LINEAR_LAW_NUMBER:
         return Stress(0.0, 0.0)
     h = material.nu + material.c1 * q1
     h_derivative = change.nu + change.c1 * q1

@@ -20,7 +20,7 @@ from .criticality import draw_criticality
 from .limit_cycle import draw_limit_cycle
 from .modes import draw_modes
 from .phase_diagram import draw_phase_diagram
-from .request import FigureLook, FigureRequest, ShapeFunction
+from .request import CycleShapeSolver, FigureLook, FigureRequest
 from .spectrum import draw_spectrum
 from .style import FIGURE_STYLE, PRINT_STYLE
 from .thresholds import draw_thresholds
@@ -89,7 +89,7 @@ def draw(
     output: Path,
     *,
     look: FigureLook = DEFAULT_LOOK,
-    shapes: ShapeFunction | None = None,
+    shapes: CycleShapeSolver | None = None,
     figure_callback: Callable[[Figure], None] | None = None,
     **choices: Unpack[FigureChoices],
 ) -> str:

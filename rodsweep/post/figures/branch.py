@@ -68,7 +68,7 @@ def draw_branch(request: FigureRequest) -> str:
     ]
     colours: Sequence[str] = BRANCH_COLOURS if is_single else colours_of_rods
     parameter = followed_parameter(view)
-    has_hopf_panel = any(curve.near_hopf_points() for curve in curves)
+    has_hopf_panel = any(curve.scaled_curves_near_hopf_points() for curve in curves)
     figure = Figure(figsize=(5.6, 7.6 if has_hopf_panel else 5.6), layout="constrained")
     upper, lower, *hopf_panel = figure.subplots(2 + has_hopf_panel, 1)
     lower.sharex(upper)
@@ -107,7 +107,7 @@ def draw_branch_curves(
 def draw_straight_rod(axes: Axes, rod: RodBranches) -> None:
     """Draws the straight rod, where its stability is known, as the line y = 0; the line style shows the
     stability."""
-    for stable, ranges in zip((1, 0), rod.straight_ranges(_drawn_parameter_range(rod)), strict=True):
+    for stable, ranges in zip((1, 0), rod.straight_ranges(_drawn_straight_rod_range(rod)), strict=True):
         for low, high in ranges:
             axes.plot([low, high], [0, 0], STABILITY_LOOKS[stable][0], color="k", lw=1.4)
 
@@ -135,7 +135,7 @@ def _omissions_clause(rods: Sequence[RodBranches], cycling: int, drawn_count: in
     return clause
 
 
-def _drawn_parameter_range(rod: RodBranches) -> ParameterRange:
+def _drawn_straight_rod_range(rod: RodBranches) -> ParameterRange:
     """Range of the parameter in which the straight rod is drawn: the followed range, without crushed rods,
     and up to 1.1 times the largest parameter of the branches."""
     [(range_start, range_end)] = uncrushed_ranges(rod.view, [rod.index])
@@ -177,7 +177,7 @@ def _draw_predicted_amplitudes(
     nearest = []
     distances = []
     for number, curve in enumerate(curves):
-        for relative_distance, y, stable in curve.near_hopf_points():
+        for relative_distance, y, stable in curve.scaled_curves_near_hopf_points():
             _draw_pieces(axes, relative_distance, y, stable, colours[number % len(colours)], marker=".")
             nearest.append(float(relative_distance[0]))
             distances.append(float(relative_distance[-1]))

@@ -18,7 +18,7 @@ from .arm.quantities import set_heading
 from .cycle.maps import label_maps, map_panels
 from .cycle.point_map import PointGrid, cell_edges, point_map, varies_two_parameters_on_grid
 from .cycle.selection import shared_and_own_of_points
-from .grid_slices import left_out_clause
+from .grid_slices import infinite_values_clause
 from .layout.fitting import MAP_ASPECT
 from .request import FigureRequest
 
@@ -64,7 +64,7 @@ def draw_criticality(request: FigureRequest) -> str:
     style.require_content(view, has_normal_form, "Hopf point with a normal form")
     names = list(varied_parameters_at_points(view))
     if len(names) == 1 and np.isfinite(np.unique(view.point_columns[names[0]])).sum() > 1:
-        omissions_clause = left_out_clause(view.point_columns, names)
+        omissions_clause = infinite_values_clause(view.point_columns, names)
         caption = f"the normal forms of Hopf points along {names[0]}{omissions_clause}"
         return request.write(_curves_figure(view, names[0]), caption)
     if not varies_two_parameters_on_grid(view):

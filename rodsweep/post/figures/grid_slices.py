@@ -6,10 +6,10 @@ from math import inf
 
 import numpy as np
 
-from ...config.arm.axes import PARAMETER_STORED_ALONG
+from ...config.arm.axes import STORAGE_AXIS_OF_QUANTITY
 from ...config.document.refusals import similar_keys
 from ...errors import InputError, short_repr
-from ...model.arm.drag import DRAG_NAMES
+from ...model.arm.drag import DRAG_ESTIMATE_NAMES
 from ...model.arm.quantities import ALL_QUANTITIES
 from ...model.parameters import NONLINEAR_PARAMETERS
 from ...model.units import quantity_in_si
@@ -18,7 +18,7 @@ from .point_lists import DIMENSIONS_OF_ITEMS
 
 TYPED_VALUE_TOLERANCE = 1e-6
 """A value typed by the user selects the values of the file that differ by at most this relative amount."""
-UNITS_OF_ARM = ("tau2", "force_scale", "pressure_scale")
+ARM_SCALE_NAMES = ("tau2", "force_scale", "pressure_scale")
 """Names of the units of an arm, which a file stores beside its quantities; no axes."""
 MAX_LISTED_VALUES = 8
 """Largest number of values that an error message lists."""
@@ -39,13 +39,15 @@ def slice_at_values(view: ResultView, typed_values: Mapping[str, float | str]) -
 def _number_in_si(name: str, value: float | str) -> float:
     """The value of the parameter or quantity `name` as a number; for a quantity, in SI units. Raises
     InputError for an invalid text."""
-    if name == "drag" and value in DRAG_NAMES:
-        return float(DRAG_NAMES.index(str(value)))
+    if name == "drag" and value in DRAG_ESTIMATE_NAMES:
+        return float(DRAG_ESTIMATE_NAMES.index(str(value)))
     try:
         return inf if value == ".inf" else float(value)
     except ValueError:
         if name == "drag":
-            raise InputError(f"--at drag={value}: the drag must be one of {', '.join(DRAG_NAMES)}") from None
+            raise InputError(
+                f"--at drag={value}: the drag must be one of {', '.join(DRAG_ESTIMATE_NAMES)}"
+            ) from None
         if name in ALL_QUANTITIES:
             return quantity_in_si(f"--at {name}", value, ALL_QUANTITIES[name].unit, "12 cm")
         raise InputError(f"--at {name}={value} must be a parameter with a number, such as k1=150") from None
@@ -56,13 +58,13 @@ def _slice_at_value(view: ResultView, name: str, value: float) -> ResultView:
     quantity_names = [
         quantity_name
         for quantity_name, quantity_values in view.quantities.items()
-        if np.ndim(quantity_values) and quantity_name not in UNITS_OF_ARM
+        if np.ndim(quantity_values) and quantity_name not in ARM_SCALE_NAMES
     ]
     if view.is_grid:  # quantities that are stored along an axis of a parameter
         quantity_names = [
             quantity_name
             for quantity_name in quantity_names
-            if PARAMETER_STORED_ALONG.get(quantity_name) in view.parameters
+            if STORAGE_AXIS_OF_QUANTITY.get(quantity_name) in view.parameters
         ]
     axes = view.arm_axes or (*view.parameters, *quantity_names)
     if name not in axes:
@@ -75,7 +77,7 @@ def _slice_at_value(view: ResultView, name: str, value: float) -> ResultView:
             f"{_values_text(np.unique(values), value)}"
         )
     if view.is_grid or view.arm_axes:
-        axis_name = name if name in (*view.arm_axes, *view.parameters) else PARAMETER_STORED_ALONG[name]
+        axis_name = name if name in (*view.arm_axes, *view.parameters) else STORAGE_AXIS_OF_QUANTITY[name]
         return _grid_at(view, axis_name, is_chosen)
     variables = {
         key: data[is_chosen] if data.shape[:1] == is_chosen.shape and key not in DIMENSIONS_OF_ITEMS else data
@@ -115,7 +117,7 @@ def _grid_at(view: ResultView, name: str, is_chosen: np.ndarray) -> ResultView:
     axis = names.index(name)
     sliced_names = {
         name,
-        *(quantity for quantity, changed_name in PARAMETER_STORED_ALONG.items() if changed_name == name),
+        *(quantity for quantity, changed_name in STORAGE_AXIS_OF_QUANTITY.items() if changed_name == name),
     }
     variables = {}
     for key, data in view.variables.items():
@@ -137,7 +139,7 @@ def without_infinite_values(view: ResultView) -> ResultView:
     return view
 
 
-def left_out_clause(columns: Mapping[str, np.ndarray], names: Sequence[str]) -> str:
+def infinite_values_clause(columns: Mapping[str, np.ndarray], names: Sequence[str]) -> str:
     """Clause on infinite values of the parameters `names`, which an axis cannot show; empty if all values are
     finite. columns: values by parameter, (n,) each."""
     omissions = [f"{name} = inf" for name in names if not np.isfinite(columns[name]).all()]

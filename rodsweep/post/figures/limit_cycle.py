@@ -24,7 +24,7 @@ from .cycle.transient import draw_transients
 from .layout.fitting import MAP_ASPECT, STRIP_ASPECT
 from .request import FIGURE_KINDS_BY_TASK, FigureRequest
 
-ALL_POINT_FIGURES = {"amplitude": "amplitudes", "maps": "maps"}
+ALL_POINT_FIGURE_NOUNS = {"amplitude": "amplitudes", "maps": "maps"}
 """Kinds of figures that show all points of a file, with the noun for messages."""
 NEEDED_VARIABLES = {
     "cycle": SHAPE_VARIABLE_NAMES,
@@ -79,8 +79,10 @@ def chosen_figure_kind(request: FigureRequest) -> str:
         request.refuse_points(first_view)
     if other_views and name != "amplitude":
         raise InputError(f"--what {name} draws a single file; only amplitudes of several files form a figure")
-    if request.points and name in ALL_POINT_FIGURES:
-        raise InputError(f"--point is given, but {ALL_POINT_FIGURES[name]} show all points; remove --point")
+    if request.points and name in ALL_POINT_FIGURE_NOUNS:
+        raise InputError(
+            f"--point is given, but {ALL_POINT_FIGURE_NOUNS[name]} show all points; remove --point"
+        )
     return name
 
 

@@ -43,10 +43,12 @@ def draw_modes(request: FigureRequest) -> str:
             _draw_mode_fields(panel, view, int(point), fields)
             panel.set_title(word)
         if point_count > 1:
-            row[1].set_title(f"{': '.join(_point_texts(view, int(point)))}\n{MODE_PANELS[1][0]}")
+            row[1].set_title(
+                f"{': '.join(_parameters_and_eigenvalue_texts(view, int(point)))}\n{MODE_PANELS[1][0]}"
+            )
     for panel in panels[-1]:
         panel.set_xlabel("material coordinate $u/L$")
-    texts = _point_texts(view, int(drawn_points[0])) if point_count == 1 else ()
+    texts = _parameters_and_eigenvalue_texts(view, int(drawn_points[0])) if point_count == 1 else ()
     set_heading(figure, view, *texts)
     draw_legend_below(figure, _part_entries(view, drawn_points), column_count=2)
     omission_clause = ""
@@ -88,7 +90,7 @@ def _draw_mode_fields(panel: Axes, view: ResultView, point: int, fields: tuple[t
     panel.set_xlim(0, 1)
 
 
-def _point_texts(view: ResultView, point: int) -> tuple[str, str]:
+def _parameters_and_eigenvalue_texts(view: ResultView, point: int) -> tuple[str, str]:
     """Returns (parameters, leading eigenvalue), as TeX, of the point with the index `point`."""
     parameters = {name: values[point] for name, values in view.point_columns.items()}
     eigenvalue = [float(view.by_point(name)[point, 0]) for name in ("growth_rate", "frequency")]

@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 
 from ...arrays import Array
 from ...config.parameters_section import DEFAULT_VALUES_OF_PARAMETERS
-from ...model.parameters import LINEAR_PARAMETERS
+from ...model.parameters import NON_OPTIONAL_LINEAR_PARAMETERS
 from ...results.file.view import ResultView
 from ...results.layouts import lacks_sweep_wide_variables
 from ...results.layouts.variables import flag_number
@@ -19,7 +19,7 @@ from ..crushing import crushing_ratio
 from . import style
 from .arm.quantities import set_heading
 from .arm.validity_hatches import hatch_compressed
-from .grid_slices import left_out_clause
+from .grid_slices import infinite_values_clause
 from .layout.fitting import MAP_ASPECT
 from .request import FigureRequest
 from .stability.class_bars import BAR_ASPECT
@@ -28,7 +28,7 @@ from .stability.diagram_curves import (
     draw_boundary_curves,
     draw_cycle_curves,
     mark_cycles_on_rows,
-    stored_crossings_text,
+    unstored_crossings_text,
 )
 from .stability.regions import PIXEL_COUNT, ClassifiedPoints, DrawnPlane, pixel_classes
 from .stability.row_classes import classes_between_crossings, pixel_classes_of_row
@@ -45,7 +45,7 @@ class ClassMap:
     crushing_ratio: Array
 
 
-END_CRUSHING_RATIO = 1 - 3e-3
+CURVE_END_CRUSHING_RATIO = 1 - 3e-3
 """Curves of a file may end at this ratio of force to crushing force; rods with larger ratios bound regions as
 curves do."""
 
@@ -56,7 +56,7 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     Returns a sentence. Raises InputError for options that the task does not have, and if nothing can be
     drawn."""
     view = request.only_view()
-    line = next(name for name in LINEAR_PARAMETERS if name not in view.parameters)
+    line = next(name for name in NON_OPTIONAL_LINEAR_PARAMETERS if name not in view.parameters)
     row = next((name for name in view.parameters if len(view.parameter_values[name]) > 1), view.parameters[0])
     palette = STATE_PALETTE if STATE_PALETTE.variable in view.variables else CLASS_PALETTE
     values = view.variables[palette.variable]
@@ -86,10 +86,10 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     curves = _draw_stored_curves(axes, view, palette, line, row)
     handles = [*palette.legend_entries(pixels), *curves, *boundaries]
     style.draw_legend_below(figure, handles, column_count=2 if "bautin_curve" in view.variables else 3)
-    set_heading(figure, view, _constant_parameters_text(view, line, row), stored_crossings_text(view))
+    set_heading(figure, view, _constant_parameters_text(view, line, row), unstored_crossings_text(view))
     lacks_curves = lacks_sweep_wide_variables(view.attributes)
     missing_clause = "; curves are missing, the file is not finished" if lacks_curves else ""
-    infinite_clause = left_out_clause(view.parameter_values, [row])
+    infinite_clause = infinite_values_clause(view.parameter_values, [row])
     return request.write(
         figure, f"behaviour of the rod over {line} and {row}{missing_clause}{infinite_clause}", MAP_ASPECT
     )
@@ -190,5 +190,7 @@ def _class_of_pixels(
                 )
             )
     undecided = flag_number("undecided", palette.words)
-    pixels = pixel_classes(computed, row_points, curves, map_.crushing_ratio > END_CRUSHING_RATIO, undecided)
+    pixels = pixel_classes(
+        computed, row_points, curves, map_.crushing_ratio > CURVE_END_CRUSHING_RATIO, undecided
+    )
     return np.where(map_.crushing_ratio < 1, pixels, crushed_class)

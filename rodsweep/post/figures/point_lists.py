@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
-from ...model.arm.drag import DRAG_NAMES
+from ...model.arm.drag import DRAG_ESTIMATE_NAMES
 from ...model.arm.quantities import ALL_QUANTITIES, ARM_SCALES
 from ...model.units import with_si_prefix
 from ...results.file.view import ResultView
@@ -83,9 +83,9 @@ def _varied_quantities(view: ResultView) -> list[tuple[str, list[str]]]:
 
 def _name_and_value_texts(name: str, values: np.ndarray) -> tuple[str, list[str]]:
     """Returns (name with unit, values as text) of the quantity `name`. values: (points,); for a drag, indices
-    in DRAG_NAMES."""
+    in DRAG_ESTIMATE_NAMES."""
     if name == "drag":
-        return quantity_words(name), [DRAG_NAMES[int(value)].replace("_", " ") for value in values]
+        return quantity_words(name), [DRAG_ESTIMATE_NAMES[int(value)].replace("_", " ") for value in values]
     unit = ALL_QUANTITIES[name].unit
     if unit == "1":
         return quantity_words(name), [f"{value:.4g}" for value in values]

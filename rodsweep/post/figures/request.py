@@ -16,7 +16,7 @@ from .arm.validity_hatches import hatch_invalid_points
 from .layout.dark_background import adapt_to_dark_background
 from .layout.fitting import MIN_ASPECT, fit_layout
 
-ShapeFunction = Callable[[ResultView, Sequence[int]], ResultView]
+CycleShapeSolver = Callable[[ResultView, Sequence[int]], ResultView]
 """Function that computes the shapes of cycles. Arguments: view of a file, and numbers of points, from 1.
 Returns a view with the shapes."""
 FigureClass = Figure
@@ -112,7 +112,7 @@ class FigureRequest:
     is_protected: bool = False
     """Whether `output` is one of the files to draw, or exists and is not a regular file."""
     look: FigureLook = FigureLook()
-    shapes: ShapeFunction | None = None
+    shapes: CycleShapeSolver | None = None
     """Function that computes the shapes of cycles if the file has no shapes."""
     figure_callback: Callable[[Figure], None] | None = None
     """Callback for the finished figure; if given, no file is written."""

@@ -20,12 +20,12 @@ CHORD_WEIGHTS = np.array([0.5, 1.0, 1.0])
 ranges on the branch."""
 CHORD_WEIGHTS_WITHOUT_Y = np.array([1.0, 0.0, 1.0])
 """Weights of parameter, y and log period in the length of a chord that ignores y."""
-CHORD_VARIABLES = ((CHORD_WEIGHTS, 1.0), (CHORD_WEIGHTS, 0.5), (np.array([0.1, 1.0, 0.1]), 1.0))
+CHORD_LENGTH_CANDIDATES = ((CHORD_WEIGHTS, 1.0), (CHORD_WEIGHTS, 0.5), (np.array([0.1, 1.0, 0.1]), 1.0))
 """(weights, power) of the candidates for the variable of the interpolation: sums of the chord lengths to this
 power. The arc length (power 1) is best on most branches, the sum of square roots where steps grow at a bend.
 A length close to y is best on a branch that ends near its Hopf point, where parameter and period are
 quadratic in y."""
-SLOPE_CYCLE_COUNT = 5
+CENTRED_SLOPE_CYCLE_COUNT = 5
 """Number of neighbouring cycles in the polynomial that gives the slope at the middle cycle."""
 CORNER_CYCLE_COUNT = 4
 """Number of cycles on each side of a corner in the polynomials that locate the corner; fewer near an end of
@@ -33,11 +33,11 @@ the branch."""
 MIN_SLOPE_JUMP = 0.25
 """A jump of the slope is drawn as a corner if the jump exceeds this fraction of the steepest chord near the
 corner. A smaller jump changes the curve by at most a few per cent of the chord."""
-MIN_SLOPE_JUMP_RATIO = 3.0
+MIN_Y_SLOPE_JUMP_RATIO = 3.0
 """At a corner, the jump of the slope of y exceeds this multiple of the jumps of the slopes of parameter and
 log period, which are smooth there. At a sharp bend that the cycles do not resolve, all three jumps are
 similar."""
-COINCIDENCE_TOLERANCE = 1e-9
+BRANCH_ROUNDING_TOLERANCE = 1e-9
 """Rounding tolerance for distances divided by the range of the branch, and for imaginary parts of roots
 divided by the step between cycles."""
 SEGMENT_COUNT = 12
@@ -55,12 +55,12 @@ def smooth_curve_of_branch(curve: StoredBranch) -> tuple[Array, Array, Array, ND
     extent = np.ptp(vertices, axis=0)
     extent[extent == 0] = 1.0
     # The end of the range is stored as a cycle and as a special point.
-    is_distinct = (np.abs(np.diff(vertices, axis=0)) > COINCIDENCE_TOLERANCE * extent).any(axis=1)
+    is_distinct = (np.abs(np.diff(vertices, axis=0)) > BRANCH_ROUNDING_TOLERANCE * extent).any(axis=1)
     cycles = vertices[np.append(True, is_distinct)]
     stable = curve.stable[is_distinct]
     if len(cycles) <= MIRRORED_CYCLE_COUNT:
         return curve.parameter, curve.y, curve.period, curve.stable
-    corners = branch_corners(cycles, extent)
+    corners = corners_by_previous_cycle(cycles, extent)
     for i in sorted(corners, reverse=True):
         cycles = np.insert(cycles, i + 1, corners[i], axis=0)
         stable = np.insert(stable, i, stable[i])
@@ -81,7 +81,7 @@ def _smooth_vertices(cycles: Array, extent: Array) -> Array:
     first_index = len(cycles_before) if cycles[0, 1] == 0 else 0
     last_count = len(cycles_after) if cycles[-1, 1] == 0 else 0
     extended = np.concatenate([cycles_before[:first_index], cycles, cycles_after[:last_count]])
-    variables = [_cumulative_chord_lengths(extended, extent, *choice) for choice in CHORD_VARIABLES]
+    variables = [_cumulative_chord_lengths(extended, extent, *choice) for choice in CHORD_LENGTH_CANDIDATES]
     abscissa = min(variables, key=lambda variable: _largest_cubic_deviation(variable, extended / extent))
     ends = abscissa[first_index : first_index + len(cycles)]
     drawn = np.linspace(ends[:-1], ends[1:], SEGMENT_COUNT, endpoint=False, axis=1).ravel()
@@ -89,7 +89,7 @@ def _smooth_vertices(cycles: Array, extent: Array) -> Array:
     return np.asarray(spline(np.append(drawn, ends[-1])))
 
 
-def branch_corners(cycles: Array, extent: Array) -> dict[int, Array]:
+def corners_by_previous_cycle(cycles: Array, extent: Array) -> dict[int, Array]:
     """Corners of a branch through the cycles `cycles`, (n, 3), as {index of the previous cycle: (parameter,
     y, log period), (3,)}. extent: ranges of the branch, (3,).
 
@@ -109,11 +109,11 @@ def branch_corners(cycles: Array, extent: Array) -> dict[int, Array]:
         differences = [_difference_of_one_sided_polynomials(x, column) for column in cycles[window].T]
         for root in differences[1].roots():
             slope_jumps = [float(difference.deriv()(root.real)) for difference in differences]
-            is_between = abs(root.imag) < COINCIDENCE_TOLERANCE and 0 < root.real < 1
+            is_between = abs(root.imag) < BRANCH_ROUNDING_TOLERANCE and 0 < root.real < 1
             if (
                 is_between
                 and slope_jumps[1] > MIN_SLOPE_JUMP
-                and slope_jumps[1] > MIN_SLOPE_JUMP_RATIO * max(map(abs, slope_jumps[::2]))
+                and slope_jumps[1] > MIN_Y_SLOPE_JUMP_RATIO * max(map(abs, slope_jumps[::2]))
             ):
                 interpolate = scipy.interpolate.barycentric_interpolate
                 corner = interpolate(x, cycles[window], root.real)
@@ -160,9 +160,9 @@ def _largest_cubic_deviation(s: Array, points: Array) -> float:
 
 
 def slopes_at_cycles(s: Array, points: Array) -> Array:
-    """Derivatives of the points with respect to s, (n, columns), from polynomials through SLOPE_CYCLE_COUNT
-    neighbouring points. s: (n,). points: points, (n, columns)."""
-    count = min(SLOPE_CYCLE_COUNT, len(s))
+    """Derivatives of the points with respect to s, (n, columns), from polynomials through
+    CENTRED_SLOPE_CYCLE_COUNT neighbouring points. s: (n,). points: points, (n, columns)."""
+    count = min(CENTRED_SLOPE_CYCLE_COUNT, len(s))
     slopes = np.empty_like(points)
     for i, start in enumerate(np.clip(np.arange(len(s)) - count // 2, 0, len(s) - count)):
         distances = s[start : start + count] - s[i]

@@ -15,7 +15,7 @@ from ...errors import InputError
 from ...results.file.view import ResultView
 from . import style
 from .arm.quantities import set_heading
-from .grid_slices import left_out_clause, slice_at_values, without_infinite_values
+from .grid_slices import infinite_values_clause, slice_at_values, without_infinite_values
 from .layout.fitting import MAP_ASPECT
 from .point_lists import as_grid_if_possible
 from .request import FigureRequest
@@ -25,7 +25,7 @@ from .spectra.line import (
     THRESHOLD_LINE_STYLE,
     THRESHOLD_LOOKS,
     draw_line,
-    draw_roots,
+    draw_roots_against_parameter,
     mark_thresholds,
     roots_to_follow,
     threshold_text,
@@ -33,9 +33,9 @@ from .spectra.line import (
 
 MAX_PANELS = 12
 """Largest number of panels in one figure."""
-PANEL_HEIGHT = {1: 2.1, 2: 2.6}
+PANEL_HEIGHT_BY_COLUMN_COUNT = {1: 2.1, 2: 2.6}
 """Height of a panel, in inches, by number of columns."""
-FIGURE_WIDTH = {1: 3.375, 2: 7.0}
+FIGURE_WIDTH_BY_COLUMN_COUNT = {1: 3.375, 2: 7.0}
 """Width of the figure, in inches, by number of columns."""
 THRESHOLD_WORDS = {
     "onset": "onset of oscillation",
@@ -74,7 +74,7 @@ def draw_spectrum(request: FigureRequest) -> str:
     shortest = min(varied_names, key=lambda name: len(view.parameter_values[name]))
     if len(varied_names) > 1 and len(view.parameter_values[shortest]) <= MAX_LINE_PANELS:
         return _draw_line_per_value(view, shortest, request)
-    omissions_clause = left_out_clause(view.parameter_values, varied_names)
+    omissions_clause = infinite_values_clause(view.parameter_values, varied_names)
     view = without_infinite_values(view)
     varied_names = style.varied_axes(view)
     if len(varied_names) == 1:
@@ -105,7 +105,7 @@ def _draw_line_per_value(view: ResultView, curve_parameter: str, request: Figure
     lines = map(without_infinite_values, slices)
     views = [line for line in lines if np.isfinite(line.variables["growth_rate"]).any()]
     other_names = [name for name in style.varied_axes(view) if name != curve_parameter]
-    omissions_clause = left_out_clause(view.parameter_values, other_names)
+    omissions_clause = infinite_values_clause(view.parameter_values, other_names)
     return _draw_line_panels(views, request, f"{curve_parameter}{omissions_clause}")
 
 
@@ -127,7 +127,7 @@ def _draw_files(request: FigureRequest) -> str:
         raise InputError(f"{len(request.views)} files are given, {room_clause}")
     views = [_line_of_spectra(view, request) for view in request.views]
     grids = map(as_grid_if_possible, request.views)
-    omissions = [left_out_clause(grid.parameter_values, style.varied_axes(grid)) for grid in grids]
+    omissions = [infinite_values_clause(grid.parameter_values, style.varied_axes(grid)) for grid in grids]
     return _draw_line_panels(views, request, f"of {len(views)} files{max(omissions, key=len)}")
 
 
@@ -174,13 +174,13 @@ def _growth_map(view: ResultView, names: list[str]) -> Figure:
     axes.set(xlabel=style.LABELS[horizontal], ylabel=style.LABELS[vertical])
     colours = matplotlib.cm.ScalarMappable(norm, MAP_COLOURS)
     figure.colorbar(colours, ax=axes, label=GROWTH_LABEL)
-    _add_invisible_points(axes, x, y, growth)
+    _add_invisible_points_for_report(axes, x, y, growth)
     note = "black: zero growth, interpolated between the points"
     set_heading(figure, view, style.constant_parameters_text(view, *names), note)
     return figure
 
 
-def _add_invisible_points(axes: Axes, x: np.ndarray, y: np.ndarray, growth: np.ndarray) -> None:
+def _add_invisible_points_for_report(axes: Axes, x: np.ndarray, y: np.ndarray, growth: np.ndarray) -> None:
     """Adds an invisible scatter plot of the points of a map, from which `rodsweep report` reads the values.
     x, y: values along the axes, (nx,) and (ny,). growth: growth rates, (nx, ny)."""
     limits = axes.axis()
@@ -193,13 +193,16 @@ def draw_panels(views: Sequence[ResultView], roots: str, is_narrow: bool) -> Fig
     """Figure with a panel of roots for each view, and one legend."""
     column_count = 1 if is_narrow else 2
     row_count = -(-len(views) // column_count)
-    figure_size = FIGURE_WIDTH[column_count], PANEL_HEIGHT[column_count] * row_count + 0.8
+    figure_size = (
+        FIGURE_WIDTH_BY_COLUMN_COUNT[column_count],
+        PANEL_HEIGHT_BY_COLUMN_COUNT[column_count] * row_count + 0.8,
+    )
     figure = Figure(figsize=figure_size, layout="constrained")
     panels = figure.subplots(row_count, column_count, squeeze=False).ravel()
     handles: dict[str, Artist] = {}
     for letter, panel, view in zip(ascii_lowercase, panels, views, strict=False):
         (name,) = style.varied_axes(view)
-        draw_roots(panel, view, name, roots)
+        draw_roots_against_parameter(panel, view, name, roots)
         thresholds = mark_thresholds(panel, view, name)
         for handle, label in zip(*panel.get_legend_handles_labels(), strict=True):
             handles.setdefault(label, handle)

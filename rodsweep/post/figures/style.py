@@ -36,7 +36,7 @@ PURPLE = "#CC79A7"
 LINE_COLOURS = (BLUE, VERMILION, GREEN, PURPLE, "#56B4E9", "#000000")
 """Colours of lines for rods, files or branches, in order: Okabe and Ito's palette, with its sky blue and
 black."""
-LOGARITHMIC_RATIO = 10
+LOGARITHMIC_COLOUR_RATIO = 10
 """The colours of a map are logarithmic if the ratio of the largest to the smallest value exceeds this
 number."""
 FEW_DECADES_RATIO = 50
@@ -220,7 +220,7 @@ def draw_coloured_cells(
     """
     low = float(np.nanmin(values))
     high = float(np.nanmax(values))
-    if ratios and high > LOGARITHMIC_RATIO * low > 0:
+    if ratios and high > LOGARITHMIC_COLOUR_RATIO * low > 0:
         norm: Normalize = LogNorm(low, high)
     else:
         # Equal zeros would give a scale below zero.

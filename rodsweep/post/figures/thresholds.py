@@ -24,9 +24,9 @@ from .stability.threshold_lines import (
     draw_selected_lines,
 )
 
-NO_THRESHOLD = "#DDDDDD"
+NO_THRESHOLD_COLOUR = "#DDDDDD"
 """Colour of rods without a threshold in a map."""
-SEARCH_DIGITS = 4
+SEARCHED_FORCE_DIGITS = 4
 """Number of significant digits of the largest searched force in the description of a figure."""
 
 
@@ -94,7 +94,7 @@ def _draw_files(request: FigureRequest) -> str:
 def searched_range_clause(*views: ResultView) -> str:
     """Clause on the searched range of forces: a threshold that is not shown may lie outside this range."""
     ends = np.concatenate([view.variables["F_end"].ravel() for view in views])
-    low, high = (f"{end(ends):.{SEARCH_DIGITS}g}" for end in (np.nanmin, np.nanmax))
+    low, high = (f"{end(ends):.{SEARCHED_FORCE_DIGITS}g}" for end in (np.nanmin, np.nanmax))
     return rf"searched up to $\tilde F = {low}$" + (f" to ${high}$" if low != high else "")
 
 
@@ -111,11 +111,13 @@ def _threshold_maps(view: ResultView, names: list[str], is_narrow: bool) -> tupl
         values = view.variables[name].ravel()[points.point_indices]
         style.require_content(view, np.isfinite(values).any(), f"{name} of rods with finite parameters")
         style.draw_coloured_cells(axes, edges, values, f"{word} in $k_3/L^2$")
-        axes.set_facecolor(NO_THRESHOLD)
+        axes.set_facecolor(NO_THRESHOLD_COLOUR)
         lacking |= bool(np.isnan(values).any())
     label_maps(panels, points)
     if lacking:
-        style.draw_legend_below(figure, [Patch(facecolor=NO_THRESHOLD, label="none found")], column_count=1)
+        style.draw_legend_below(
+            figure, [Patch(facecolor=NO_THRESHOLD_COLOUR, label="none found")], column_count=1
+        )
     constants_text = style.parameter_text(points.common_parameters)
     set_heading(figure, view, constants_text, searched_range_clause(view))
     return figure, points.omissions

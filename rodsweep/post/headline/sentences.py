@@ -80,7 +80,7 @@ def _later_flutter_clauses(rod: SingleRodResult) -> list[str]:
     ]
 
 
-def hopf_sentence(rod: SingleRodResult) -> str:
+def hopf_count_sentence(rod: SingleRodResult) -> str:
     """Sentence on the numbers of supercritical, subcritical and undecided Hopf points; empty if the count is
     unknown."""
     hopf_count = rod.count("crossing_count")
@@ -155,7 +155,7 @@ HEADLINES = {
         ("crossing", "crossing_kind", "crossing_F", "crossing_frequency", "unstable_after"),
     ),
     "criticality": Headline(
-        hopf_sentence,
+        hopf_count_sentence,
         (),
         "crossings",
         ("crossing", "criticality", "crossing_F", "amplitude_coefficient", "crossing_frequency"),

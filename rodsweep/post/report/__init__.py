@@ -18,7 +18,7 @@ from ... import __version__
 from ...results.file.provenance import utc_time
 from ...results.file.view import ResultView
 from ...wording import counted
-from ..figures.request import ShapeFunction
+from ..figures.request import CycleShapeSolver
 from ..output_files import atomic_write, require_output_path
 from .page_tables import MAX_ROWS
 from .pictures import Pictures, pictures_of
@@ -29,19 +29,19 @@ QUOTED_TEXT_PATTERN = re.compile("`([^`]*)`")
 """Pattern for a text between backquotes in a sentence: a command, or a key of a config."""
 
 
-def require_page(output: Path, inputs: Sequence[Path]) -> None:
+def require_page_path(output: Path, inputs: Sequence[Path]) -> None:
     """Raises InputError if `output` is not a valid name for an HTML page, see `require_output_path`. inputs:
     result files, which must not be overwritten."""
     require_output_path(output, (".html",), "page", inputs)
 
 
-def write_report(views: Sequence[ResultView], output: Path, shapes: ShapeFunction | None = None) -> str:
+def write_report(views: Sequence[ResultView], output: Path, shapes: CycleShapeSolver | None = None) -> str:
     """Writes an HTML page about results to the file `output`, and returns a sentence about the page.
 
     shapes: function that computes the shapes of cycles for figures, if the file has no shapes. Raises
     InputError for an invalid name of the page.
     """
-    require_page(output, [view.path for view in views])
+    require_page_path(output, [view.path for view in views])
     numbers = count(1)
     results = [report_contents(view, pictures_of([view], shapes, numbers)) for view in views]
     common_pictures = pictures_of(views, shapes, numbers) if views[1:] else Pictures(())

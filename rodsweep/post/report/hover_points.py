@@ -28,7 +28,7 @@ MAX_POINTS = 2500
 a text. A text takes some 100 bytes."""
 MAX_UNTHINNED_POINTS = 24
 """Every point of a curve with at most this number of points has a text."""
-POINTER_DIGITS = 8
+POINTER_VALUE_DIGITS = 8
 """Number of significant digits of a value under the pointer."""
 POINTS_PER_INCH = 72
 """Points per inch; a point is the length unit of matplotlib's SVG files."""
@@ -78,7 +78,7 @@ def _panel_series(axes: Axes, meanings: dict[str, str]) -> Iterator[HoverSeries]
     """Yields the texts for all values inside the frame of a panel. meanings: legend entries by colour."""
     if axes.get_label() == "<colorbar>" or not axes.get_visible():
         return
-    names = (axis_name(axes, "x"), axis_name(axes, "y"))
+    names = (axis_label_text(axes, "x"), axis_label_text(axes, "y"))
     series_list = [*_cell_series(axes, names, meanings), *_bar_series(axes, names, meanings)]
     series_list += [_line_series(axes, line, names) for line in axes.lines if line.get_visible()]
     scatters = (dots for dots in axes.collections if isinstance(dots, PathCollection))
@@ -161,7 +161,7 @@ def _bar_series(axes: Axes, names: tuple[str, str], meanings: dict[str, str]) ->
             yield HoverSeries(middle[None], ["\n".join(filter(None, (word, extent_text)))])
 
 
-def axis_name(axes: Axes, letter: Literal["x", "y"]) -> str:
+def axis_label_text(axes: Axes, letter: Literal["x", "y"]) -> str:
     """Label of an axis as plain text, from the panel itself or from a panel with the same axis; `letter` if
     there is no label."""
     shared_axes = axes.get_shared_x_axes() if letter == "x" else axes.get_shared_y_axes()
@@ -219,4 +219,4 @@ def _coordinates_text(names: tuple[str, str], point: Array) -> str:
 
 
 def _coordinate_text(value: float) -> str:
-    return f"{value:.{POINTER_DIGITS}g}"
+    return f"{value:.{POINTER_VALUE_DIGITS}g}"

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from ...errors import InputError
 from ...results.file.view import ResultView
 from ..figures import draw
-from ..figures.request import FIGURE_KINDS_BY_TASK, ShapeFunction
+from ..figures.request import FIGURE_KINDS_BY_TASK, CycleShapeSolver
 from .vector_picture import VectorPicture, vector_picture
 
 ANIMATION_KIND = "animation"
@@ -37,7 +37,9 @@ class Pictures:
     refusal: str = ""
 
 
-def pictures_of(views: Sequence[ResultView], shapes: ShapeFunction | None, numbers: "count[int]") -> Pictures:
+def pictures_of(
+    views: Sequence[ResultView], shapes: CycleShapeSolver | None, numbers: "count[int]"
+) -> Pictures:
     """Figures of every kind that show all `views`, the default figure of `rodsweep plot` first.
 
     shapes: function that computes the shapes of cycles for the default figure, if the file has no shapes.

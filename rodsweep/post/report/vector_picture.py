@@ -51,13 +51,13 @@ def vector_picture(figure: Figure, number: int, caption: str) -> VectorPicture:
     colours = frozenset[str]()
     has_image = next(root.iter(f"{{{SVG}}}image"), None) is not None
     if not has_image:
-        colours = _name_colours(root)
+        colours = _replace_colours_by_variables(root)
         root.set("fill", "var(--c000000, #000000)")
     root.attrib.pop("height", None)
     width = float(root.attrib.pop("width").removesuffix("pt"))
     root.set("role", "img")
     root.set("aria-label", caption)
-    _add_texts(root, figure)
+    _add_hover_texts(root, figure)
     return VectorPicture(ElementTree.tostring(root, encoding="unicode"), colours, width)
 
 
@@ -70,7 +70,7 @@ def _remove_element(root: ElementTree.Element, element_path: str) -> None:
         parent.remove(found)
 
 
-def _name_colours(root: ElementTree.Element) -> frozenset[str]:
+def _replace_colours_by_variables(root: ElementTree.Element) -> frozenset[str]:
     """Replaces the colours of all elements by CSS variables; returns the colours."""
     colours = {"000000"}
     for element in root.iter():
@@ -81,7 +81,7 @@ def _name_colours(root: ElementTree.Element) -> frozenset[str]:
     return frozenset(colours)
 
 
-def _add_texts(root: ElementTree.Element, figure: Figure) -> None:
+def _add_hover_texts(root: ElementTree.Element, figure: Figure) -> None:
     """Adds to the SVG element `root` an invisible circle for each value of the figure; the title of the
     circle is the text under the pointer."""
     group = ElementTree.SubElement(root, f"{{{SVG}}}g", {"class": "values"})
@@ -112,12 +112,14 @@ def dark_page_colour(colour: str) -> str:
         lighter = ([value + (255 - value) * fraction for value in rgb] for fraction in fractions)
         rgb = [
             round(value)
-            for value in next(candidate for candidate in lighter if _contrast(candidate) >= MIN_CONTRAST)
+            for value in next(
+                candidate for candidate in lighter if _contrast_with_dark_page(candidate) >= MIN_CONTRAST
+            )
         ]
     return "".join(f"{value:02x}" for value in rgb)
 
 
-def _contrast(channels: list[float]) -> float:
+def _contrast_with_dark_page(channels: list[float]) -> float:
     """Contrast ratio, as defined by WCAG 2, of a colour with the background of the dark page. channels: red,
     green and blue, from 0 to 255."""
     return (_luminance(channels) + 0.05) / (_luminance([PAPER_BRIGHTNESS] * 3) + 0.05)

@@ -44,7 +44,7 @@ TWO_CYCLES_LOOK = (style.PURPLE, "two stable cycles")
 """Colour and legend entry of ranges of F in which two stable cycles coexist."""
 CYCLE_LEGEND_ENTRY = "cycle drawn below"
 """Legend entry of the marks of cycles whose shapes are drawn."""
-MIN_DRAWN_PART = 1e-3
+MIN_DRAWN_IMAGINARY_FRACTION = 1e-3
 """The imaginary part of a mode is drawn if its maximum exceeds this fraction of the maximum of the real part.
 At a double eigenvalue half of the digits are rounding errors."""
 
@@ -165,7 +165,7 @@ def _draw_mode(axes: Axes, results: RodResults, kind: str) -> None:
     if not np.isfinite(variables["Y_real"][0]).all():
         _write_sentence(axes, f"no mode: {_status_meaning(view)}", PANEL_TEXT_WIDTH)
         return
-    smallest = MIN_DRAWN_PART * np.abs(variables["Y_real"][0]).max()
+    smallest = MIN_DRAWN_IMAGINARY_FRACTION * np.abs(variables["Y_real"][0]).max()
     for name, line, label in (("Y_real", "-", "Re"), ("Y_imag", ":", "Im")):
         if np.abs(variables[name][0]).max() > smallest:
             axes.plot(view.variables["u"], variables[name][0], line, color=style.BLUE, lw=1.5, label=label)

@@ -16,9 +16,9 @@ from ..range_unions import ParameterRange
 from ..summary.arm.arm import printing_unit
 from ..summary.number_texts import ranges_text, rounded_text
 
-THRESHOLD_MARKS = {"onset": ("*", "onset"), "hopf": ("**", "flutter")}
+THRESHOLD_SUPERSCRIPTS_AND_WORDS = {"onset": ("*", "onset"), "hopf": ("**", "flutter")}
 """(superscript of the symbol, word) of a threshold, by kind."""
-LABELLED_NUMBERS = (1.0, 2.0, 5.0)
+LABELLED_NUMBERS_OF_DECADE = (1.0, 2.0, 5.0)
 """Numbers of each decade that have tick labels on a logarithmic axis in SI units."""
 
 
@@ -81,7 +81,7 @@ class PortraitUnits:
 
     def mode_title(self, kind: str, F: float) -> str:
         """Title of the panel of a mode at the threshold F of the given kind."""
-        symbol, word = THRESHOLD_MARKS[kind]
+        symbol, word = THRESHOLD_SUPERSCRIPTS_AND_WORDS[kind]
         if self.load:
             return f"mode at {word},\n{self.force_title(F)}"
         return rf"mode at ${style.TEX_SYMBOLS['F']}_{{{symbol}}} = {F:.6g}$"
@@ -133,6 +133,6 @@ def rescale_panel(axes: Axes, x: float, y: float) -> None:
     axes.relim()
     axes.autoscale_view()
     if y != 1 and axes.get_yscale() == "log":
-        axes.yaxis.set_major_locator(LogLocator(subs=LABELLED_NUMBERS))
+        axes.yaxis.set_major_locator(LogLocator(subs=LABELLED_NUMBERS_OF_DECADE))
         axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         axes.yaxis.set_minor_formatter(NullFormatter())

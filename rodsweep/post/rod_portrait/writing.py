@@ -23,7 +23,7 @@ HIDDEN_TABLES = ("mode_shapes", "shapes", "harmonics", "multipliers", "samples")
 """Tables left out of an HTML page, because the picture shows their content better."""
 
 
-def require_portrait(output: Path) -> None:
+def require_portrait_path(output: Path) -> None:
     """Raises InputError if `output` is not a valid name for an image or an HTML page, see
     `require_output_path`."""
     noun = "page" if output.suffix == PAGE_SUFFIX else "picture"
@@ -33,16 +33,16 @@ def require_portrait(output: Path) -> None:
 def write_portrait(results: RodResults, output: Path) -> str:
     """Writes the portrait to the file `output`, and returns a sentence about the file. Raises InputError for
     an invalid file name."""
-    require_portrait(output)
+    require_portrait_path(output)
     if output.suffix == PAGE_SUFFIX:
         with atomic_write(output) as stream:
             stream.write(portrait_page(results))
     else:
         save_figure(portrait_figure(results), output)
-    return f"wrote {output}: {portrait_caption(results)}"
+    return f"wrote {output}: {shown_results_text(results)}"
 
 
-def portrait_caption(results: RodResults) -> str:
+def shown_results_text(results: RodResults) -> str:
     """Enumeration of the results that the picture shows, for the sentence "wrote ..."."""
     branches = results.branches
     part_is_shown = {
@@ -56,7 +56,7 @@ def portrait_caption(results: RodResults) -> str:
 
 def portrait_page(results: RodResults) -> str:
     """Portrait as the text of an HTML page that needs no network."""
-    caption = portrait_caption(results)
+    caption = shown_results_text(results)
     picture = vector_picture(portrait_figure(results, with_words=False), 1, caption)
     views = [*results.views.items()]
     load_text = results.units.load_text

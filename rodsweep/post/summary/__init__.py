@@ -11,10 +11,10 @@ from rich.text import Text
 
 from ...config.arm.status import NOT_SLENDER
 from ...config.values import printable
-from ...model.arm.drag import DRAG_NAMES
+from ...model.arm.drag import DRAG_ESTIMATE_NAMES
 from ...model.arm.quantities import ALL_QUANTITIES
 from ...model.units import value_in_unit
-from ...results.file.provenance import FAILURE_REASONS_ATTRIBUTE, failure_sentence
+from ...results.file.provenance import FAILURE_REASONS_ATTRIBUTE, example_failure_sentence
 from ...results.file.view import ResultView
 from ...results.layouts import lacks_sweep_wide_variables
 from ...results.layouts.variables import DIMENSIONS, MISSING_STATUS
@@ -183,7 +183,7 @@ def _failure_sentences(view: ResultView) -> Iterable[str]:
         for parameter, _, text in (pair.partition("=") for pair in points_text.split(", ")):
             has_status &= columns.get(parameter, float(text)) == float(text)
         if has_status.any() and reason:  # a later run may have computed the point anew
-            yield failure_sentence(line)
+            yield example_failure_sentence(line)
 
 
 def _terminal_table(table: TextTable) -> Table:
@@ -201,7 +201,7 @@ def _axes_table(view: ResultView) -> TextTable:
     rows = []
     for name, values in view.quantities.items():
         if name == "drag":
-            names = [DRAG_NAMES[int(value)] for value in np.unique(values[~np.isnan(values)])]
+            names = [DRAG_ESTIMATE_NAMES[int(value)] for value in np.unique(values[~np.isnan(values)])]
             rows.append((name, str(len(names)), names[0], names[-1] if names[1:] else "", ""))
             continue
         si = ALL_QUANTITIES[name].unit

@@ -17,7 +17,7 @@ from .number_texts import number_with_error, ranges_text, rounded_text, span_tex
 from .summary_lines import SummaryLines, first_lines, point_text
 from .thresholds import unknown_clause
 
-LIST_IS_FULL_REASON = "the list of special points is full; raise branch.special"
+HIDDEN_BRANCHES_REASON = "the list of special points is full; raise branch.special"
 """Reason for which branches are not shown, and remedy."""
 COEXISTENCE_WORDS = "stable cycles beside a stable straight rod"
 """Phrase for a range in which a stable cycle and the stable straight rod coexist."""
@@ -54,7 +54,7 @@ def branch_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
         for name, noun in (("branch", "branch"), ("point", "cycle"))
     )
     count_text = count_of_total((counts > 0).sum(), len(rods), "rod")
-    line = f"{branches} at {count_text}, {cycles}{_sizes_text(view, computed)}"
+    line = f"{branches} at {count_text}, {cycles}{_period_and_amplitude_ranges_clause(view, computed)}"
     parameter = followed_parameter(view)
     ranges = uncrushed_ranges(view, (rod.index for rod in rods))
     crushed_count = sum(low >= high for low, high in ranges)
@@ -71,7 +71,7 @@ def _one_rod_lines(rod: RodBranches) -> Iterator[str]:
     variables = rod.view.variables
     if rod.hidden_count:
         count_text = count_of_total(rod.hidden_count, rod.hidden_count + len(rod.curves), "branch")
-        yield f"{count_text} {is_or_are(rod.hidden_count)} not shown: {LIST_IS_FULL_REASON}"
+        yield f"{count_text} {is_or_are(rod.hidden_count)} not shown: {HIDDEN_BRANCHES_REASON}"
     elif variables["branch_count"].max() < 0:
         yield "the branches of this rod are not known: its solve failed"
     elif not rod.curves:
@@ -82,7 +82,8 @@ def _one_rod_lines(rod: RodBranches) -> Iterator[str]:
         yield f"no Hopf point in the range of {parameter}, so that no branch begins there"
     for number, curve in enumerate(rod.curves, 1):
         errors = variables["amplitude_error"].ravel()[variables["branch"].ravel() == number]
-        yield f"branch {number}, {_ends_phrase(curve, parameter)}: {_extent_text(curve, errors, parameter)}"
+        cycles_text = _cycles_and_ranges_text(curve, errors, parameter)
+        yield f"branch {number}, {_ends_phrase(curve, parameter)}: {cycles_text}"
         yield from _special_points_between_ends(curve, parameter)
         if curve.stable_ranges:
             text = ranges_text(curve.stable_ranges, curve.parameter_errors)
@@ -98,7 +99,7 @@ def _one_rod_lines(rod: RodBranches) -> Iterator[str]:
             yield f"{TWO_CYCLES_WORDS} at {parameter} = {ranges_text(pairs, rod.parameter_errors)}"
 
 
-def _extent_text(curve: StoredBranch, errors: Array, parameter_name: str) -> str:
+def _cycles_and_ranges_text(curve: StoredBranch, errors: Array, parameter_name: str) -> str:
     """Number of cycles on a branch, range of the parameter `parameter_name`, and range of the largest tip y,
     as text. errors: relative errors of y, (cycles,)."""
     cycles = curve.cycles
@@ -152,7 +153,7 @@ def _ends_phrase(curve: StoredBranch, parameter_name: str) -> str:
     )
 
 
-def _sizes_text(view: ResultView, computed: np.ndarray) -> str:
+def _period_and_amplitude_ranges_clause(view: ResultView, computed: np.ndarray) -> str:
     """Clause with the ranges of period and amplitude over all cycles at the points in the mask `computed`;
     empty if there is no cycle."""
     variables = view.variables
@@ -200,7 +201,7 @@ def _coexistence_lines(rods: Sequence[RodBranches], parameter_name: str) -> Iter
     complete = [rod for rod in rods if not rod.hidden_count]
     if len(complete) < len(rods):
         unknown_rods_text = counted(len(rods) - len(complete), "rod")
-        yield f"whether two states are stable is not known for {unknown_rods_text}: {LIST_IS_FULL_REASON}"
+        yield f"whether two states are stable is not known for {unknown_rods_text}: {HIDDEN_BRANCHES_REASON}"
     if complete:
         coexistence = [rod.coexistence_ranges for rod in complete]
         yield from _lines_on_rods_with(complete, parameter_name, COEXISTENCE_WORDS, coexistence)

@@ -17,7 +17,7 @@ from .thresholds import ENDED_EARLY, unknown_beyond_clause, unknown_clause, unst
 
 CRITICALITY_WORDS = {-1: "supercritical", 1: "subcritical", 0: "undecided"}
 """Word for the criticality of a Hopf point, by sign of Re c (c: cubic coefficient of the normal form)."""
-HOPF_NUMBERS = {
+HOPF_SYMBOLS_AND_UNITS = {
     "crossing_F": "F, k3/L^2",
     "crossing_frequency": f"frequency, {ANGULAR_UNIT}",
     "landau_real": "Re c, 1/(tau2 L^2)",
@@ -97,7 +97,7 @@ def _hopf_table(variables: Mapping[str, np.ndarray]) -> TextTable | None:
     indices = np.flatnonzero(variables["crossing_kind"] > 0)
     kinds = (CROSSING_KINDS[int(variables["crossing_kind"][i])] for i in indices)
     rows = []
-    for name, label in HOPF_NUMBERS.items():
+    for name, label in HOPF_SYMBOLS_AND_UNITS.items():
         numbers = zip(
             variables[name][indices].tolist(), absolute_errors(variables, name)[indices].tolist(), strict=True
         )
@@ -141,8 +141,8 @@ def _subcritical_lines(view: ResultView) -> Iterator[str]:
         )
         texts = ", ".join(
             f"F = {rounded_text(F, F_error)} (Hopf point {i + 1}, a = "
-            f"{rounded_text(coefficient, abs(coefficient) * coefficient_error)} L)"
-            for F, F_error, i, coefficient, coefficient_error in zip(
+            f"{rounded_text(coefficient, abs(coefficient) * relative_coefficient_error)} L)"
+            for F, F_error, i, coefficient, relative_coefficient_error in zip(
                 forces, absolute, indices, amplitude_coefficient, relative, strict=True
             )
         )

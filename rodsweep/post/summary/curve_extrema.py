@@ -5,7 +5,7 @@ from ...results.layouts.curve_extrema import EXTREMA_UNLOCATED
 from .number_texts import number_with_error
 
 
-def curve_extremum_lines(view: ResultView, line_parameter: str, row_parameter: str) -> list[str]:
+def fold_curve_extremum_lines(view: ResultView, line_parameter: str, row_parameter: str) -> list[str]:
     """Lines about the points of curves of folds of cycles at which the row parameter is extremal.
     line_parameter: parameter that varies along a row. row_parameter: parameter that is constant on a row."""
     variables = view.variables

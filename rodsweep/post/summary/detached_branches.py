@@ -11,14 +11,14 @@ from ...results.layouts.detached_branches import CURVES_LOST_BEYOND, DETACHED_RO
 from ...wording import count_of_total
 from .number_texts import axis_values_text
 
-MAX_ROW_DISTANCE = 0.01
+MAX_RELATIVE_CURVE_DISTANCE = 0.01
 """Largest distance of a special point of a row from the two points of a curve between which the curve meets
 the row, divided by the length of the row."""
 
 
 def detached_branch_lines(view: ResultView, row_parameter: str) -> list[str]:
     """Lines about the rows with cycles on detached branches, and about curves lost beyond the range."""
-    lost = lost_beyond_lines(view)
+    lost = lost_fold_curve_lines(view)
     if DETACHED_ROW_NAME not in view.variables:
         return lost
     row_indices = view.variables[DETACHED_ROW_NAME] - 1
@@ -32,7 +32,7 @@ def detached_branch_lines(view: ResultView, row_parameter: str) -> list[str]:
     ]
 
 
-def lost_beyond_lines(view: ResultView) -> list[str]:
+def lost_fold_curve_lines(view: ResultView) -> list[str]:
     """List with a line about curves of folds that were lost beyond the range; empty if there are none."""
     if CURVES_LOST_BEYOND.name not in view.variables:
         return []
@@ -43,7 +43,7 @@ def lost_beyond_lines(view: ResultView) -> list[str]:
     ]
 
 
-def rows_without_cycles_of_curve(
+def rows_missing_curve_point_lines(
     view: ResultView, line_parameter: str, row_parameter: str, indices: NDArray[np.intp]
 ) -> list[str]:
     """Lines about completed rows that a curve of folds or torus points crosses although no branch of the row
@@ -53,7 +53,7 @@ def rows_without_cycles_of_curve(
         return []
     kind = int(variables["cycle_curve_kind"][indices[0]])
     kinds, specials = map(view.by_point, ("cycle_special_kind", f"cycle_special_{line_parameter}"))
-    tolerance = MAX_ROW_DISTANCE * float(np.ptp(variables[line_parameter]))
+    tolerance = MAX_RELATIVE_CURVE_DISTANCE * float(np.ptp(variables[line_parameter]))
     points = zip(
         variables[f"cycle_curve_{row_parameter}"][indices],
         variables[f"cycle_curve_{line_parameter}"][indices],

@@ -3,14 +3,14 @@ parameter that varies along a row. row_parameter: parameter that is constant on 
 
 import numpy as np
 
-from ...model.parameters import LINEAR_PARAMETERS
+from ...model.parameters import NON_OPTIONAL_LINEAR_PARAMETERS
 from ...results.file.view import ResultView
 from ...results.layouts.branch import SPECIAL_KINDS
 from ...results.layouts.phase_diagram import BAUTIN_ENDS, CURVE_ENDS, CYCLE_CURVE_ENDS
 from ...wording import counted, is_or_are
 from .criticality import CRITICALITY_WORDS
-from .curve_extrema import curve_extremum_lines
-from .detached_branches import detached_branch_lines, rows_without_cycles_of_curve
+from .curve_extrema import fold_curve_extremum_lines
+from .detached_branches import detached_branch_lines, rows_missing_curve_point_lines
 from .number_texts import error_text, number_with_error, span_text
 
 CYCLE_CHANGE_WORDS = {
@@ -44,7 +44,7 @@ END_SUFFIXES = ("start", "end")
 """Suffixes of the variables with the reasons for which a curve ends, at its first and at its last point."""
 
 
-def curve_lines(view: ResultView, line_parameter: str, row_parameter: str) -> list[str]:
+def diagram_curve_lines(view: ResultView, line_parameter: str, row_parameter: str) -> list[str]:
     """Lines about folds, generalised Hopf points and their curves, and curves of folds and torus points of
     cycles."""
     variables = view.variables
@@ -78,10 +78,10 @@ def cycle_curve_lines(view: ResultView, line_parameter: str, row_parameter: str)
             f"curve of {noun}: from {ends_text}; {points_text}, largest error of {line_parameter} "
             f"{error_of_curve}"
         )
-        lines += rows_without_cycles_of_curve(view, line_parameter, row_parameter, indices)
+        lines += rows_missing_curve_point_lines(view, line_parameter, row_parameter, indices)
     return (
         lines
-        + curve_extremum_lines(view, line_parameter, row_parameter)
+        + fold_curve_extremum_lines(view, line_parameter, row_parameter)
         + detached_branch_lines(view, row_parameter)
     )
 
@@ -207,7 +207,7 @@ def bautin_curve_lines(view: ResultView) -> list[str]:
     ends."""
     variables = view.variables
     lines = []
-    names = [name for name in LINEAR_PARAMETERS if f"bautin_along_{name}" in variables]
+    names = [name for name in NON_OPTIONAL_LINEAR_PARAMETERS if f"bautin_along_{name}" in variables]
     for number in np.unique(variables["bautin_along_curve"]):
         mask = variables["bautin_along_curve"] == number
         span = ", ".join(f"{name} = {span_text(variables[f'bautin_along_{name}'][mask])}" for name in names)

@@ -7,7 +7,7 @@ import numpy as np
 
 from .number_texts import span_text
 
-EIGENVALUE_ERROR = 1e-9
+RELATIVE_EIGENVALUE_ERROR = 1e-9
 """Relative error of the straight rod's eigenvalue in results of limit cycles, equal to the tolerance of the
 eigenvalue solver."""
 RELATIVE_ERROR_NAMES = {
@@ -39,22 +39,22 @@ ABSOLUTE_ERROR_NAMES = {
 error of `frequency` is relative (see RELATIVE_ERROR_NAMES)."""
 COMPLEX_VARIABLES = ("landau", "growth_slope")
 """Complex variables, stored as real and imaginary part. The stored error is relative to the modulus."""
-EXTREMA_VARIABLE_NAMES = ("tip_x_min", "tip_x_max", "tip_y_min", "tip_theta_max", "least_stretch")
+TIP_SCALED_ERROR_VARIABLES = ("tip_x_min", "tip_x_max", "tip_y_min", "tip_theta_max", "least_stretch")
 """Variables of a cycle whose stored error is the absolute error divided by tip_y_max."""
-MAX_DIP_BETWEEN_NODES = 4e-3
+MAX_H1_DIP_BETWEEN_NODES = 4e-3
 """Assumed bound of (smallest nodal h1 - smallest h1 between nodes)/|1 - h1|; twice the largest ratio of tests
 with arms of segments and of rubber."""
 CYCLE_POWER_VARIABLE_NAMES = ("injection_mean", "injection_rms", "dissipation_mean", "dissipation_rms")
 """Mean powers and rms fluctuations. Their errors follow from the errors of amplitude, period and energy
 balance."""
-MIN_UNKNOWN_TIME_ERROR = 0.5
+MIN_UNKNOWN_RELATIVE_TIME_ERROR = 0.5
 """The time of the largest transient growth is treated as unknown if its relative error is at least this
 number."""
 STRAIGHT_EIGENVALUE_NAMES = ("linear_growth_rate", "linear_frequency")
 """Variables with the eigenvalue of the straight rod in results of limit cycles."""
 
 
-MODULATION_RATIO_ERROR = 1e-3
+RELATIVE_MODULATION_RATIO_ERROR = 1e-3
 """Relative error of modulation_ratio, five times the change with tighter tolerances and a finer mesh that was
 measured on a torus."""
 
@@ -74,11 +74,13 @@ def _errors_of_real_variable(variables: Mapping[str, np.ndarray], name: str) -> 
     shape of the variable. NumPy may warn of infinite values."""
     values = np.abs(variables[name])
     if name in STRAIGHT_EIGENVALUE_NAMES:
-        return EIGENVALUE_ERROR * np.hypot(*(variables[part_name] for part_name in STRAIGHT_EIGENVALUE_NAMES))
+        return RELATIVE_EIGENVALUE_ERROR * np.hypot(
+            *(variables[part_name] for part_name in STRAIGHT_EIGENVALUE_NAMES)
+        )
     if name in CYCLE_POWER_VARIABLE_NAMES and "amplitude_error" in variables:
         return values * relative_power_error(variables, fluctuation=name.endswith("rms"))
-    if name in EXTREMA_VARIABLE_NAMES and "extrema_error" in variables:
-        dip_error = MAX_DIP_BETWEEN_NODES * np.abs(1 - variables[name]) if name == "least_stretch" else 0.0
+    if name in TIP_SCALED_ERROR_VARIABLES and "extrema_error" in variables:
+        dip_error = MAX_H1_DIP_BETWEEN_NODES * np.abs(1 - variables[name]) if name == "least_stretch" else 0.0
         return variables["extrema_error"] * variables["tip_y_max"] + dip_error
     if name == "transient_time" and "growth_error" in variables:
         # The growth is quadratic near its maximum, and is 1 at t = 0.
@@ -86,7 +88,7 @@ def _errors_of_real_variable(variables: Mapping[str, np.ndarray], name: str) -> 
         return values * np.sqrt(variables["growth_error"] / log_growth)
     relative_error = RELATIVE_ERROR_NAMES.get(name, "")
     if name == "modulation_ratio" or relative_error in variables:
-        return values * (variables[relative_error] if relative_error else MODULATION_RATIO_ERROR)
+        return values * (variables[relative_error] if relative_error else RELATIVE_MODULATION_RATIO_ERROR)
     return (
         variables[ABSOLUTE_ERROR_NAMES[name]]
         if ABSOLUTE_ERROR_NAMES.get(name, "") in variables
@@ -118,7 +120,7 @@ def is_known(variables: Mapping[str, np.ndarray], name: str) -> np.ndarray:
     values = np.asarray(variables[name])
     if name != "transient_time" or "growth_error" not in variables:
         return np.ones(values.shape, bool)
-    return (values == 0) | ~(absolute_errors(variables, name) >= MIN_UNKNOWN_TIME_ERROR * values)
+    return (values == 0) | ~(absolute_errors(variables, name) >= MIN_UNKNOWN_RELATIVE_TIME_ERROR * values)
 
 
 def known_range_text(variables: Mapping[str, np.ndarray], name: str, mask: np.ndarray) -> str:

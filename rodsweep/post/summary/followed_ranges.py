@@ -17,7 +17,9 @@ MISSED_CYCLES_TEXT = (
 """Clause on the cycles within the range that are not found."""
 
 
-def followed_range_text(view: ResultView, computed: np.ndarray, parameter_name: str, prefix: str) -> str:
+def followed_beyond_range_text(
+    view: ResultView, computed: np.ndarray, parameter_name: str, prefix: str
+) -> str:
     """Clauses on how far beyond the range of the file branches are followed that may enter the range, and on
     the cycles that are missed. computed: mask of the computed points, (...,). parameter_name: parameter along
     which branches are followed. prefix: the variables are named `prefix` + "from" and `prefix` + "to"."""
@@ -45,5 +47,5 @@ def searched_range_line(view: ResultView, computed: np.ndarray) -> str:
     return (
         f"followed in {parameter} from {start:g} to {end:g}{note}; the list of Hopf points "
         f"{proof_clause(view)} for {proved_text}; "
-        + followed_range_text(view, computed, parameter, "followed_")
+        + followed_beyond_range_text(view, computed, parameter, "followed_")
     )

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from ...model.parameters import LINEAR_PARAMETERS
+from ...model.parameters import NON_OPTIONAL_LINEAR_PARAMETERS
 from ...results.file.view import ResultView
 from ...results.layouts.limit_cycle import CYCLE_STATUSES, SECOND_STATES
 from ...results.layouts.variables import ANGULAR_UNIT
@@ -14,7 +14,7 @@ from ..located_thresholds import StoredThresholds
 from .arm.arm import region_of_arms
 from .errors import absolute_errors, known_range_text
 from .number_texts import error_text, number_and_error, span_text
-from .stability import stability_lines
+from .stability import rod_and_arm_stability_lines
 from .summary_lines import (
     SummaryLines,
     TextTable,
@@ -56,7 +56,7 @@ def limit_cycle_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
     ]
     if view.quantities and computed.size > 1 and not beats[computed].all():
         arm_sentences.insert(0, outcome_count_line(view, computed, region_of_arms))
-    reliability = _proof_lines(view)
+    reliability = _hopf_completeness_lines(view)
     rate, frequency = (
         known_range_text(variables, f"linear_{name}", computed) for name in ("growth_rate", "frequency")
     )
@@ -72,8 +72,8 @@ def limit_cycle_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
             f"unstable cycles inside the tori have a largest |Floquet multiplier| of {modulus}"
         )
     if computed.size == 1 and orbit.any():
-        answer.insert(1, cycle_stability_line(variables, stable=bool(beats.any())))
-        numbers = orbit_table(variables)
+        answer.insert(1, single_cycle_stability_line(variables, stable=bool(beats.any())))
+        numbers = single_cycle_table(variables)
     elif beats.any():
         period_text, y_text = (known_range_text(variables, name, beats) for name in ("period", "tip_y_max"))
         answer.insert(1, f"period: {period_text} tau2; largest y of the tip: {y_text} L")
@@ -113,18 +113,18 @@ def outcome_count_line(
 def _threshold_lines(view: ResultView) -> tuple[list[str], list[str]]:
     """Returns (lines, lines in an arm's units) about thresholds of the straight rod along F, or along all
     varied parameters if F is not varied."""
-    names = [name for name in LINEAR_PARAMETERS if name in varied_parameters_at_points(view)]
+    names = [name for name in NON_OPTIONAL_LINEAR_PARAMETERS if name in varied_parameters_at_points(view)]
     lines = list[str]()
     arm_sentences = list[str]()
     for name in names[:1] if "F" in names else names:
         thresholds_on = StoredThresholds(view, name).thresholds_up_to_end
-        threshold_text, sentences = stability_lines(view, name, thresholds_on)
+        threshold_text, sentences = rod_and_arm_stability_lines(view, name, thresholds_on)
         lines += threshold_text
         arm_sentences += sentences
     return lines, arm_sentences
 
 
-def _proof_lines(view: ResultView) -> list[str]:
+def _hopf_completeness_lines(view: ResultView) -> list[str]:
     """Sentence, in a list, on whether the Hopf points are proved complete; empty if no line of points was
     searched."""
     variables = view.variables
@@ -135,7 +135,7 @@ def _proof_lines(view: ResultView) -> list[str]:
     return [f"the list of Hopf points between neighbouring points {proof_clause(view)} for {proved_text}"]
 
 
-def cycle_stability_line(variables: Mapping[str, np.ndarray], stable: bool) -> str:
+def single_cycle_stability_line(variables: Mapping[str, np.ndarray], stable: bool) -> str:
     """Line that says whether the only cycle in a file is stable, or that no Floquet multiplier is computed.
     variables: variables of the file, (1, ...) each. stable: whether the status is "cycle"."""
     if np.isnan(variables["multiplier"]).all():
@@ -145,7 +145,7 @@ def cycle_stability_line(variables: Mapping[str, np.ndarray], stable: bool) -> s
     return "the cycle is unstable: its largest nontrivial Floquet multiplier is above 1"
 
 
-def orbit_table(variables: Mapping[str, np.ndarray]) -> TextTable:
+def single_cycle_table(variables: Mapping[str, np.ndarray]) -> TextTable:
     """Table of the numbers of the only cycle in a file, with errors. variables: variables of the
     file, (1, ...) each."""
     rows = []

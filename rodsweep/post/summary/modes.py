@@ -22,11 +22,11 @@ def modes_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
         if unknown_count := int((~np.isfinite(errors)).any(axis=-1).sum()):
             text += f"; not known at {count_of_total(unknown_count, len(errors), 'point')}"
         reliability.append(text)
-    answer = [*summary.answer, *growth_lines(view, computed)]
+    answer = [*summary.answer, *transient_growth_lines(view, computed)]
     return replace(summary, answer=answer, reliability=reliability)
 
 
-def growth_lines(view: ResultView, computed: np.ndarray) -> list[str]:
+def transient_growth_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     """Lines about the condition of the leading eigenvalue, the numerical abscissa and the transient growth;
     fewer if no growth is stored. computed: mask of the computed points, of the shape of the points."""
     variables = view.variables

@@ -11,22 +11,24 @@ import numpy as np
 
 MAX_DIGITS = 15
 """Largest number of significant digits of a number with an error."""
-RANGE_DIGITS = 6
+MAX_RANGE_END_DIGITS = 6
 """Largest number of significant digits of an end of a range; a large error reduces this number."""
-END_DIGITS = 9
+MAX_LOCATED_END_DIGITS = 9
 """Largest number of significant digits of an end of a range, if the end is a located point such as a fold."""
 PLAIN_EXPONENTS = range(-4, MAX_DIGITS)
 """Numbers with these decimal exponents are written without an exponent."""
 ROUNDING_EXCESS = 1e-9
 """An error that exceeds a one-digit number by at most this relative amount (rounding error) is not rounded up
 further."""
-MIN_ERROR = 1e-300
+MIN_ROUNDED_UP_ERROR = 1e-300
 """Smaller errors are not rounded up, because the unit of their digit would underflow."""
 NONE_TEXT = "none"
 """Text for a missing number or an empty range."""
 
 
-def span_text(values: np.ndarray, errors: np.ndarray | None = None, max_digits: int = RANGE_DIGITS) -> str:
+def span_text(
+    values: np.ndarray, errors: np.ndarray | None = None, max_digits: int = MAX_RANGE_END_DIGITS
+) -> str:
     """Range of the finite `values`, of any shape, as text; NONE_TEXT if no value is finite.
 
     errors: absolute errors, of the shape of the values, which limit the number of digits.
@@ -52,9 +54,12 @@ def axis_values_text(values: np.ndarray) -> str:
 
 def ranges_text(ranges: Sequence[tuple[float, float]], errors: Mapping[float, float]) -> str:
     """Ranges of a parameter as text; NONE_TEXT for an empty list. errors: absolute errors of ends of ranges,
-    by end; other ends are exact. Each end is rounded at the decimal place of twice its error, to END_DIGITS
-    digits at most."""
-    ends = [[_rounded_to_error(end, 2 * errors.get(end, 0.0), END_DIGITS) for end in ends] for ends in ranges]
+    by end; other ends are exact. Each end is rounded at the decimal place of twice its error, to
+    MAX_LOCATED_END_DIGITS digits at most."""
+    ends = [
+        [_rounded_to_error(end, 2 * errors.get(end, 0.0), MAX_LOCATED_END_DIGITS) for end in ends]
+        for ends in ranges
+    ]
     return ", ".join(" to ".join(pair) for pair in ends) or NONE_TEXT
 
 
@@ -72,7 +77,7 @@ def number_with_error(value: float, error: float) -> str:
         return "0"
     if not isfinite(error):
         return f"{value:.6g} (error not known)"
-    text, rounded_error = stated_error(value, error)
+    text, rounded_error = rounded_number_and_total_error(value, error)
     return f"{text} (+- {error_text(rounded_error)})"
 
 
@@ -88,16 +93,16 @@ def number_and_error(value: float, error: float) -> tuple[str, str]:
     if error == 0:
         return f"{value:.{MAX_DIGITS}g}", ""
     if not isfinite(error):
-        return f"{value:.{RANGE_DIGITS}g}", ""
+        return f"{value:.{MAX_RANGE_END_DIGITS}g}", ""
     if error >= abs(value):  # not even the first digit is known
         exponent = floor(log10(error))
         text = f"{round(value, -exponent) + 0.0:.{max(-exponent, 0)}f}"
         return text, error_text(error + abs(float(text) - value))
-    text, rounded_error = stated_error(value, error)
+    text, rounded_error = rounded_number_and_total_error(value, error)
     return text, error_text(rounded_error)
 
 
-def stated_error(value: float, error: float) -> tuple[str, float]:
+def rounded_number_and_total_error(value: float, error: float) -> tuple[str, float]:
     """Returns (number as text, rounded at the decimal place of `error`; sum of `error` and the rounding
     error)."""
     text = _rounded_to_error(value, error / 10, MAX_DIGITS)
@@ -107,13 +112,13 @@ def stated_error(value: float, error: float) -> tuple[str, float]:
 def error_text(error: float) -> str:
     """An error as text with one significant digit, rounded up; "inf" or "nan" for an error that is not
     finite."""
-    if not MIN_ERROR < error < inf:
+    if not MIN_ROUNDED_UP_ERROR < error < inf:
         return f"{error:.0e}"
     unit = 10.0 ** floor(log10(error))
     return f"{ceil(error / unit * (1 - ROUNDING_EXCESS)) * unit:.0e}"
 
 
-def rounded_text(value: float, error: float, max_digits: int = RANGE_DIGITS) -> str:
+def rounded_text(value: float, error: float, max_digits: int = MAX_RANGE_END_DIGITS) -> str:
     """A number as text with at most `max_digits` significant digits, chosen such that `error` is at most half
     a unit of the last digit; NONE_TEXT for a number that is not finite."""
     return _rounded_to_error(float(value), 2 * float(error), max_digits) if isfinite(value) else NONE_TEXT

@@ -3,7 +3,7 @@ line_parameter: parameter that varies along a row. row_parameter: parameter that
 
 import numpy as np
 
-from ...model.parameters import LINEAR_PARAMETERS
+from ...model.parameters import NON_OPTIONAL_LINEAR_PARAMETERS
 from ...results.file.view import ResultView
 from ...results.layouts.phase_diagram import STABILITY_CLASSES
 from ...results.layouts.rods import has_standard_rods
@@ -14,16 +14,16 @@ from .arm.arm import load_range_text
 from .diagram_curves import (
     criticality_lines,
     curve_count_lines,
-    curve_lines,
+    diagram_curve_lines,
     incomplete_curve_lines,
 )
-from .followed_ranges import followed_range_text
+from .followed_ranges import followed_beyond_range_text
 from .number_texts import axis_values_text, span_text
 from .stable_states import stable_state_lines
 from .summary_lines import SummaryLines
 from .thresholds import cost_lines, search_lines
 
-CROSSING_REMARKS = {
+CROSSING_KIND_REMARKS = {
     "onset": " of oscillations",
     "hopf": " (a pair becomes unstable)",
     "hopf_reverse": " (a pair becomes stable, other modes stay unstable)",
@@ -33,14 +33,14 @@ CROSSING_REMARKS = {
     "pair_leads": " (a complex pair becomes the leading pair)",
 }
 """Explanation printed after the name of a kind of crossing."""
-GRID_RESOLUTION = 1e-8
+COMPARED_GRID_SPACING = 1e-8
 """Spacing, in the unit of the parameter, of a uniform grid with which the cost of the rows is compared."""
 
 
 def phase_diagram_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
     """Summary of a phase diagram. computed: mask of the computed rows, of the shape of the rows."""
     variables = view.variables
-    line_parameter = next(name for name in LINEAR_PARAMETERS if name not in view.parameters)
+    line_parameter = next(name for name in NON_OPTIONAL_LINEAR_PARAMETERS if name not in view.parameters)
     row_parameter = next(name for name in view.parameters if len(view.parameter_values[name]) > 1)
     answer = [
         *class_fraction_lines(variables["class"][computed]),
@@ -50,7 +50,7 @@ def phase_diagram_summary(view: ResultView, computed: np.ndarray) -> SummaryLine
         answer += stable_state_lines(view, computed, line_parameter, row_parameter)
     reliability = search_lines(view, computed, "row")
     if "stable_states" in variables:
-        followed_text = followed_range_text(view, computed, line_parameter, "cycle_followed_")
+        followed_text = followed_beyond_range_text(view, computed, line_parameter, "cycle_followed_")
         reliability.append(f"{followed_text}, unless a curve of folds or torus points crosses the row there")
     details = [
         *class_count_lines(variables["class"][computed]),
@@ -58,14 +58,14 @@ def phase_diagram_summary(view: ResultView, computed: np.ndarray) -> SummaryLine
         *cost_saving_lines(view, computed, line_parameter),
     ]
     if "curve_number" in variables:
-        answer += curve_lines(view, line_parameter, row_parameter)
+        answer += diagram_curve_lines(view, line_parameter, row_parameter)
         reliability += [
             *curve_count_lines(view, line_parameter),
             *incomplete_curve_lines(view, line_parameter, row_parameter),
         ]
     if "curve_criticality" in variables:
         details += criticality_lines(view)
-    return SummaryLines(answer, reliability, details, crossings_of_arms(view, computed))
+    return SummaryLines(answer, reliability, details, straight_arm_threshold_lines(view, computed))
 
 
 def class_count_lines(classes: np.ndarray) -> list[str]:
@@ -88,11 +88,11 @@ def cost_saving_lines(view: ResultView, computed: np.ndarray, line_parameter: st
     row_count = int(computed.sum())
     solve_count = int(variables["solves"][computed].sum())
     boxes = int(variables["boxes"][computed].sum())
-    uniform = float(np.ptp(variables[line_parameter])) / GRID_RESOLUTION * row_count
+    uniform = float(np.ptp(variables[line_parameter])) / COMPARED_GRID_SPACING * row_count
     return [
         f"in all {counted(solve_count, 'eigenproblem')} and {counted(boxes, 'evaluation')} of D; a uniform "
-        f"grid that resolves {line_parameter} to {GRID_RESOLUTION:g} on these rows has {uniform:.2g} points, "
-        f"{float(f'{uniform / max(solve_count + boxes, 1):.1g}'):g} times as many"
+        f"grid that resolves {line_parameter} to {COMPARED_GRID_SPACING:g} on these rows has {uniform:.2g} "
+        f"points, {float(f'{uniform / max(solve_count + boxes, 1):.1g}'):g} times as many"
     ]
 
 
@@ -130,7 +130,7 @@ def lines_about_rows(
     return [
         *row_start_lines(view, computed, line_parameter),
         *_crossing_lines(view, computed, is_incomplete, line_parameter, row_parameter),
-        *_lines_about_flutter(view, computed, is_incomplete, line_parameter, row_parameter),
+        *_undecided_and_flutter_lines(view, computed, is_incomplete, line_parameter, row_parameter),
     ]
 
 
@@ -153,7 +153,9 @@ def _crossing_lines(
             )
             bound = "at least " * bool((unknown & ~has_kind).any())
             rows_text = f"on {bound}{count_of_total(has_kind.sum(), computed.sum(), 'row')}"
-            text = f"{word}{CROSSING_REMARKS.get(word, '')}: {rows_text}, {line_parameter} = {first_text}"
+            text = (
+                f"{word}{CROSSING_KIND_REMARKS.get(word, '')}: {rows_text}, {line_parameter} = {first_text}"
+            )
             text += f", {row_parameter} = {axis_values_text(row_values[has_kind])}"
             if is_later.any():
                 bound = "at least " * bool(unknown.any())
@@ -165,7 +167,7 @@ def _crossing_lines(
     return lines
 
 
-def _lines_about_flutter(
+def _undecided_and_flutter_lines(
     view: ResultView, computed: np.ndarray, unknown: np.ndarray, line_parameter: str, row_parameter: str
 ) -> list[str]:
     """Lines about undecided ranges, and about the rows with and without flutter. The masks as in
@@ -202,7 +204,7 @@ def _lines_about_flutter(
     return lines
 
 
-def crossings_of_arms(view: ResultView, computed: np.ndarray) -> list[str]:
+def straight_arm_threshold_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     """Lines about the thresholds of the straight arms along F, by kind, in the arms' units; an empty list for
     a rod, and for rows along another parameter. computed: mask of the computed rows, of the shape of the
     rows."""

@@ -8,7 +8,7 @@ from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import count_of_total, counted
 from ..located_thresholds import StoredThresholds
 from .number_texts import number_and_error, span_text
-from .stability import stability_lines
+from .stability import rod_and_arm_stability_lines
 from .summary_lines import SummaryLines, TextTable, in_brackets, region_text
 
 LOCATION_EXPLANATION = (
@@ -28,11 +28,13 @@ def spectrum_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
     """Summary of spectra. computed: mask of the computed points, of the shape of the points."""
     if computed.size == 1:
         numbers = eigenvalue_table(view)
-        return SummaryLines([unstable_count_line(view)], [], unknowns_lines(view, computed), numbers=numbers)
+        return SummaryLines(
+            [single_point_unstable_count_line(view)], [], unknowns_lines(view, computed), numbers=numbers
+        )
     lines, location_note, arm_sentences = threshold_lines(view)
     reliability = [
         *eigenvalue_error_lines(view, computed),
-        unstable_mode_count_line(view, computed),
+        max_unstable_count_and_proof_line(view, computed),
         *location_note,
     ]
     details = [*leading_eigenvalue_lines(view, computed), *unknowns_lines(view, computed)]
@@ -71,7 +73,7 @@ def leading_eigenvalue_lines(view: ResultView, computed: np.ndarray) -> list[str
 def threshold_lines(view: ResultView) -> tuple[list[str], list[str], list[str]]:
     """Returns (lines about thresholds along F, line on the method of location, lines in an arm's units);
     empty lists if F does not vary."""
-    lines, arm_sentences = stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on)
+    lines, arm_sentences = rod_and_arm_stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on)
     location_note = LOCATION_EXPLANATION if has_standard_rods(view.config) else NOT_LOCATED_NOTE
     return lines, [f"thresholds: {location_note}"] if lines else [], arm_sentences
 
@@ -88,7 +90,7 @@ def eigenvalue_table(view: ResultView) -> TextTable | None:
     return TextTable(headings, tuple(rows)) if rows else None
 
 
-def unstable_count_line(view: ResultView) -> str:
+def single_point_unstable_count_line(view: ResultView) -> str:
     """Line on the number of unstable modes at the only point of a file."""
     variables = view.variables
     unstable = int(variables["unstable_count"].max())
@@ -123,7 +125,7 @@ def unknowns_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     return [text]
 
 
-def unstable_mode_count_line(view: ResultView, computed: np.ndarray) -> str:
+def max_unstable_count_and_proof_line(view: ResultView, computed: np.ndarray) -> str:
     """Line with three numbers: the largest number of unstable modes at a point; the number of points at which
     the number of unstable modes is proved or, for rods that vary along their length, confirmed by an
     estimate; the number of points at which it is unknown. computed: mask of the computed points, of the shape

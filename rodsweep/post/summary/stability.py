@@ -9,7 +9,7 @@ from ...sweep.points.points import ParameterLine, lines_along
 from ...wording import count_of_total, counted
 from ..located_thresholds import LocatedThreshold, UnlocatedThreshold
 from .arm.arm import thresholds_of_arm
-from .number_texts import error_text, stated_error
+from .number_texts import error_text, rounded_number_and_total_error
 
 MAX_LISTED_LINES = 3
 """The thresholds of up to this number of lines of points are listed one by one; for more lines the range is
@@ -29,7 +29,7 @@ SummaryThreshold = LocatedThreshold | UnlocatedThreshold
 """A threshold of the straight rod: located, or bracketed by two points of the file."""
 
 
-def stability_lines(
+def rod_and_arm_stability_lines(
     view: ResultView, name: str, thresholds_on: Callable[[ParameterLine], Sequence[SummaryThreshold]]
 ) -> tuple[list[str], list[str]]:
     """Returns (sentences, sentences in an arm's units), one for each kind of threshold along the parameter
@@ -73,7 +73,7 @@ def _positions_text(
     thresholds by index of the line."""
     points = [point for line in by_line.values() for point in line]
     located = [point for point in points if isinstance(point, LocatedThreshold)]
-    errors = [stated_error(point.position, point.error)[1] for point in located]
+    errors = [rounded_number_and_total_error(point.position, point.error)[1] for point in located]
     error_clause = f" (+- {error_text(max(errors))})" if errors else ""
     count_text = count_of_total(len(by_line), len(names), "line")
     lines_text = f", found on {count_text} of points along {parameter_name}"
@@ -102,4 +102,4 @@ def _position_text(threshold: SummaryThreshold) -> str:
     ends."""
     if isinstance(threshold, UnlocatedThreshold):
         return f"between {threshold.low:.6g} and {threshold.high:.6g}"
-    return stated_error(threshold.position, threshold.error)[0]
+    return rounded_number_and_total_error(threshold.position, threshold.error)[0]

@@ -25,7 +25,7 @@ LISTED_STATES = {
     "stable states undecided": "undecided",
 }
 """Values of `stable_states` whose regions are listed, by the phrase in the summary."""
-NO_CYCLE_CHANGE = tuple(map(SPECIAL_KINDS.index, ("none", "hopf")))
+KINDS_WITHOUT_CYCLE_CHANGE = tuple(map(SPECIAL_KINDS.index, ("none", "hopf")))
 """Stored numbers of special points that are no change of cycles beside the changes of the straight rod."""
 
 
@@ -86,7 +86,7 @@ def _is_both_only_between_points(view: ResultView, line_parameter: str) -> np.nd
         states = variables["stable_states"][row]
         hopfs = variables["crossing_at"][row][np.isin(variables["crossing_kind"][row], HOPF_CROSSING_CODES)]
         specials = variables[f"cycle_special_{line_parameter}"][row][
-            ~np.isin(variables["cycle_special_kind"][row], NO_CYCLE_CHANGE)
+            ~np.isin(variables["cycle_special_kind"][row], KINDS_WITHOUT_CYCLE_CHANGE)
         ]
         for i in np.flatnonzero(states[:-1] + states[1:] == straight + cycle):
             positions_between = [

@@ -16,7 +16,7 @@ from .stability import FORCE_THRESHOLD_WORDS
 from .summary_lines import SummaryLines, TextTable, in_brackets, point_text, proof_clause
 from .threshold_trends import monotonicity_lines
 
-FIRST_THRESHOLD_RATES = {
+RATE_VARIABLE_BY_THRESHOLD_KIND = {
     "hopf": ("hopf_frequency", "frequency", ANGULAR_UNIT),
     "restabilization": ("restabilization_frequency", "frequency", ANGULAR_UNIT),
     "onset": ("onset_growth_rate", "growth rate", "1/tau2"),
@@ -52,9 +52,13 @@ def thresholds_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
         details = cost_lines(view, computed)
         arm_sentences = crossings_of_arm(view)
         return SummaryLines(
-            crossing_lines(view), completeness_lines(view), details, arm_sentences, crossing_table(view)
+            single_rod_crossing_lines(view),
+            completeness_lines(view),
+            details,
+            arm_sentences,
+            crossing_table(view),
         )
-    answer = [first_threshold_line(view, computed, event) for event in FIRST_THRESHOLD_RATES]
+    answer = [first_threshold_line(view, computed, event) for event in RATE_VARIABLE_BY_THRESHOLD_KIND]
     reliability = search_lines(view, computed, "rod")
     ends = view.variables["F_end"][computed]
     if np.isfinite(ends).any():
@@ -67,7 +71,7 @@ def first_threshold_line(view: ResultView, computed: np.ndarray, event: str) -> 
     with this threshold and with an unknown result. computed: mask of the computed points, of the shape of the
     points."""
     phrase = FORCE_THRESHOLD_WORDS[event]
-    rate_name, noun, unit = FIRST_THRESHOLD_RATES[event]
+    rate_name, noun, unit = RATE_VARIABLE_BY_THRESHOLD_KIND[event]
     variables = view.variables
     F = np.where(computed, variables[f"F_{event}"], np.nan).ravel()
     mask = np.isfinite(F)
@@ -102,7 +106,7 @@ def crossing_errors(view: ResultView, F: np.ndarray, force_name: str) -> np.ndar
     return np.where(table == F[:, None], errors, 0.0).max(axis=1)
 
 
-def crossing_lines(view: ResultView) -> list[str]:
+def single_rod_crossing_lines(view: ResultView) -> list[str]:
     """Lines about the first thresholds and the number of crossings of the only rod in a file, and the meaning
     of the kinds of crossings."""
     variables = view.point_values(0)

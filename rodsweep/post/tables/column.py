@@ -15,9 +15,9 @@ UNUSED_WORDS = ("none", "missing")
 """Words of a flag variable that mark unused items of a list."""
 BOOLEAN_TEXTS = {0: "false", 1: "true"}
 """Text in CSV for the boolean values 0 and 1."""
-ERROR_DIGITS = 3
+ESTIMATE_DIGITS = 3
 """Number of significant digits of estimates: errors and computing times."""
-COORDINATE_ROUNDING = 4 * np.finfo(float).eps
+MAX_RELATIVE_COORDINATE_ROUNDING = 4 * np.finfo(float).eps
 """Largest relative rounding error of a coordinate that was converted between units or computed from a
 range."""
 
@@ -78,10 +78,10 @@ class Column:
         return ["" if is_absent else text for text, is_absent in zip(texts, self.absent, strict=True)]
 
     def _numbers(self) -> list[str]:
-        """Real numbers as text: estimates with ERROR_DIGITS digits, coordinates without rounding error, other
-        numbers with all digits."""
+        """Real numbers as text: estimates with ESTIMATE_DIGITS digits, coordinates without rounding error,
+        other numbers with all digits."""
         if self.is_estimate:
-            return [f"{value:.{ERROR_DIGITS}g}" for value in self.values]
+            return [f"{value:.{ESTIMATE_DIGITS}g}" for value in self.values]
         values = self.values + self.values.dtype.type(0)  # -0.0 + 0 is 0.0, which needs no sign
         texts = [text.removesuffix(".0") for text in values.astype(str).tolist()]
         if not self.is_input:
@@ -111,7 +111,7 @@ def _without_rounding_error(value: float, text: str) -> str:
     if not np.isfinite(value):
         return text
     rounded = f"{value:.15g}"
-    is_close = abs(float(rounded) - value) <= COORDINATE_ROUNDING * abs(value)
+    is_close = abs(float(rounded) - value) <= MAX_RELATIVE_COORDINATE_ROUNDING * abs(value)
     return rounded if is_close and len(rounded) + 2 < len(text) else text
 
 

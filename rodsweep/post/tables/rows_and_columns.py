@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ...config.arm.axes import PARAMETER_STORED_ALONG
-from ...model.arm.drag import DRAG_NAMES
+from ...config.arm.axes import STORAGE_AXIS_OF_QUANTITY
+from ...model.arm.drag import DRAG_ESTIMATE_NAMES
 from ...model.arm.quantities import ALL_QUANTITIES
 from ...results.file.view import ResultView
 from ...results.layouts.si_variables import si_name_of, si_unit_of, si_variable
@@ -108,18 +108,18 @@ def si_columns(
             yield replace(column_of(si_values, values), absent=column.absent)
 
 
-def line_columns(view: ResultView, rows: Rows) -> Iterator[Column]:
+def varying_quantity_columns(view: ResultView, rows: Rows) -> Iterator[Column]:
     """Yields columns of the quantities of an arm that vary along a row of a diagram, such as the pressure if
     F varies."""
     for name, values in view.quantities.items():
-        if values.size > 1 and view.is_grid and PARAMETER_STORED_ALONG.get(name, "") not in view.parameters:
+        if values.size > 1 and view.is_grid and STORAGE_AXIS_OF_QUANTITY.get(name, "") not in view.parameters:
             yield quantity_column(name, values[rows[1]])
 
 
 def quantity_column(name: str, values: NDArray) -> Column:
     """Column of an arm's quantity `name`, with values of shape (rows,)."""
     column = coordinate_column(name, *ALL_QUANTITIES[name][:2], values)
-    return replace(column, flag_meanings=dict(enumerate(DRAG_NAMES))) if name == "drag" else column
+    return replace(column, flag_meanings=dict(enumerate(DRAG_ESTIMATE_NAMES))) if name == "drag" else column
 
 
 def _is_of_points(view: ResultView, variable: Variable) -> bool:
@@ -139,7 +139,7 @@ def quantities_of_view(view: ResultView) -> dict[str, NDArray]:
     point_count = view.variables["status"].size
     columns = {}
     for name, values in view.quantities.items():
-        dimension = PARAMETER_STORED_ALONG.get(name, "")
+        dimension = STORAGE_AXIS_OF_QUANTITY.get(name, "")
         if values.size == 1 or not view.is_grid:
             columns[name] = np.broadcast_to(values, point_count)
         elif dimension in view.parameters:

@@ -13,7 +13,7 @@ from ...results.file.view import ResultView
 from ...results.layouts import layout_of, sweep_wide_variables
 from ...results.layouts.variables import Variable
 
-LIST_INTRO = "there are"
+KNOWN_NAMES_PHRASE = "there are"
 """Phrase before the list of known names in an error message."""
 POINTS_TABLE = "points"
 """Name of the table with one row for each point of the file."""
@@ -120,9 +120,8 @@ def chosen_table(
     Raises InputError for an unknown name, and for columns of two tables."""
     if table is not None:
         if table not in contents.tables:
-            raise InputError(
-                f"{view.path} has no table {table!r}; {unknown_key_hint(table, contents.tables, LIST_INTRO)}"
-            )
+            hint = unknown_key_hint(table, contents.tables, KNOWN_NAMES_PHRASE)
+            raise InputError(f"{view.path} has no table {table!r}; {hint}")
         return table
     holding = {variable.name: name for name, variables in contents.lists.items() for variable in variables}
     holding |= {name: list_name for list_name in contents.lists for name in contents.dimensions(list_name)}
@@ -158,7 +157,7 @@ def refuse_unknown_columns(
         if name not in allowed:
             subject = f"the table {table} has" if table else "its tables have"
             raise InputError(
-                f"{path}: {subject} no column {name!r}; {unknown_key_hint(name, allowed, LIST_INTRO)}"
+                f"{path}: {subject} no column {name!r}; {unknown_key_hint(name, allowed, KNOWN_NAMES_PHRASE)}"
             )
         if name in columns[:index]:
             raise InputError(f"{path}: the column {name} is named twice")

@@ -13,7 +13,14 @@ from ...results.file.view import ResultView
 from ..branch_curves import followed_parameter
 from . import table_names
 from .column import Column
-from .rows_and_columns import Rows, indices_of_items, line_columns, list_columns, point_columns, si_columns
+from .rows_and_columns import (
+    Rows,
+    indices_of_items,
+    list_columns,
+    point_columns,
+    si_columns,
+    varying_quantity_columns,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +104,7 @@ class Tables:
         variables = self.contents.lists[name]
         rows = indices_of_items(self.view, variables, is_sweep_wide)
         columns = list(list_columns(self.view, variables, rows, is_sweep_wide))
-        columns += line_columns(self.view, rows) if name == table_names.GRID_TABLE else ()
+        columns += varying_quantity_columns(self.view, rows) if name == table_names.GRID_TABLE else ()
         points = None if is_sweep_wide else rows[0]
         return rows, [*columns, *si_columns(self.view, variables, columns, points)]
 

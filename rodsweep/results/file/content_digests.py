@@ -34,7 +34,7 @@ NUMBER_KINDS = "iuf"
 """NumPy type kinds allowed for variables of a result file: integers and floating-point numbers."""
 BYTES_PER_READ = 1 << 18
 """Number of bytes per read of a variable, which bounds the memory."""
-XARRAY_FILL_ATTRIBUTE = ("_FillValue", "[nan]")
+XARRAY_FILL_NAME_AND_VALUE = ("_FillValue", "[nan]")
 """(name, value as text) of an attribute that xarray adds when it writes a file, and that has no effect."""
 Digests = dict[str, dict[str, str]]
 """Digests by name, in two dicts under the keys `attributes` and `variables`."""
@@ -191,7 +191,7 @@ def _plain_attributes(attributes: Mapping[str, Any]) -> dict[str, Any]:
     """Attributes as lists of numbers or texts by name, without attributes of HDF5, netCDF and the user."""
     names = (name for name in attributes if name not in UNDIGESTED_ATTRIBUTES and not is_user_added(name))
     values = {name: _attribute_as_list(attributes[name]) for name in names}
-    return {name: value for name, value in values.items() if (name, str(value)) != XARRAY_FILL_ATTRIBUTE}
+    return {name: value for name, value in values.items() if (name, str(value)) != XARRAY_FILL_NAME_AND_VALUE}
 
 
 def _attribute_as_list(value: Any) -> Any:

@@ -16,9 +16,9 @@ from ...sweep.points.ranges import index_count
 from ..layouts.variables import MISSING_STATUS
 from ..run.journal import journal_directory, read_journals, read_reasons
 from .points import missing_ranges, write_records
-from .provenance import utc_time, with_failure_reasons
+from .provenance import updated_reasons_attribute, utc_time
 from .replacement import FileReplacement, disk_refusals, file_identity
-from .validation import ResultHeader, damage_refusals, is_rodsweep_file, read_header
+from .validation import ResultHeader, damage_refusals, is_rodsweep_or_damaged_file, read_header
 
 MAX_REREADS = 20
 """Maximum number of attempts to read a file that is replaced meanwhile. A run replaces its file every few
@@ -62,12 +62,12 @@ def journalled_points(header: ResultHeader, status: np.ndarray) -> np.ndarray:
     return records[::-1][last_indices]
 
 
-def journalled_reasons(header: ResultHeader) -> dict[str, str]:
+def reasons_attribute_with_journals(header: ResultHeader) -> dict[str, str]:
     """Dict with the attribute FAILURE_REASONS_ATTRIBUTE, including failed points in the journals; empty if no
     point failed."""
     directory = journal_directory(header.path)
     lines = read_reasons(directory, header.layout, header.fingerprint) if directory.is_dir() else ()
-    return with_failure_reasons(lines, header.attributes)
+    return updated_reasons_attribute(lines, header.attributes)
 
 
 def insert_records(values: np.ndarray, name: str, records: np.ndarray) -> None:
@@ -104,7 +104,7 @@ def _write_new_snapshot(path: Path, replacement: FileReplacement) -> tuple[int, 
         blocks = read_journals(journal_directory(path), header.layout, header.fingerprint, header.points)
         write_records(copy, blocks, header.layout)
         with h5py.File(copy, "r+") as file:
-            file.attrs.update(journalled_reasons(header) | {SNAPSHOT_ATTRIBUTE: utc_time()})
+            file.attrs.update(reasons_attribute_with_journals(header) | {SNAPSHOT_ATTRIBUTE: utc_time()})
         missing_count = index_count(missing_ranges(copy))
     return header.points - missing_count, header.points
 
@@ -112,7 +112,7 @@ def _write_new_snapshot(path: Path, replacement: FileReplacement) -> tuple[int, 
 def _is_snapshot(path: Path) -> bool:
     """Whether a file is a snapshot. A run that continues a snapshot turns the snapshot into an ordinary
     result file."""
-    if not is_rodsweep_file(path):
+    if not is_rodsweep_or_damaged_file(path):
         return False
     with damage_refusals(path), h5py.File(path, "r") as file:
         return bool(file.attrs.get(SNAPSHOT_ATTRIBUTE))

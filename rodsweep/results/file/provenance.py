@@ -68,7 +68,7 @@ def merged_blas_kernels(*kernel_texts: Iterable[str]) -> str:
     return "\n".join(sorted({kernel for kernels in kernel_texts for kernel in kernels}))
 
 
-def failure_sentence(failure: str) -> str:
+def example_failure_sentence(failure: str) -> str:
     """Sentence about a failed point, whose parameters have at most nine significant digits: "failed, for
     example at F = 0.3, k1 = 200: no mesh ...". failure: stored text, "F=0.3, k1=200.0: failed no mesh ...".
     """
@@ -85,7 +85,7 @@ def failure_kind(line: str) -> str:
     return MESSAGE_NUMBER_PATTERN.sub("#", line.partition(": ")[2])
 
 
-def joined_failure_reasons(*reason_texts: str) -> dict[str, str]:
+def joined_reasons_attribute(*reason_texts: str) -> dict[str, str]:
     """Dict with the attribute FAILURE_REASONS_ATTRIBUTE, joined from several values of this attribute; empty
     if there are no reasons.
 
@@ -100,16 +100,16 @@ def joined_failure_reasons(*reason_texts: str) -> dict[str, str]:
     return {FAILURE_REASONS_ATTRIBUTE: text} if text else {}
 
 
-def with_failure_reasons(lines: Iterable[str], attributes: Mapping[str, Any]) -> dict[str, str]:
+def updated_reasons_attribute(lines: Iterable[str], attributes: Mapping[str, Any]) -> dict[str, str]:
     """Dict with the attribute FAILURE_REASONS_ATTRIBUTE after new failures.
 
     attributes: attributes of the file, with the reasons of earlier runs.
     """
     # The newest examples first: an earlier one may be a point that has been computed anew.
-    return joined_failure_reasons(*lines, str(attributes.get(FAILURE_REASONS_ATTRIBUTE, "")))
+    return joined_reasons_attribute(*lines, str(attributes.get(FAILURE_REASONS_ATTRIBUTE, "")))
 
 
-def kernels_sentence(attribute: str) -> str:
+def several_kernels_warning(attribute: str) -> str:
     """Warning that several BLAS kernels computed the points of a file; empty for a single kernel. attribute:
     value of KERNELS_ATTRIBUTE."""
     kernels = attribute.splitlines()
@@ -131,7 +131,7 @@ def merged_history(attribute_sets: Sequence[Mapping[str, Any]]) -> dict[str, Any
     reasons = (
         str(attributes_of_file.get(FAILURE_REASONS_ATTRIBUTE, "")) for attributes_of_file in attribute_sets
     )
-    history |= joined_failure_reasons(*reasons)
+    history |= joined_reasons_attribute(*reasons)
     runs = [attributes for attributes in attribute_sets if "ranks" in attributes]
     if not runs:
         return history

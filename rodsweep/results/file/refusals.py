@@ -9,7 +9,7 @@ from .combination.extension import extension_of
 from .combination.identity import config_change_text
 from .creation import FilePlan
 from .points import points_of_file
-from .validation import InvalidResultFile, ResultHeader, is_rodsweep_file, read_header
+from .validation import InvalidResultFile, ResultHeader, is_rodsweep_or_damaged_file, read_header
 
 SPACE_FACTOR = 3
 """Disk space that a run needs (for the file, the journals and a new copy of the file), divided by the size of
@@ -40,7 +40,9 @@ def header_of_existing_file(path: Path, plan: FilePlan, journals: Path) -> Resul
         return read_header(path)
     except InvalidResultFile as error:
         remedies_clause = _remedies_clause(plan, journals)
-        if not is_rodsweep_file(path) and not journals_with_fingerprint(journals, plan.fingerprint):
+        if not is_rodsweep_or_damaged_file(path) and not journals_with_fingerprint(
+            journals, plan.fingerprint
+        ):
             remedies_clause = "choose another file with -o, or move this file away"
         raise InputError(f"{error}; the file is left unchanged: {remedies_clause}") from None
 

@@ -30,9 +30,9 @@ MAX_CHECKSUM_TEXT_BYTES = 100_000
 """Maximum size, in bytes, of the text with the checksum and the byte ranges that the checksum omits."""
 BYTES_PER_READ = 1 << 20
 """Number of bytes per read of a file, which bounds the memory."""
-MAX_INCLUDED_BYTES = 1 << 16
+MAX_INCLUDED_VARIABLE_BYTES = 1 << 16
 """Size of a variable, in bytes, up to which the checksum of HDF5's structures includes its numbers."""
-ByteRange = tuple[int, int]
+OffsetAndSize = tuple[int, int]
 """Byte range of a file: (offset, size), in bytes."""
 
 
@@ -118,14 +118,17 @@ def _hdf5_end(stream: BinaryIO) -> int:
     return int.from_bytes(header[offset : offset + 8], "little")
 
 
-def _large_pieces(file: h5py.File) -> list[ByteRange]:
-    """Byte ranges of the numbers of contiguous variables larger than MAX_INCLUDED_BYTES, in order."""
+def _large_pieces(file: h5py.File) -> list[OffsetAndSize]:
+    """Byte ranges of the numbers of contiguous variables larger than MAX_INCLUDED_VARIABLE_BYTES, in
+    order."""
     variables = [dataset for dataset in map(file.get, file) if isinstance(dataset, h5py.Dataset)]
     ranges = {(dataset.id.get_offset(), dataset.id.get_storage_size()) for dataset in variables}
-    return sorted((start, size) for start, size in ranges if start is not None and size > MAX_INCLUDED_BYTES)
+    return sorted(
+        (start, size) for start, size in ranges if start is not None and size > MAX_INCLUDED_VARIABLE_BYTES
+    )
 
 
-def _left_out_pieces(ranges: list[ByteRange], end: int) -> Iterator[ByteRange]:
+def _left_out_pieces(ranges: list[OffsetAndSize], end: int) -> Iterator[OffsetAndSize]:
     """Yields the byte ranges from 0 to `end` that the sorted byte ranges `ranges` leave out."""
     position = 0
     # An empty piece at the end closes the last gap.
@@ -136,7 +139,7 @@ def _left_out_pieces(ranges: list[ByteRange], end: int) -> Iterator[ByteRange]:
         position = start + size
 
 
-def _checksum(stream: BinaryIO, ranges: Iterator[ByteRange]) -> int:
+def _checksum(stream: BinaryIO, ranges: Iterator[OffsetAndSize]) -> int:
     """CRC-32 of consecutive byte ranges of a file."""
     checksum = 0
     for start, size in ranges:

@@ -35,10 +35,10 @@ from .combination.extension import extension_of
 from .creation import NO_ADDITIONS, FilePlan, FinalVariables, add_variables, create_file
 from .current_state import SNAPSHOT_ATTRIBUTE
 from .points import iterate_statuses, missing_ranges, points_of_file, records_of_points, write_records
-from .provenance import merged_history, with_failure_reasons
+from .provenance import merged_history, updated_reasons_attribute
 from .refusals import header_of_existing_file, require_room, require_same_config
 from .replacement import FileReplacement, disk_refusals, file_identity
-from .validation import ResultHeader, damage_refusals, is_rodsweep_file
+from .validation import ResultHeader, damage_refusals, is_rodsweep_or_damaged_file
 
 BACKUP_GLOB = "before-*.h5"
 """Pattern of the names of backups of the file, kept with the journals until an extension is complete."""
@@ -85,7 +85,7 @@ class ResultFileWriter:
 
     def _create(self, replaces: bool) -> None:
         """Creates the file of the plan, with its journals' points unless `replaces`; raises InputError."""
-        if self.path.exists() and not is_rodsweep_file(self.path):
+        if self.path.exists() and not is_rodsweep_or_damaged_file(self.path):
             raise InputError(f"{self.path} is not a result file, so --fresh does not replace it")
         require_room(self.path, self.plan)
         own_journals = journals_with_fingerprint(self.journal_directory, self.plan.fingerprint)
@@ -215,7 +215,7 @@ class ResultFileWriter:
                             if additions:
                                 point_variables = self.plan.variables_from_points(file)
                                 add_variables(file, (*additions.variables, *point_variables))
-                            file.attrs.update(attributes | with_failure_reasons(reasons, file.attrs))
+                            file.attrs.update(attributes | updated_reasons_attribute(reasons, file.attrs))
             for journal in journals:
                 journal.unlink(missing_ok=True)
 

@@ -186,7 +186,7 @@ def require_variables_of_layout(file: h5py.File, layout: Layout) -> None:
             )
 
 
-def is_rodsweep_file(path: Path) -> bool:
+def is_rodsweep_or_damaged_file(path: Path) -> bool:
     """Whether a file is a rodsweep result, or an HDF5 file that is too damaged to be identified."""
     if not path.is_file():
         return False

@@ -15,7 +15,12 @@ from ...model.parameters import PARAMETERS
 from ..layouts.si_units import load_kind_of
 from ..layouts.variables import TYPED_UNIT
 from .content_digests import is_user_added
-from .current_state import insert_records, journalled_points, journalled_reasons, read_file_and_journals
+from .current_state import (
+    insert_records,
+    journalled_points,
+    read_file_and_journals,
+    reasons_attribute_with_journals,
+)
 from .validation import damage_refusals, escape_control_characters, open_checked, refuse_absent
 
 MAX_CHECKED_BYTES = 10**9
@@ -199,7 +204,7 @@ def _view(path: Path) -> ResultView:
         stored = (name for name in ALL_QUANTITIES if name in file)
         units = {name: str(file[name].attrs[TYPED_UNIT]) for name in stored if TYPED_UNIT in file[name].attrs}
     layout = header.layout
-    attributes = header.attributes | journalled_reasons(header)
+    attributes = header.attributes | reasons_attribute_with_journals(header)
     return ResultView(
         path, attributes, variables, layout.parameters, flags, len(recent), layout.arm_axes, units
     )

@@ -60,4 +60,4 @@ def lacks_sweep_wide_variables(attributes: Mapping[str, Any]) -> bool:
     curves of a phase diagram."""
     if "finished" in attributes or "config_resolved" not in attributes:
         return False
-    return layout_of(json.loads(attributes["config_resolved"])).needs_all_points
+    return layout_of(json.loads(attributes["config_resolved"])).has_variables_of_all_points

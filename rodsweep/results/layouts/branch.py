@@ -6,7 +6,7 @@ from ...model.parameters import NONLINEAR_PARAMETERS, PARAMETERS, parameter_name
 from .limit_cycle import LEAST_STRETCH_VARIABLE
 from .rods import with_certified_meaning
 from .variables import (
-    NEEDS_NEW_SOLVE,
+    NEW_SOLVE_RULE,
     SECONDS_VARIABLE,
     STATUS_VARIABLE,
     ExtensionRule,
@@ -48,7 +48,7 @@ ERROR_VARIABLES = (
 """(name of a variable with an error estimate of a cycle, its meaning); errors at a fixed parameter value."""
 
 
-def followed_variables(parameter_name: str) -> tuple[Variable, ...]:
+def branch_cycle_variables(parameter_name: str) -> tuple[Variable, ...]:
     """Variables of the cycles on all branches, branch by branch. parameter_name: parameter along which the
     branches are followed."""
     unit = PARAMETERS[parameter_name].unit
@@ -139,7 +139,7 @@ def _list_length_rule(name: str) -> ExtensionRule:
 OPTION_EXTENSION_RULES = {
     "cycles": _list_length_rule("point_count"),
     "special": _list_length_rule("special_count"),
-    "certify": NEEDS_NEW_SOLVE,
+    "certify": NEW_SOLVE_RULE,
 }
 
 
@@ -158,7 +158,7 @@ def layout(config: dict[str, Any]) -> Layout:
         integer("unstable_at_start", "number of unstable modes of the straight rod at start; -1: not known"),
         boolean("certified", "whether the list of Hopf points is proved complete"),
         *followed_range_variables(parameter),
-        *followed_variables(parameter),
+        *branch_cycle_variables(parameter),
         *special_variables(parameter),
         SECONDS_VARIABLE,
         STATUS_VARIABLE,

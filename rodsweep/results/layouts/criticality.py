@@ -6,7 +6,7 @@ from typing import Any
 from ...model.parameters import NONLINEAR_PARAMETERS, PARAMETERS, parameter_names_except
 from .rods import with_certified_meaning
 from .thresholds import CROSSING_LIST_EXTENSION_RULE, SEARCH_END_VARIABLES, search_variables
-from .variables import ANGULAR_UNIT, NEEDS_NEW_SOLVE, Layout, Variable, along_dimension, real
+from .variables import ANGULAR_UNIT, NEW_SOLVE_RULE, Layout, Variable, along_dimension, real
 
 FORCE_UNIT = PARAMETERS["F"].unit
 SLOPE_UNIT = "L^2/(k3 tau2)"
@@ -60,7 +60,7 @@ NORMAL_FORM_VARIABLES = along_dimension(
     Variable("elements", "<i2", 0, "1", "spectral elements used"),
     Variable("order", "<i2", 0, "1", "polynomial order used"),
 )
-OPTION_EXTENSION_RULES = {"crossings": CROSSING_LIST_EXTENSION_RULE, "certify": NEEDS_NEW_SOLVE}
+OPTION_EXTENSION_RULES = {"crossings": CROSSING_LIST_EXTENSION_RULE, "certify": NEW_SOLVE_RULE}
 
 
 def layout(config: dict[str, Any]) -> Layout:

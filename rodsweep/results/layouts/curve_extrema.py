@@ -10,7 +10,7 @@ EXTREMA_UNLOCATED = integer(
 """A file without such extrema does not have this variable."""
 
 
-def curve_extremum_variables(line_parameter: str, row_parameter: str) -> dict[str, Variable]:
+def fold_curve_extremum_variables(line_parameter: str, row_parameter: str) -> dict[str, Variable]:
     """Variables, by name, of the extrema of the row parameter `row_parameter` along curves of folds of
     cycles; a file without extrema does not have them. line_parameter: parameter along the rows."""
     units = {name: PARAMETERS[name].unit for name in (line_parameter, row_parameter)}

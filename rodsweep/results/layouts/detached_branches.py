@@ -9,7 +9,7 @@ DETACHED_ROW_VARIABLES = along_dimension(
     integer(DETACHED_ROW_NAME, "number, from 1, of a row with branches that no Hopf point leads to"),
     integer("cycle_detached_count", "number of special points on these branches of the row"),
 )
-DETACHED_BRANCH_VARIABLES = {variable.name: variable for variable in DETACHED_ROW_VARIABLES}
+DETACHED_ROW_VARIABLES_BY_NAME = {variable.name: variable for variable in DETACHED_ROW_VARIABLES}
 """Variables, by name, of the rows whose stable states contain cycles on branches that were found only because
 a curve of folds or torus points crosses the row; a file without such rows does not have them."""
 CURVES_LOST_BEYOND = integer(

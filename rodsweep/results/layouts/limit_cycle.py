@@ -6,13 +6,18 @@ from typing import Any
 
 import numpy as np
 
-from ...model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, PARAMETERS, TRANSVERSE_PARAMETERS
+from ...model.parameters import (
+    NON_OPTIONAL_LINEAR_PARAMETERS,
+    NONLINEAR_PARAMETERS,
+    PARAMETERS,
+    TRANSVERSE_PARAMETERS,
+)
 from .rods import has_standard_rods, optional_parameters_in, with_meaning
 from .thresholds import CROSSING_KINDS
 from .variables import (
     ANGULAR_UNIT,
     MESH_VARIABLES,
-    NEEDS_NEW_SOLVE,
+    NEW_SOLVE_RULE,
     NOT_KNOWN_SUFFIX,
     SECONDS_VARIABLE,
     STATUS_VARIABLE,
@@ -150,20 +155,20 @@ def hopf_point_variables(names: Collection[str]) -> tuple[Variable, ...]:
     )
 
 
-NEEDS_NEW_SOLVE_OF_CYCLES = ExtensionRule(lambda records, before: np.isnan(records["period"]))
+NEW_SOLVE_OF_CYCLES_RULE = ExtensionRule(lambda records, before: np.isnan(records["period"]))
 """Rule for the options that set the stored data of a cycle: after an increase, every point with a cycle is
 solved again."""
 OPTION_EXTENSION_RULES = {
-    **dict.fromkeys(("harmonics", "samples", "shapes", "nodes"), NEEDS_NEW_SOLVE_OF_CYCLES),
-    "transient": NEEDS_NEW_SOLVE,
-    "time": ExtensionRule(NEEDS_NEW_SOLVE_OF_CYCLES.has_data, ("tau2", "tau1")),
+    **dict.fromkeys(("harmonics", "samples", "shapes", "nodes"), NEW_SOLVE_OF_CYCLES_RULE),
+    "transient": NEW_SOLVE_RULE,
+    "time": ExtensionRule(NEW_SOLVE_OF_CYCLES_RULE.has_data, ("tau2", "tau1")),
 }
 
 
 def sweep_wide_variables(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
     """Variables of the Hopf points on the lines of points in the file of a resolved config. is_grid: not
     used."""
-    variables = hopf_point_variables((*LINEAR_PARAMETERS, *optional_parameters_in(config)))
+    variables = hopf_point_variables((*NON_OPTIONAL_LINEAR_PARAMETERS, *optional_parameters_in(config)))
     if has_standard_rods(config):
         return variables
     meaning = "number of searched lines whose list of Hopf points is confirmed by counts of unstable modes"

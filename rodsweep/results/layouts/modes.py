@@ -3,7 +3,7 @@
 from typing import Any
 
 from .spectrum import EIGENVECTOR_VARIABLES, MODE_VARIABLES, POINT_VARIABLES, complex_pair
-from .variables import NEEDS_NEW_SOLVE, Layout, along_dimension, real
+from .variables import NEW_SOLVE_RULE, Layout, along_dimension, real
 
 MODE_FIELD_VARIABLES = (
     *EIGENVECTOR_VARIABLES,
@@ -31,7 +31,7 @@ GROWTH_VARIABLES = (
     real("transient_time", "tau2", "time at which transient_growth is reached"),
     real("growth_error", "1", "relative error of transient_growth"),
 )
-OPTION_EXTENSION_RULES = dict.fromkeys(("modes", "nodes", "growth", "certify"), NEEDS_NEW_SOLVE)
+OPTION_EXTENSION_RULES = dict.fromkeys(("modes", "nodes", "growth", "certify"), NEW_SOLVE_RULE)
 
 
 def layout(config: dict[str, Any]) -> Layout:

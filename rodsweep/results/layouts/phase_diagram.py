@@ -6,15 +6,15 @@ from typing import Any
 from ...model.parameters import PARAMETERS, TRANSVERSE_PARAMETERS, parameter_names_except
 from .branch import SPECIAL_KINDS, followed_range_variables
 from .criticality import LANDAU_UNIT, SLOPE_UNIT, criticality_variable
-from .curve_extrema import EXTREMA_UNLOCATED, curve_extremum_variables
-from .detached_branches import CURVES_LOST_BEYOND, DETACHED_BRANCH_VARIABLES, DETACHED_ROW_NAME
+from .curve_extrema import EXTREMA_UNLOCATED, fold_curve_extremum_variables
+from .detached_branches import CURVES_LOST_BEYOND, DETACHED_ROW_NAME, DETACHED_ROW_VARIABLES_BY_NAME
 from .rods import with_certified_meaning
 from .spectrum import UNSTABLE_COUNT_VARIABLE
 from .thresholds import CROSSING_LIST_EXTENSION_RULE, search_variables
 from .variables import (
     ANGULAR_UNIT,
-    NEEDS_NEW_SOLVE,
-    NEEDS_NO_SOLVE,
+    NEW_SOLVE_RULE,
+    NO_NEW_SOLVE_RULE,
     Layout,
     Variable,
     along_dimension,
@@ -61,9 +61,9 @@ CYCLE_CURVE_ENDS = {
 }
 """Meaning of every reason why a curve of folds of cycles, or of torus points, ends, by word; the file stores
 the position in this table."""
-OPTION_EXTENSION_RULES = dict.fromkeys(("certify", "cycles"), NEEDS_NEW_SOLVE) | {
+OPTION_EXTENSION_RULES = dict.fromkeys(("certify", "cycles"), NEW_SOLVE_RULE) | {
     "crossings": CROSSING_LIST_EXTENSION_RULE,
-    "curves": NEEDS_NO_SOLVE,
+    "curves": NO_NEW_SOLVE_RULE,
 }
 
 
@@ -83,9 +83,9 @@ def sweep_wide_variables(config: dict[str, Any], is_grid: bool) -> tuple[Variabl
     `phase_diagram.bautin_along` only. is_grid: not used."""
     (line, row), _ = plane_of(config)
     variables = curve_variables(line, row) | criticality_variables(line, row)
-    variables |= curve_extremum_variables(line, row)
+    variables |= fold_curve_extremum_variables(line, row)
     variables |= {variable.name: variable for variable in (EXTREMA_UNLOCATED, CURVES_LOST_BEYOND)}
-    variables |= cycle_curve_variables(line, row) | DETACHED_BRANCH_VARIABLES
+    variables |= cycle_curve_variables(line, row) | DETACHED_ROW_VARIABLES_BY_NAME
     for third in config["phase_diagram"].get("bautin_along") or ():
         variables |= bautin_curve_variables(line, row, third)
     return tuple(variables.values())

@@ -34,7 +34,7 @@ class SIUnit(NamedTuple):
         return np.asarray(numerator / (2 * np.pi * denominator if self.unit == HERTZ else denominator))
 
 
-NO_UNIT = SIUnit()
+NO_SI_UNIT = SIUnit()
 """Used for variables that are not stored in SI units."""
 SI_UNIT_BY_DIMENSIONLESS_UNIT = {
     "tau2": SIUnit("s", ("tau2",)),
@@ -45,7 +45,7 @@ SI_UNIT_BY_DIMENSIONLESS_UNIT = {
     "k3/(L tau2)": SIUnit("W", ("force_scale", "length"), ("tau2",)),
 }
 """SI units of the dimensionless units of time, length, energy and power."""
-FORCE_UNITS = {load: SIUnit(UNITS[load][0], (SCALE_NAMES[load],)) for load in LOADS}
+FORCE_SI_UNIT_BY_LOAD = {load: SIUnit(UNITS[load][0], (SCALE_NAMES[load],)) for load in LOADS}
 """SI unit in which the follower force is stored, by name of the arm's load, "pressure" or "force"."""
 
 

@@ -14,24 +14,31 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...config.arm.axes import PARAMETER_STORED_ALONG, grid_axis_names
+from ...config.arm.axes import STORAGE_AXIS_OF_QUANTITY, grid_axis_names
 from ...config.arm.quantities import typed_unit
 from ...config.arm.section import ArmConfig
 from ...config.parameters_section import ParametersSection
 from ...config.tasks import makes_diagram
-from ...model.arm.drag import DRAG_NAMES
+from ...model.arm.drag import DRAG_ESTIMATE_NAMES
 from ...model.arm.neglected import Validity
 from ...model.arm.quantities import ALL_QUANTITIES, UNITS
 from ...model.parameters import PARAMETERS
 from ...sweep.points.points import Points
-from .si_units import FORCE_UNITS, HERTZ, NO_UNIT, SI_UNIT_BY_DIMENSIONLESS_UNIT, SIUnit, load_kind_of
+from .si_units import (
+    FORCE_SI_UNIT_BY_LOAD,
+    HERTZ,
+    NO_SI_UNIT,
+    SI_UNIT_BY_DIMENSIONLESS_UNIT,
+    SIUnit,
+    load_kind_of,
+)
 from .variables import DIMENSIONS, FilledVariable, Layout, Variable, real, word
 
 SI_SUFFIX = "_si"
 """Suffix of the name of a variable in SI units."""
 HERTZ_SUFFIX = "_hz"
 """Suffix of the name of a frequency in Hz."""
-LOAD_OF_UNIT = {each.unit: load for load, each in FORCE_UNITS.items()}
+LOAD_OF_UNIT = {each.unit: load for load, each in FORCE_SI_UNIT_BY_LOAD.items()}
 """Name of the load, "pressure" or "force", by its SI unit."""
 HERTZ_NAMES_OF_THRESHOLDS = {
     f"{event}_frequency": f"frequency_{event}_hz" for event in ("hopf", "restabilization")
@@ -39,7 +46,7 @@ HERTZ_NAMES_OF_THRESHOLDS = {
 """Name of the variable in Hz, by name of the variable for the angular frequency at a threshold."""
 FORCE_VARIABLES_OF_BRANCHES = ("special_at", "special_error")
 """Names of variables of the task branch that are forces for an arm, whose branches are followed in F only."""
-SI_DIMENSIONS = ((), ("mode",), ("crossing",), ("branch_point",), ("special",))
+DIMENSIONS_STORED_IN_SI = ((), ("mode",), ("crossing",), ("branch_point",), ("special",))
 """Extra dimensions of variables that are stored in SI units too; longer tables are stored once."""
 NEGLECTED_EFFECTS = (
     "inertia_of_the_arm",
@@ -50,13 +57,13 @@ NEGLECTED_EFFECTS = (
     "flattening_of_the_wall",
 )
 """Effects that the model neglects, named as in `rodsweep.model.arm.neglected` with underscores for blanks."""
-VALIDITY_NOT_KNOWN = -1
+UNKNOWN_VALIDITY_NUMBER = -1
 """Value of model_applies where the solver may have missed an unstable mode or a cycle."""
 VALIDITY_VARIABLES = (
     word(
         "model_applies",
         "whether the model applies to the arm, judged by the effects that it neglects",
-        ((VALIDITY_NOT_KNOWN, "not_known"), *((int(each), each.name) for each in Validity)),
+        ((UNKNOWN_VALIDITY_NUMBER, "not_known"), *((int(each), each.name) for each in Validity)),
     ),
     word(
         "neglected_effect",
@@ -119,19 +126,19 @@ def _si_meaning(variable: Variable, unit: str) -> str:
 
 
 def _stored_si_unit(variable: Variable, is_force: bool) -> SIUnit:
-    """SI unit in which a variable is also stored, or NO_UNIT."""
-    return si_unit_of(variable, is_force) if variable.extra in SI_DIMENSIONS else NO_UNIT
+    """SI unit in which a variable is also stored, or NO_SI_UNIT."""
+    return si_unit_of(variable, is_force) if variable.extra in DIMENSIONS_STORED_IN_SI else NO_SI_UNIT
 
 
 def si_unit_of(variable: Variable, is_force: bool) -> SIUnit:
-    """SI unit of a dimensionless variable, or NO_UNIT; is_force: whether the arm's load is a force."""
+    """SI unit of a dimensionless variable, or NO_SI_UNIT; is_force: whether the arm's load is a force."""
     if variable.dtype != "<f8":
-        return NO_UNIT
+        return NO_SI_UNIT
     if variable.units == PARAMETERS["F"].unit and (
         "F" in variable.name.split("_") or variable.name in FORCE_VARIABLES_OF_BRANCHES
     ):
-        return FORCE_UNITS["force" if is_force else "pressure"]
-    return SI_UNIT_BY_DIMENSIONLESS_UNIT.get(variable.units, NO_UNIT)
+        return FORCE_SI_UNIT_BY_LOAD["force" if is_force else "pressure"]
+    return SI_UNIT_BY_DIMENSIONLESS_UNIT.get(variable.units, NO_SI_UNIT)
 
 
 def si_variable(
@@ -164,7 +171,7 @@ def arm_variables(parameters: ParametersSection, points: Points) -> tuple[Filled
     if not points.arm_axes:
         quantities = arm.grid_quantities()
         along = {
-            n: (PARAMETER_STORED_ALONG[n],) if np.ndim(quantity_values) else ()
+            n: (STORAGE_AXIS_OF_QUANTITY[n],) if np.ndim(quantity_values) else ()
             for n, quantity_values in quantities.items()
         }
         return tuple(_si_variable(arm, n, values, along[n]) for n, values in quantities.items())
@@ -186,7 +193,7 @@ def _si_variable(arm: ArmConfig, name: str, values: Any, dimensions: tuple[str, 
     if name in UNITS and getattr(arm, name) is not None:
         variable = replace(variable, typed_unit=typed_unit(name, getattr(arm, name)))
     if name == "drag":
-        variable = replace(variable, dtype="|i1", fill=-1, flags=tuple(enumerate(DRAG_NAMES)))
+        variable = replace(variable, dtype="|i1", fill=-1, flags=tuple(enumerate(DRAG_ESTIMATE_NAMES)))
     return variable, np.asarray(values, variable.dtype)
 
 

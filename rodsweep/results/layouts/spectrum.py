@@ -6,14 +6,14 @@ The task modes shares the variables.
 from dataclasses import replace
 from typing import Any
 
-from ...model.parameters import LINEAR_PARAMETERS, PARAMETERS
+from ...model.parameters import NON_OPTIONAL_LINEAR_PARAMETERS, PARAMETERS
 from .rods import estimates_counts, has_linear_law, has_standard_rods, with_meaning
 from .thresholds import CROSSING_KINDS
 from .variables import (
     ANGULAR_UNIT,
     MESH_VARIABLES,
-    NEEDS_NEW_SOLVE,
-    NEEDS_NO_SOLVE,
+    NEW_SOLVE_RULE,
+    NO_NEW_SOLVE_RULE,
     SECONDS_VARIABLE,
     STATUS_VARIABLE,
     Layout,
@@ -52,7 +52,7 @@ MODE_VARIABLES = (
 CERTIFIED_VARIABLE = boolean(
     "certified", "whether the winding number of D proves the list of leading modes complete"
 )
-ESTIMATED_MEANING = (
+CERTIFIED_MEANING_OF_ESTIMATES = (
     "whether D right of the spectrum, or the winding number of D, proves the list of leading modes "
     "complete; for arms that vary along their length the proof is partly an estimate"
 )
@@ -110,28 +110,30 @@ def longitudinal_parameters(is_closed_form: bool, linear: bool) -> tuple[str, ..
     return arm_parameters if linear else ("F", *arm_parameters)
 
 
-CHANGE_DIMENSION = "change"
+FORCE_CHANGE_DIMENSION = "change"
 """Name of the dimension of the thresholds of the straight rod on lines of points along F."""
 FORCE_CHANGE_VARIABLES = (
     word(
         "change_kind",
         "kind of the change as F grows",
         ((CROSSING_KINDS.index(kind), kind) for kind in ("none", "onset", "hopf", "restabilization")),
-        CHANGE_DIMENSION,
+        FORCE_CHANGE_DIMENSION,
     ),
     *(
-        real(f"change_{p}", PARAMETERS[p].unit, f"{p} at the change", CHANGE_DIMENSION)
-        for p in LINEAR_PARAMETERS
+        real(f"change_{p}", PARAMETERS[p].unit, f"{p} at the change", FORCE_CHANGE_DIMENSION)
+        for p in NON_OPTIONAL_LINEAR_PARAMETERS
     ),
-    real("change_error", "1", "estimate of the relative error of change_F", CHANGE_DIMENSION),
-    real("change_growth_rate", "1/tau2", "growth rate of the modes that change", CHANGE_DIMENSION),
-    real("change_frequency", ANGULAR_UNIT, "angular frequency of the modes that change", CHANGE_DIMENSION),
+    real("change_error", "1", "estimate of the relative error of change_F", FORCE_CHANGE_DIMENSION),
+    real("change_growth_rate", "1/tau2", "growth rate of the modes that change", FORCE_CHANGE_DIMENSION),
+    real(
+        "change_frequency", ANGULAR_UNIT, "angular frequency of the modes that change", FORCE_CHANGE_DIMENSION
+    ),
 )
 """Variables of the forces at which the straight rod starts to oscillate, becomes unstable or stable again,
 which are computed after the last point."""
 OPTIONS_THAT_NEED_NEW_SOLVE = ("modes", "certify", "vectors", "nodes", "follow")
-OPTION_EXTENSION_RULES = dict.fromkeys(OPTIONS_THAT_NEED_NEW_SOLVE, NEEDS_NEW_SOLVE) | {
-    "longitudinal": NEEDS_NO_SOLVE
+OPTION_EXTENSION_RULES = dict.fromkeys(OPTIONS_THAT_NEED_NEW_SOLVE, NEW_SOLVE_RULE) | {
+    "longitudinal": NO_NEW_SOLVE_RULE
 }
 
 
@@ -156,7 +158,7 @@ def layout(config: dict[str, Any]) -> Layout:
     each_point: tuple[Variable, ...] = FOLLOWED_POINT_VARIABLES
     extents = {"mode": options["modes"]}
     if estimates_counts(config):
-        each_point = with_meaning(each_point, CERTIFIED_VARIABLE.name, ESTIMATED_MEANING)
+        each_point = with_meaning(each_point, CERTIFIED_VARIABLE.name, CERTIFIED_MEANING_OF_ESTIMATES)
     if not options["vectors"]:
         return Layout(MODE_VARIABLES + each_point, extents)
     return Layout(MODE_VARIABLES + EIGENVECTOR_VARIABLES + each_point, extents | {"u": options["nodes"]})

@@ -7,7 +7,7 @@ from ...model.parameters import PARAMETERS, parameter_names_except
 from .rods import with_certified_meaning
 from .variables import (
     ANGULAR_UNIT,
-    NEEDS_NEW_SOLVE,
+    NEW_SOLVE_RULE,
     SECONDS_VARIABLE,
     STATUS_VARIABLE,
     ExtensionRule,
@@ -90,7 +90,7 @@ def search_variables(line_parameter: str, position_name: str) -> tuple[Variable,
 CROSSING_LIST_EXTENSION_RULE = ExtensionRule(lambda records, before: records["crossing_count"] <= before)
 """Rule for the maximum number of stored crossings; a stored list that is not full already has all
 crossings."""
-OPTION_EXTENSION_RULES = {"crossings": CROSSING_LIST_EXTENSION_RULE, "certify": NEEDS_NEW_SOLVE}
+OPTION_EXTENSION_RULES = {"crossings": CROSSING_LIST_EXTENSION_RULE, "certify": NEW_SOLVE_RULE}
 
 
 def layout(config: dict[str, Any]) -> Layout:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...model.parameters import LINEAR_PARAMETERS, PARAMETERS
+from ...model.parameters import NON_OPTIONAL_LINEAR_PARAMETERS, PARAMETERS
 
 NO_NAMES: Mapping[str, str] = {}
 """Empty mapping for the argument `names` of `outcome_values`: every field has the name of its variable."""
@@ -197,9 +197,9 @@ class ExtensionRule:
         return bool(new > old)
 
 
-NEEDS_NEW_SOLVE = ExtensionRule(lambda records, before: np.zeros(len(records), bool))
+NEW_SOLVE_RULE = ExtensionRule(lambda records, before: np.zeros(len(records), bool))
 """Rule for an option whose increase needs a new solve of every point."""
-NEEDS_NO_SOLVE = ExtensionRule(lambda records, before: np.ones(len(records), bool))
+NO_NEW_SOLVE_RULE = ExtensionRule(lambda records, before: np.ones(len(records), bool))
 """Rule for an option whose increase needs no new solve, because the additional data belong to all points
 together."""
 FilledVariable = tuple[Variable, NDArray[Any]]
@@ -213,12 +213,12 @@ class Layout:
     variables: tuple[Variable, ...]
     extents: dict[str, int]
     """Length of each extra dimension, by name."""
-    parameters: tuple[str, ...] = LINEAR_PARAMETERS
+    parameters: tuple[str, ...] = NON_OPTIONAL_LINEAR_PARAMETERS
     """Names of the parameters of a point: dimensions of a grid, or variables along the dimension `point`."""
     arm_axes: tuple[str, ...] = ()
     """Names of the dimensions of a grid over an arm's quantities; empty for a grid of parameters or a
     list."""
-    needs_all_points: bool = False
+    has_variables_of_all_points: bool = False
     """Whether a finished file also has variables that are computed from all points together."""
     changed_points: str = ""
     """Name of the variable with the numbers, from 1, of the points whose variables were changed after all

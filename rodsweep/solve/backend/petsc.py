@@ -79,7 +79,7 @@ def blas_description() -> str:
     for library in threadpool_info():
         if library["user_api"] == "blas":
             parts = (library["internal_api"], library["version"], library.get("architecture"))
-            descriptions[_package_of_library(library["filepath"])].add(
+            descriptions[_package_with_library(library["filepath"])].add(
                 " ".join(str(word) for word in parts if word)
             )
     petscs, numpys = (" and ".join(sorted(descriptions[name])) for name in ("PETSc", "NumPy"))
@@ -88,7 +88,7 @@ def blas_description() -> str:
     return f"PETSc {petscs or UNKNOWN_LIBRARY}, NumPy {numpys}"
 
 
-def _package_of_library(path: str) -> str:
+def _package_with_library(path: str) -> str:
     """Package to which the library at `path` belongs: NumPy, SciPy, or else PETSc (a system library)."""
     names = {part.removesuffix(".libs") for part in Path(path).parts}
     packages = (package for package in ("NumPy", "SciPy") if package.lower() in names)

@@ -139,7 +139,7 @@ def _end_without_cycle(curve: BranchCurve, reason: BranchEndReason, message: str
         reason=reason,
         message=message,
         amplitude_coefficient=nan,
-        coefficient_error=nan,
+        relative_coefficient_error=nan,
     )
 
 
@@ -210,7 +210,10 @@ def range_end_point(point: BranchCycle, reason: BranchEndReason) -> SpecialPoint
     """The special point for the end of a branch at its last cycle `point`, at an end of the range. reason:
     why the branch ends there."""
     special = branch_end_point(point, reason)
-    return replace(special, error=BRANCH_END_SETTINGS.range_end_error * abs(special.parameter_value))
+    return replace(
+        special,
+        error=BRANCH_END_SETTINGS.relative_parameter_error_at_range_end * abs(special.parameter_value),
+    )
 
 
 def _add_special_points(

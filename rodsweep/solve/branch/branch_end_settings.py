@@ -13,10 +13,10 @@ class BranchEndSettings:
     max_last_amplitude: float = 0.06
     """The Hopf point at the end of a branch is extrapolated only from a cycle whose largest tip y, in L, is
     at most this number; otherwise the step is shortened."""
-    max_last_asymmetry_ratio: float = 0.2
+    max_last_asymmetry_per_moment: float = 0.2
     """The symmetric cycle at the end of a branch is extrapolated only from a cycle whose asymmetry, divided
     by its largest bending moment, is at most this number; otherwise the step is shortened."""
-    min_asymmetry_ratio: float = 0.02
+    min_asymmetry_per_moment: float = 0.02
     """If the asymmetry, divided by the largest bending moment, is at most this number, the step is not
     shortened: the extrapolation to the symmetric cycle would not improve."""
     lost_asymmetry_ratio: float = 0.1
@@ -28,16 +28,16 @@ class BranchEndSettings:
     extrapolation_tolerance: float = 0.3
     """Tolerance of the extrapolated parameter and period of a Hopf point or a symmetry breaking, divided by
     the difference between their values at the last cycle and at this point."""
-    parameter_tolerance: float = 1e-6
+    extrapolated_parameter_tolerance: float = 1e-6
     """Relative tolerance of the extrapolated parameter, added to the tolerance by `extrapolation_tolerance`;
     the larger of this number and the accuracy is used."""
-    period_tolerance: float = 1e-3
+    extrapolated_period_tolerance: float = 1e-3
     """Relative tolerance of the extrapolated period, added to the tolerance by `extrapolation_tolerance`; at
     a symmetry breaking the larger of this number and the accuracy is used."""
-    range_end_tolerance: float = 1e-6
+    range_end_step_tolerance: float = 1e-6
     """Tolerance of the predicted arc length to the end of the parameter range, divided by the step. Newton's
     method then solves the cycle exactly at this end."""
-    range_end_error: float = 1e-15
+    relative_parameter_error_at_range_end: float = 1e-15
     """Relative error of the parameter at an end of the range."""
     max_peak_shift_fraction: float = 0.05
     """If the times of the largest tip y of two successive cycles differ by more than this fraction of the

@@ -79,7 +79,7 @@ def _border_of_comparison(orbit: Orbit, derivatives: BranchDerivatives) -> Array
     scale = derivatives.scale
     coordinate = orbit.form.rod.coordinate(scale.parameter_name)
     is_near_zero = abs(coordinate) < scale.min_coordinate_unit
-    is_steep = abs(derivatives.parameter_rate) > BRANCH_ERROR_SETTINGS.min_parameter_rate_near_zero
+    is_steep = abs(derivatives.parameter_rate) > BRANCH_ERROR_SETTINGS.min_rate_near_zero_parameter
     return ALONG_PARAMETER if is_near_zero and is_steep else derivatives.unit_tangent
 
 
@@ -120,7 +120,7 @@ def relative_tip_y_sensitivity(motion: CycleMotion, derivatives: BranchDerivativ
     derivatives: derivatives of the branch at this cycle."""
     orbit: Orbit = motion.orbit
     name = derivatives.scale.parameter_name
-    step = BRANCH_ERROR_SETTINGS.sensitivity_step * derivatives.tangent
+    step = BRANCH_ERROR_SETTINGS.sensitivity_arc_length * derivatives.tangent
     if 0 <= orbit.form.rod.coordinate(name) < -step[-1]:  # no rod has a negative coordinate
         step = -step
     try:
@@ -129,6 +129,6 @@ def relative_tip_y_sensitivity(motion: CycleMotion, derivatives: BranchDerivativ
         moved_motion = CycleMotion(moved_orbit(orbit, name, -step))
     y = motion.extrema["tip_y_max"]
     moved_y = moved_motion.extrema["tip_y_max"]
-    return abs((moved_y - y) / (BRANCH_ERROR_SETTINGS.sensitivity_step * y)) / max(
+    return abs((moved_y - y) / (BRANCH_ERROR_SETTINGS.sensitivity_arc_length * y)) / max(
         abs(derivatives.parameter_rate), EXPONENT_SETTINGS.min_divisor
     )

@@ -31,7 +31,7 @@ from .multiplier_sensitivity import MultiplierSensitivity
 class BranchErrorSettings:
     """Settings for the error estimates of the cycles of a branch."""
 
-    max_sensitivity: float = 120.0
+    max_tip_y_sensitivity: float = 120.0
     """Limit of the sensitivity |(p/y) dy/dp| of the largest tip y to the parameter p. At larger
     sensitivities, as near a Hopf point or a fold, the allowed errors at equal p are larger than the accuracy
     by the factor sensitivity/limit. A fifth above the documented limit, because a user estimates the
@@ -54,11 +54,11 @@ class BranchErrorSettings:
     min_newton_tolerance: float = 1e-11
     """Lower limit of this tolerance, unless a single cycle of the same accuracy has a smaller one: cycles of
     strongly unstable branches have larger rounding errors."""
-    min_parameter_rate_near_zero: float = 0.1
+    min_rate_near_zero_parameter: float = 0.1
     """Close to the parameter coordinate 0, cycles on finer meshes are solved at an equal parameter, not at an
     equal arc length, if the modulus of the derivative of the scaled parameter coordinate with respect to arc
     length exceeds this number, far from a fold."""
-    sensitivity_step: float = 1e-4
+    sensitivity_arc_length: float = 1e-4
     """Arc length of the difference quotient for the sensitivity of the largest tip y."""
 
 
@@ -137,7 +137,7 @@ class BranchCalibration:
 
     def largest_weighted_error(self, accuracy: float) -> float:
         """The number that must not exceed the accuracy: the larger of the parameter error, and the largest
-        weighted error at equal parameter divided by max(1, sensitivity / `max_sensitivity`)."""
+        weighted error at equal parameter divided by max(1, sensitivity / `max_tip_y_sensitivity`)."""
         return self._limiting_errors.errors(accuracy).largest_weighted_error
 
     def cheapest_mesh(self, accuracy: float) -> OrbitMesh:
@@ -155,7 +155,7 @@ class BranchCalibration:
         """Errors from which the mesh is chosen: errors at equal parameter, reduced as in
         `largest_weighted_error`, and the parameter error."""
         # Errors at equal p are proportional to the slope dy/dp; a steep slope is no defect of the mesh.
-        reduction = max(1.0, self.sensitivity / BRANCH_ERROR_SETTINGS.max_sensitivity)
+        reduction = max(1.0, self.sensitivity / BRANCH_ERROR_SETTINGS.max_tip_y_sensitivity)
         space_and_time_errors = [
             self.at_equal_parameter.space_errors / reduction,
             self.at_equal_parameter.time_errors / reduction,

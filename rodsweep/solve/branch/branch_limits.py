@@ -26,7 +26,7 @@ class BranchLimits:
     """Memory of Newton's matrices."""
     min_coordinate_unit: float = 0.0
     """Smallest unit of the parameter coordinate, see `ArcLengthScale`."""
-    keeps_omega: bool = False
+    is_omega_always_unknown: bool = False
     """Whether the angular velocity Omega is an unknown for all cycles, see `StressForm`."""
     breakings: Sequence[SymmetryBreaking] = ()
     """Symmetry breakings found so far on the branches of the rod."""

@@ -55,6 +55,6 @@ def mesh_ahead(end: BranchCycle, growth: Array, accuracy: float) -> OrbitMesh | 
         target = regraded(finer_orbit_mesh(mesh, cheapest), end.orbit)
         return target if target.is_allowed else None
     # A sufficient mesh is replaced only by a much cheaper mesh, which is likely to suffice for many cycles.
-    cheaper = expected.cheapest_mesh(BRANCH_MESH_SETTINGS.cheaper_error_ratio * accuracy)
+    cheaper = expected.cheapest_mesh(BRANCH_MESH_SETTINGS.planned_error_ratio_of_cheaper_mesh * accuracy)
     target = regraded(cheaper, end.orbit)
     return target if target.cost <= BRANCH_MESH_SETTINGS.max_cheaper_cost_ratio * mesh.cost else None

@@ -221,7 +221,7 @@ def _with_interpolated_errors(
         axis=0,
     )
     # Near a fold, errors at equal parameter grow with 1/rate; interpolation over a long step misses this.
-    is_slow = abs(point.parameter_rate) < BRANCH_MESH_SETTINGS.min_parameter_rate_ratio * min(
+    is_slow = abs(point.parameter_rate) < BRANCH_MESH_SETTINGS.min_rate_ratio_for_interpolation * min(
         abs(measured.parameter_rate) for measured in (start, end)
     )
     if is_slow or growth.max() > BRANCH_MESH_SETTINGS.max_growth_since_measurement:
@@ -232,7 +232,7 @@ def _with_interpolated_errors(
         relative_tip_y_sensitivity(point.cycle.motion, point.derivatives),
         MultiplierSensitivity.of_cycle(point.cycle.converged_orbit),
     )
-    if growth.max() > BRANCH_MESH_SETTINGS.max_tail_growth:
+    if growth.max() > BRANCH_MESH_SETTINGS.max_uncorrected_tail_growth:
         calibration = calibration.grown(growth)
     interpolated = with_calibration(point, calibration, accuracy)
     return replace(interpolated, steps_since_measured=point.steps_since_measured)

@@ -15,14 +15,14 @@ class BranchMeshSettings:
     planned_error_ratio: float = 0.5
     """Error for which a mesh is chosen, divided by the accuracy; below 1, so that the mesh suffices for the
     next cycles too."""
-    cheaper_error_ratio: float = 0.25
+    planned_error_ratio_of_cheaper_mesh: float = 0.25
     """The same number for a cheaper mesh that replaces a sufficient one: a mesh that turns out not to suffice
     costs several solutions."""
-    min_parameter_rate_ratio: float = 0.2
+    min_rate_ratio_for_interpolation: float = 0.2
     """Errors are interpolated at a cycle only if |d(parameter)/ds|, s: arc length, is at least this number
     times the smaller of the two values at the measured cycles. Near a fold the derivative tends to 0, and
     errors measured far from the fold are no bound."""
-    max_tail_growth: float = 2.0
+    max_uncorrected_tail_growth: float = 2.0
     """Interpolated errors are multiplied by the growth that the coefficient tails predict, if it exceeds this
     factor since each of the two measured cycles; beyond `max_growth_since_measurement` they are measured."""
     max_steps_between_measurements: int = 3

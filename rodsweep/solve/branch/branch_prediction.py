@@ -62,7 +62,7 @@ def hermite_nodes(
     for cycle in (previous, previous and previous.previous):
         if cycle is None:
             break
-        datum = _hermite_datum(orbit, scale, unit_tangent, cycle)
+        datum = _hermite_node(orbit, scale, unit_tangent, cycle)
         # The cycles must lie in order along the tangent; the nearest needs progress only.
         last_position = data[-1].position if data else 0.0
         if datum is None or not datum.position < last_position:
@@ -71,7 +71,7 @@ def hermite_nodes(
     return data
 
 
-def _hermite_datum(
+def _hermite_node(
     orbit: Orbit, scale: ArcLengthScale, unit_tangent: Array, cycle: PreviousCycle
 ) -> HermiteNode | None:
     """The earlier cycle `cycle` as a datum for predictions from `orbit`; None if the branch has turned too
@@ -101,7 +101,7 @@ def predicted_change(tangent: Array, data: Sequence[HermiteNode], length: float)
     return result
 
 
-def parameter_polynomial(
+def parameter_change_polynomial(
     tangent: Array, data: Sequence[HermiteNode], ends: tuple[float, float]
 ) -> Polynomial:
     """The predicted change of the parameter coordinate as a polynomial of the arc length between `ends`.

@@ -14,7 +14,7 @@ from .branch_continuation import follow_asymmetric_branch, follow_branch, follow
 from .branch_curve import BranchCurve, RangePassage
 from .branch_limits import BranchLimits
 from .computing_time import fractions_before_branches
-from .detached_branch import branch_through, lies_on_a_branch
+from .detached_branch import complete_branch_through, lies_on_a_branch
 from .region_beyond import RegionBeyond
 from .special.special_point import SpecialKind, SpecialPoint
 from .symmetry_breaking import SymmetryBreaking, symmetry_breakings_in
@@ -64,7 +64,7 @@ class BranchSearch:
         # Before the given starts, which may lie on the same branches.
         self.follow_through(self._folds_passed_into_range())
         self.follow_through(starts)
-        self._add_failures_at_range_ends()
+        self._add_messages_on_shared_range_ends()
 
     def follow_within_range(self) -> None:
         """Follows the branches from all Hopf points and symmetry breakings of the range, within the range."""
@@ -83,7 +83,7 @@ class BranchSearch:
         self._follow_from_breakings_beyond()
         self.follow_beyond()
 
-    def _add_failures_at_range_ends(self) -> None:
+    def _add_messages_on_shared_range_ends(self) -> None:
         """Adds a message for every two branches that leave the range at the same cycle: a step led from one
         branch to another, which nearly touches it."""
         ends = [(i, place) for i, curve in enumerate(self.curves, 1) for place in _passages_of(curve)]
@@ -216,7 +216,7 @@ class BranchSearch:
         limits = replace(self._limits_left(), breakings=breakings)
         if limits.max_cycles < 1:
             raise Unsolvable("the branches of the rod have the maximum number of cycles; shorten the range")
-        curve = branch_through(start, self.name, limits, self._is_known)
+        curve = complete_branch_through(start, self.name, limits, self._is_known)
         if curve is not None:
             self.followed_breakings += filter(None, [curve.start_breaking, curve.end_breaking])
             self.curves.append(curve)

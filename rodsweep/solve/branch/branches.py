@@ -110,17 +110,19 @@ def _solve_branches_or_raise(
     crossings = find_axis_crossings(path, low, high, request.certify)
     ends = (path.coordinate(low), path.coordinate(high))
     # The smallest drag of the range is at one of its ends.
-    keeps_omega = any(has_small_rotational_drag(path.rod_at(end)) for end in ends)
+    is_omega_always_unknown = any(has_small_rotational_drag(path.rod_at(end)) for end in ends)
     # The coordinate may pass 0, where a relative step would have no length.
     unit = BRANCH_SETTINGS.min_coordinate_unit_ratio * abs(ends[1] - ends[0])
-    hopfs, failures = _hopf_branch_starts(path, crossings, keeps_omega, unit)
+    hopfs, failures = _hopf_branch_starts(path, crossings, is_omega_always_unknown, unit)
     end_reasons = _end_reason(low > request.start), _end_reason(high < request.stop)
     # The compliance 1/k decreases with k, so both ends and their reasons change places.
     if path.is_compliance_path:
         ends = ends[::-1]
         end_reasons = end_reasons[::-1]
     accuracy = accuracy_near_hopf_points(hopfs, request.accuracy)
-    limits = BranchLimits(hopfs, ends, end_reasons, accuracy, request.cycles, workspace, unit, keeps_omega)
+    limits = BranchLimits(
+        hopfs, ends, end_reasons, accuracy, request.cycles, workspace, unit, is_omega_always_unknown
+    )
     regions = regions_beyond(path, limits, BRANCH_SETTINGS.crushing_margin)
     search = BranchSearch(limits, request.along, regions)
     search.follow_all(starts)
@@ -144,15 +146,15 @@ def _end_reason(is_crushed: bool) -> BranchEndReason:
 
 
 def _hopf_branch_starts(
-    path: ParameterPath, crossings: ThresholdSearchResult, keeps_omega: bool, unit: float
+    path: ParameterPath, crossings: ThresholdSearchResult, is_omega_always_unknown: bool, unit: float
 ) -> tuple[list[HopfBranchStart], list[str]]:
-    """Returns (Hopf points with normal form, messages on Hopf points whose normal form failed). keeps_omega,
-    unit: arguments of `hopf_branch_start`."""
+    """Returns (Hopf points with normal form, messages on Hopf points whose normal form failed).
+    is_omega_always_unknown, unit: arguments of `hopf_branch_start`."""
     hopfs = []
     failures = []
     for crossing in crossings.thresholds:
         try:
-            hopfs.append(hopf_branch_start(path, crossing, keeps_omega, unit))
+            hopfs.append(hopf_branch_start(path, crossing, is_omega_always_unknown, unit))
         except FAILURES as error:
             place = f"{path.name} = {crossing.value:.12g}"
             failures.append(f"no branch is followed from the Hopf point at {place}: {cause_of(error)}")

@@ -222,15 +222,15 @@ def stability_intervals(curve: BranchCurve) -> list[StabilityInterval]:
             stability = 0
         low, high = sorted((first, second), key=lambda point: point.parameter_value)
         inner_interval = (
-            low.parameter_value + _end_error_sign(low) * low.error,
-            high.parameter_value - _end_error_sign(high) * high.error,
+            low.parameter_value + _sign_of_interval_shortening(low) * low.error,
+            high.parameter_value - _sign_of_interval_shortening(high) * high.error,
         )
         outer_interval = low.parameter_value - low.error, high.parameter_value + high.error
         intervals.append(StabilityInterval(inner_interval, outer_interval, stability))
     return intervals
 
 
-def _end_error_sign(point: SpecialPoint) -> int:
+def _sign_of_interval_shortening(point: SpecialPoint) -> int:
     """Sign of the error of a special point in `certain_range`: 1 (the interval is shortened), or -1 at an end
     of the parameter range, where the branch has a cycle exactly at the end (the interval is extended)."""
     return -1 if point.reason is BranchEndReason.range_end else 1

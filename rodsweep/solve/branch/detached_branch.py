@@ -30,7 +30,7 @@ from .branch_tangent import tangent_at
 from .special.special_point import SpecialKind, SpecialPoint
 from .start.branch_start_settings import BRANCH_START_SETTINGS
 from .start.first_asymmetric_cycle import ASYMMETRIC_START_SETTINGS
-from .start.first_cycle import ALONG_DEFLECTION
+from .start.first_cycle import DEFLECTION_UNIT_VECTOR
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,7 +44,7 @@ class DetachedBranchSettings:
     """Largest difference between the first cycle and its prediction on the tangent, divided by the length of
     this step. If the difference is larger, the branch turns by about a right angle on this step, and the
     cycle may lie beyond another fold."""
-    accuracy_ratio: float = 0.01
+    successive_accuracy_ratio: float = 0.01
     """Ratio of a relative accuracy to the one before, if no branch through the point was found with the one
     before: a mesh displaces a small closed branch, or a fold near an end of the range, by about the accuracy.
     """
@@ -67,7 +67,7 @@ def follow_detached_branch(start: SpecialPoint, name: str, limits: BranchLimits)
     return follow_in_both_directions(_first_cycle(start.orbit, name, limits), limits)
 
 
-def branch_through(
+def complete_branch_through(
     start: SpecialPoint, name: str, limits: BranchLimits, is_known: Callable[[BranchCurve], bool]
 ) -> BranchCurve | None:
     """The branch of `follow_detached_branch` that passes `start` and is complete, solved to a higher accuracy
@@ -93,7 +93,7 @@ def branch_through(
                 if curve.complete or curve.list_full:
                     return curve
                 incomplete = incomplete or curve
-        accuracy *= DETACHED_BRANCH_SETTINGS.accuracy_ratio
+        accuracy *= DETACHED_BRANCH_SETTINGS.successive_accuracy_ratio
     if incomplete is None:
         raise reason or Unsolvable("the branch found does not pass this point")
     return incomplete
@@ -152,9 +152,11 @@ def _tangent_towards_larger_cycles(orbit: Orbit, name: str, limits: BranchLimits
     orbit = mesh.interpolated_orbit(orbit)
     tip_y = abs(float(orbit.form.tip_coordinates(orbit.start_state)[1]))
     # The unit is given as a tip deflection; this ratio converts it to the deflection of the arc length.
-    min_deflection_unit = abs(deflection_of(orbit)) * BRANCH_START_SETTINGS.min_deflection_amplitude / tip_y
+    min_deflection_unit = (
+        abs(deflection_of(orbit)) * BRANCH_START_SETTINGS.min_amplitude_of_deflection_unit / tip_y
+    )
     scale = ArcLengthScale.at_orbit(orbit, name, min_deflection_unit, limits.min_coordinate_unit)
-    tangent = tangent_at(orbit, scale, ALONG_DEFLECTION, BorderedMatrix(orbit, scale, limits.workspace))
+    tangent = tangent_at(orbit, scale, DEFLECTION_UNIT_VECTOR, BorderedMatrix(orbit, scale, limits.workspace))
     derivative = scale.directional_derivative(orbit, tangent)
     tangent_length = float(np.linalg.norm(derivative))
     return _Tangent(orbit, scale, tangent / tangent_length, derivative / tangent_length)

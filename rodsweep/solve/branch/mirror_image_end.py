@@ -14,10 +14,10 @@ from .branch_end_reason import BranchEndReason
 from .branch_end_settings import BRANCH_END_SETTINGS
 from .branch_limits import BranchLimits
 from .branch_record import branch_end_point
-from .range_end_near_hopf import end_at_range_end_near_hopf, is_best_at_range_end
+from .range_end_near_hopf import end_at_range_end_near_hopf, has_accurate_range_end
 from .start.hopf_point import HopfBranchStart, hopf_as_special_point
 from .start.near_hopf_points import min_last_amplitude
-from .symmetry_breaking import reaches_symmetric_cycle, symmetry_breaking_between
+from .symmetry_breaking import reaches_symmetric_cycle, symmetry_breaking_index_between
 
 
 def reaches_mirror_image(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> bool:
@@ -66,7 +66,7 @@ def _end_at_hopf_or_shorter_step(
         return shorter
     if (known_end := _known_hopf_end_or_shorter_step(start, shorter, limits)) is not None:
         return known_end
-    if shorter is not None and not _is_smallest(start, limits):
+    if shorter is not None and not _is_smallest_to_solve(start, limits):
         return shorter  # the parabola through a smaller cycle is closer to the Hopf point
     reason = "the cycles shrink to zero amplitude, but no Hopf point is known there"
     return BranchEnd(branch_end_point(start, BranchEndReason.no_cycle_found, reason), complete=False)
@@ -88,7 +88,7 @@ def _known_hopf_end_or_shorter_step(
     for hopf in limits.hopfs_beyond:
         if _shrinks_to(start, hopf, limits.accuracy):
             end_before_hopf = end_at_range_end_near_hopf(start, hopf, limits)
-            is_final = _is_smallest(start, limits) or is_best_at_range_end(
+            is_final = _is_smallest_to_solve(start, limits) or has_accurate_range_end(
                 end_before_hopf, start, hopf, limits
             )
             if shorter is not None and (_has_fold_ahead(start, hopf, limits) or not is_final):
@@ -108,12 +108,12 @@ def _shrinks_to(start: BranchCycle, hopf: HopfBranchStart, accuracy: float) -> b
     period = start.orbit.period - length * start.tangent[-2]
     settings = BRANCH_END_SETTINGS
     tolerance = settings.extrapolation_tolerance * abs(start.parameter_coordinate - hopf.parameter_coordinate)
-    tolerance += max(settings.parameter_tolerance, accuracy) * abs(hopf.parameter_coordinate)
-    period_tolerance = settings.extrapolation_tolerance * abs(start.orbit.period - hopf.period)
-    period_tolerance += settings.period_tolerance * hopf.period
+    tolerance += max(settings.extrapolated_parameter_tolerance, accuracy) * abs(hopf.parameter_coordinate)
+    extrapolated_period_tolerance = settings.extrapolation_tolerance * abs(start.orbit.period - hopf.period)
+    extrapolated_period_tolerance += settings.extrapolated_period_tolerance * hopf.period
     return (
         abs(coordinate - hopf.parameter_coordinate) <= tolerance
-        and abs(period - hopf.period) <= period_tolerance
+        and abs(period - hopf.period) <= extrapolated_period_tolerance
     )
 
 
@@ -121,10 +121,10 @@ def _has_fold_ahead(start: BranchCycle, hopf: HopfBranchStart, limits: BranchLim
     """Whether a branch has a fold between the cycle `start` and the Hopf point `hopf` where it ends: the
     parameter at `start` moves in the direction in which, by the normal form, it leaves the Hopf point. False
     for a cycle of the smallest amplitude, before which no fold is sought."""
-    return not _is_smallest(start, limits) and start.parameter_rate * hopf.direction > 0
+    return not _is_smallest_to_solve(start, limits) and start.parameter_rate * hopf.direction > 0
 
 
-def _is_smallest(cycle: BranchCycle, limits: BranchLimits) -> bool:
+def _is_smallest_to_solve(cycle: BranchCycle, limits: BranchLimits) -> bool:
     """Whether a cycle is so small that no smaller cycle is solved before a Hopf point."""
     return cycle.cycle.measures.tip_y_max <= min_last_amplitude(limits.all_hopfs)
 
@@ -134,7 +134,7 @@ def _end_at_breaking_or_shorter_step(
 ) -> BranchCycle | BranchEnd:
     """The end of an asymmetric branch at a symmetry breaking (a failure if no known symmetry breaking is
     near), or `start` with half the step, if `start` is too asymmetric. Raises Unsolvable."""
-    index = symmetry_breaking_between(start, end, limits.breakings, limits.accuracy)
+    index = symmetry_breaking_index_between(start, end, limits.breakings, limits.accuracy)
     if index is None:
         return replace(start, next_arc_length=arc_length_between(start, end) / 2)
     if index >= 0:

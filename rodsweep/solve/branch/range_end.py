@@ -42,12 +42,12 @@ def cycle_at_range_end(
         # Evaluated on the predicted cubic; only the final cycle is solved, below.
         return -range_end.residual(segment.predicted_orbit(length))
 
-    tolerance = BRANCH_END_SETTINGS.range_end_tolerance
+    tolerance = BRANCH_END_SETTINGS.range_end_step_tolerance
     end_distances = beyond(0.0), beyond(segment.length)
     inner_length = 0.0
     # The step begins at the end of the range, so its first zero is not the one that is sought.
     if abs(end_distances[0]) <= tolerance * abs(end_distances[1]):
-        inner_length = _length_within_range(beyond, segment.length)
+        inner_length = _step_length_into_range(beyond, segment.length)
         end_distances = beyond(inner_length), end_distances[1]
     length = inner_length + zero_along_step(
         lambda part: beyond(inner_length + part), end_distances, segment.length - inner_length, 0.0, tolerance
@@ -55,14 +55,14 @@ def cycle_at_range_end(
     return _solved_at_range_end(start, segment.predicted_orbit(length), length, range_end, accuracy)
 
 
-def _length_within_range(beyond: Callable[[float], float], step: float) -> float:
+def _step_length_into_range(beyond: Callable[[float], float], step: float) -> float:
     """Length at which a step that begins at the end of the range lies within the range: the branch enters the
     range there, and leaves it behind a fold. 0 if the step leads out of the range at once.
 
     beyond: signed distance from the end of the range, by length. step: length of the step.
     """
     length = step / 2
-    while length > BRANCH_END_SETTINGS.range_end_tolerance * step:
+    while length > BRANCH_END_SETTINGS.range_end_step_tolerance * step:
         if beyond(length) * beyond(step) < 0:
             return length
         length /= 2

@@ -32,7 +32,7 @@ def end_at_range_end_near_hopf(
     return BranchEnd(special, complete=True, range_passage=passage)
 
 
-def is_best_at_range_end(
+def has_accurate_range_end(
     end: BranchEnd | None, start: BranchCycle, hopf: HopfBranchStart, limits: BranchLimits
 ) -> bool:
     """Whether the branch has the end `end` of `end_at_range_end_near_hopf`, and its errors of period and
@@ -74,10 +74,10 @@ def _point_at_range_end(
         parameter_value=value,
         period=period,
         tip_y_max=amplitude,
-        error=BRANCH_END_SETTINGS.range_end_error * abs(value),
+        error=BRANCH_END_SETTINGS.relative_parameter_error_at_range_end * abs(value),
         period_error=fraction * abs(start_period / measures.period - 1) + hopf.period_error,
         tip_y_max_error=fraction * abs(start_amplitude / measures.tip_y_max - 1)
-        + hopf.coefficient_error
+        + hopf.relative_coefficient_error
         + displacement,
         reason=limits.end_reasons[index],
     )

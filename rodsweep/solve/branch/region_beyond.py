@@ -21,7 +21,7 @@ from .branch_continuation import follow_asymmetric_branch, follow_from_cycle, in
 from .branch_curve import BranchCurve, RangePassage, unstable_count_bounds
 from .branch_limits import BranchLimits
 from .branch_request import WORK_UNIT
-from .detached_branch import branch_through, lies_on_a_branch, reversed_cycle
+from .detached_branch import complete_branch_through, lies_on_a_branch, reversed_cycle
 from .special.special_point import SpecialKind, SpecialPoint
 from .start.first_cycle import first_cycle
 from .start.hopf_point import HopfBranchStart, accuracy_near_hopf_points
@@ -198,7 +198,7 @@ class RegionBeyond:
         initial_work = workspace.work
         try:
             with workspace.further_limit(self.remaining_work):
-                curve = branch_through(start, self.path.name, self.limits, self._is_known)
+                curve = complete_branch_through(start, self.path.name, self.limits, self._is_known)
         finally:
             self.remaining_work -= workspace.work - initial_work
         if curve is None:

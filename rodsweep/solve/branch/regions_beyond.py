@@ -43,7 +43,7 @@ def _region(path: ParameterPath, index: int, limits: BranchLimits, margin: float
     far_end = farther(path.coordinate(low), path.coordinate(high))
     # The unknowns of a branch cannot change within the branch.
     has_small_drag = has_small_rotational_drag(path.rod_at(far_end))
-    if not low < high or has_small_drag and not limits.keeps_omega:
+    if not low < high or has_small_drag and not limits.is_omega_always_unknown:
         return None
     region_limits = replace(
         limits,
@@ -80,7 +80,9 @@ def _hopf_points(
         if any(abs(crossing.value - other.value) <= crossing.error + other.error for other in others):
             continue
         try:
-            hopfs.append(hopf_branch_start(path, crossing, limits.keeps_omega, limits.min_coordinate_unit))
+            hopfs.append(
+                hopf_branch_start(path, crossing, limits.is_omega_always_unknown, limits.min_coordinate_unit)
+            )
         except FAILURES:
             lost_at.append(path.coordinate(crossing.value))
     return hopfs, lost_at

@@ -87,27 +87,27 @@ def reaches_symmetric_cycle(
         return True
     # Past the symmetric cycle the branch runs back as its own mirror image, so the parameter turns there.
     turns_back = start.parameter_rate * end.parameter_rate < 0 and _is_nearly_symmetric(start)
-    return turns_back and _symmetry_breaking_ahead(start, breakings, accuracy) >= 0
+    return turns_back and _symmetry_breaking_index_ahead(start, breakings, accuracy) >= 0
 
 
-def _relative_asymmetry(start: BranchCycle) -> float:
+def _asymmetry_per_bending_moment(start: BranchCycle) -> float:
     """Largest nodal asymmetry of a cycle, divided by its largest bending moment."""
     orbit = start.orbit
     return float(np.abs(asymmetry(orbit)).max() / np.abs(_bending_moments(orbit.all_states, orbit)).max())
 
 
 def _is_nearly_symmetric(start: BranchCycle) -> bool:
-    return _relative_asymmetry(start) <= BRANCH_END_SETTINGS.max_last_asymmetry_ratio
+    return _asymmetry_per_bending_moment(start) <= BRANCH_END_SETTINGS.max_last_asymmetry_per_moment
 
 
-def symmetry_breaking_between(
+def symmetry_breaking_index_between(
     start: BranchCycle, end: BranchCycle, breakings: Sequence[SymmetryBreaking], accuracy: float
 ) -> int | None:
     """Index of the symmetry breaking in `breakings` between two cycles of an asymmetric branch; -1 if
     `breakings` does not contain this symmetry breaking; None if `start` is so asymmetric that a shorter step
     is needed. Raises Unsolvable if no shorter step is allowed."""
-    index = _symmetry_breaking_ahead(start, breakings, accuracy) if _is_nearly_symmetric(start) else -1
-    if index >= 0 or _relative_asymmetry(start) <= BRANCH_END_SETTINGS.min_asymmetry_ratio:
+    index = _symmetry_breaking_index_ahead(start, breakings, accuracy) if _is_nearly_symmetric(start) else -1
+    if index >= 0 or _asymmetry_per_bending_moment(start) <= BRANCH_END_SETTINGS.min_asymmetry_per_moment:
         return index
     if arc_length_between(start, end) / 2 < ARC_STEP_CONTROL.min_length:
         raise Unsolvable(
@@ -116,7 +116,7 @@ def symmetry_breaking_between(
     return None
 
 
-def _symmetry_breaking_ahead(
+def _symmetry_breaking_index_ahead(
     start: BranchCycle, breakings: Sequence[SymmetryBreaking], accuracy: float
 ) -> int:
     """Index of the first symmetry breaking in `breakings` with the parameter and period, within tolerances,
@@ -142,14 +142,18 @@ def _symmetry_breaking_ahead(
             start.parameter_coordinate - symmetric_coordinate
         )
         # The extrapolation is exact at the symmetry breaking, where only the errors of the two cycles remain.
-        tolerance += max(BRANCH_END_SETTINGS.parameter_tolerance, accuracy) * abs(symmetric_coordinate)
-        period_tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(
+        tolerance += max(BRANCH_END_SETTINGS.extrapolated_parameter_tolerance, accuracy) * abs(
+            symmetric_coordinate
+        )
+        extrapolated_period_tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(
             orbit.period - symmetric_orbit.period
         )
-        period_tolerance += max(BRANCH_END_SETTINGS.period_tolerance, accuracy) * symmetric_orbit.period
+        extrapolated_period_tolerance += (
+            max(BRANCH_END_SETTINGS.extrapolated_period_tolerance, accuracy) * symmetric_orbit.period
+        )
         if (
             abs(coordinate - symmetric_coordinate) <= tolerance
-            and abs(period - symmetric_orbit.period) <= period_tolerance
+            and abs(period - symmetric_orbit.period) <= extrapolated_period_tolerance
         ):
             return index
     return -1

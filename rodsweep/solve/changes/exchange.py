@@ -44,8 +44,8 @@ def double_eigenvalue_between(
 ) -> LeaderExchange | None:
     """The double eigenvalue between a sample `pair` with a leading pair and a sample `real`
     with two real leading eigenvalues; None if Newton's method does not find it."""
-    pair_difference = pair.squared_pair_difference()
-    real_difference = real.squared_pair_difference()
+    pair_difference = pair.scaled_squared_eigenvalue_difference()
+    real_difference = real.scaled_squared_eigenvalue_difference()
     sample_distance = abs(pair.p - real.p)
     if pair_difference is None or real_difference is None:
         return None

@@ -42,15 +42,15 @@ class LeaderExchangeSettings:
 
     accuracy: float = 1e-6
     """Relative accuracy of the eigenvalues at a sample, before the refinement by Newton's method on D."""
-    close_sample_fraction: float = 2e-4
+    close_sample_path_fraction: float = 2e-4
     """Two samples are close if their distance, as a fraction of the path's length, is at most this number.
     Between close samples, `excludes_exchange` too may exclude an exchange."""
     min_interval_fraction: float = 1e-8
     """A sample is added between two samples only if their distance, as a fraction of the path's length,
     exceeds this number. Three real eigenvalues of cones meet within 4e-7 of the path."""
-    max_samples: int = 1000
+    max_samples_without_spacing_limit: int = 1000
     """With more samples than this number, a sample is added only between samples farther apart than
-    `close_sample_fraction`."""
+    `close_sample_path_fraction`."""
     distance_to_exchange_fraction: float = 1e-3
     """Where further exchanges may lie between two samples, samples are added on both sides of the exchange
     found, at this fraction of the interval."""
@@ -62,11 +62,12 @@ class LeaderExchangeSettings:
     minimum of the interpolant may coincide with a sample."""
     max_distance_in_errors: float = 10.0
     """The eigenvalue found by Newton's method is rejected as a different eigenvalue if its distance from the
-    start exceeds this multiple of the start's error estimate and `max_relative_distance` times |w|."""
-    max_relative_distance: float = 1e-12
+    start exceeds this multiple of the start's error estimate and `max_relative_newton_displacement` times
+    |w|."""
+    max_relative_newton_displacement: float = 1e-12
     """The eigenvalue w found by Newton's method is accepted if its distance from the start is below this
     multiple of |w|: some thousand rounding errors."""
-    min_interval_length_ratio: float = 1e-12
+    min_relative_interval_length: float = 1e-12
     """The search fails at an interval whose length, divided by the larger modulus of its ends, is at most
     this (some thousand rounding errors), if its exchange is not found."""
 
@@ -108,7 +109,7 @@ class LeaderExchangeSearch:
             # Newton's method may jump to another eigenvalue, as in a cluster; the first value then stays.
             refined_w, slope[i], _ = self.problem.eigenvalue(complex(guess), p)
             error = LEADER_EXCHANGE_SETTINGS.max_distance_in_errors * spectrum.error_estimate[i]
-            max_distance = max(error, LEADER_EXCHANGE_SETTINGS.max_relative_distance * abs(guess))
+            max_distance = max(error, LEADER_EXCHANGE_SETTINGS.max_relative_newton_displacement * abs(guess))
             distances = np.abs(spectrum.eigenvalues - refined_w)
             if distances[i] <= min(max_distance, distances.min()):
                 w[i] = refined_w
@@ -142,9 +143,9 @@ class LeaderExchangeSearch:
                 if may_hold_two
                 else settings.min_interval_fraction
             )
-            if len(self.samples) > settings.max_samples:
-                min_interval = settings.close_sample_fraction
-            is_close = b - a <= settings.close_sample_fraction * intervals.length
+            if len(self.samples) > settings.max_samples_without_spacing_limit:
+                min_interval = settings.close_sample_path_fraction
+            is_close = b - a <= settings.close_sample_path_fraction * intervals.length
             if fraction == 0.0 or (is_close and excludes_exchange(left_sample, right_sample, may_hold_two)):
                 return []
             # Two exchanges may lie in an interval too short to divide: the list then is not proved.
@@ -155,7 +156,7 @@ class LeaderExchangeSearch:
             exchange = self._exchange_between(left_sample, right_sample)
             if exchange is not None:
                 return self._exchange_if_alone(exchange, left_sample, right_sample, intervals)
-            if b - a <= LEADER_EXCHANGE_SETTINGS.min_interval_length_ratio * max(abs(a), abs(b)):
+            if b - a <= LEADER_EXCHANGE_SETTINGS.min_relative_interval_length * max(abs(a), abs(b)):
                 raise Unsolvable(
                     f"no point was found near {self.path.text_at(a)} at which the leading eigenvalue turns "
                     "from real to complex or back"

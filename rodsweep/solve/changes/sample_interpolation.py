@@ -7,7 +7,7 @@ from typing import NamedTuple
 from .spectrum_samples import SPECTRUM_SAMPLE_SETTINGS, SpectrumSample
 
 
-def minimum_of_cubic(a: float, b: float, slope_a: float, slope_b: float) -> tuple[float, float]:
+def cubic_minimum_and_position(a: float, b: float, slope_a: float, slope_b: float) -> tuple[float, float]:
     """Returns (minimum on [0, 1], argument of the minimum) for the cubic with values `a`, `b` and slopes
     `slope_a`, `slope_b` at 0 and 1; the argument is 0.5 if the minimum is at an end."""
     # The cubic a + slope_a t + square t^2 + cube t^3 of Hermite interpolation.
@@ -48,8 +48,8 @@ def next_sample_between(left: SpectrumSample, right: SpectrumSample) -> NextSamp
     pair at both samples."""
     distance = right.p - left.p
     for a, b in (
-        (left.squared_pair_difference(), right.squared_pair_difference()),
-        (left.leading_growth_gap(), right.leading_growth_gap()),
+        (left.scaled_squared_eigenvalue_difference(), right.scaled_squared_eigenvalue_difference()),
+        (left.scaled_growth_gap_to_other_type(), right.scaled_growth_gap_to_other_type()),
     ):
         # Neither sample has such an eigenvalue among the computed ones, so none is near the leading one.
         if a is None and b is None:
@@ -65,7 +65,7 @@ def next_sample_between(left: SpectrumSample, right: SpectrumSample) -> NextSamp
         unexplained_change = _unexplained_change(a, b, distance)
         # The gap is mirrored to be positive, so that one test, of a minimum, serves both signs.
         sign = math.copysign(distance, a[0])
-        minimum, fraction = minimum_of_cubic(abs(a[0]), abs(b[0]), sign * a[1], sign * b[1])
+        minimum, fraction = cubic_minimum_and_position(abs(a[0]), abs(b[0]), sign * a[1], sign * b[1])
         # Two samples of one kind have gaps of one sign, so the product is 0 only where a sample itself lies
         # at an exchange.
         if a[0] * b[0] <= 0 or minimum < SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * smallest_value:
@@ -90,8 +90,8 @@ def next_two_stay_below(left: SpectrumSample, right: SpectrumSample) -> bool:
     """Whether the slopes exclude that the two eigenvalues after the leading eigenvalue or pair take the lead
     between two samples, whether these two eigenvalues are real or a complex pair. The leading eigenvalue must
     be real at both samples, or a pair at both samples."""
-    left_gaps = left.gaps_to_next_two()
-    right_gaps = right.gaps_to_next_two()
+    left_gaps = left.scaled_mean_and_product_of_next_gaps()
+    right_gaps = right.scaled_mean_and_product_of_next_gaps()
     if left_gaps is None or right_gaps is None:
         return False
     distance = right.p - left.p
@@ -106,21 +106,22 @@ def two_pairs_exchange_lead(left: SpectrumSample, right: SpectrumSample) -> bool
         return False
     distance = right.p - left.p
     # The index changes from 0 to 2 because the same pair is first at one sample and second at the other.
-    return _changes_sign_once(left.growth_gap(0, 2), right.growth_gap(2, 0), distance) and all(
-        _stays_positive(left.squared_frequency(i), right.squared_frequency(2 - i), distance) for i in (0, 2)
+    return _changes_sign_once(left.scaled_growth_gap(0, 2), right.scaled_growth_gap(2, 0), distance) and all(
+        _stays_positive(left.scaled_squared_frequency(i), right.scaled_squared_frequency(2 - i), distance)
+        for i in (0, 2)
     )
 
 
 def has_only_double_eigenvalue(left: SpectrumSample, right: SpectrumSample) -> bool:
     """Whether the slopes exclude further exchanges between two samples with a double eigenvalue between them.
     The leading eigenvalue is real at one sample, and a pair at the other."""
-    squares = left.squared_pair_difference(), right.squared_pair_difference()
+    squares = left.scaled_squared_eigenvalue_difference(), right.scaled_squared_eigenvalue_difference()
     if squares[0] is None or squares[1] is None:
         return False
     distance = right.p - left.p
     # The mean of the two leading eigenvalues is smooth where they become a pair.
     return _changes_sign_once(squares[0], squares[1], distance) and _stays_positive(
-        left.growth_gap_of_leading_pair(), right.growth_gap_of_leading_pair(), distance
+        left.scaled_growth_gap_of_leading_pair(), right.scaled_growth_gap_of_leading_pair(), distance
     )
 
 
@@ -135,10 +136,18 @@ def has_only_leader_exchange(left: SpectrumSample, right: SpectrumSample) -> boo
         return False
     distance = right.p - left.p
     return (
-        _changes_sign_once(left.growth_gap(*indices[0]), right.growth_gap(*indices[1]), distance)
-        and _stays_positive(left.growth_gap(real_left, 3), right.growth_gap(real_right, 3), distance)
-        and _stays_positive(left.growth_gap(pair_left, 3), right.growth_gap(pair_right, 3), distance)
-        and _stays_positive(left.squared_frequency(pair_left), right.squared_frequency(pair_right), distance)
+        _changes_sign_once(
+            left.scaled_growth_gap(*indices[0]), right.scaled_growth_gap(*indices[1]), distance
+        )
+        and _stays_positive(
+            left.scaled_growth_gap(real_left, 3), right.scaled_growth_gap(real_right, 3), distance
+        )
+        and _stays_positive(
+            left.scaled_growth_gap(pair_left, 3), right.scaled_growth_gap(pair_right, 3), distance
+        )
+        and _stays_positive(
+            left.scaled_squared_frequency(pair_left), right.scaled_squared_frequency(pair_right), distance
+        )
     )
 
 
@@ -147,7 +156,7 @@ def _stays_positive(left: tuple[float, float], right: tuple[float, float], dista
     left, right: (value, slope) at the samples. distance: distance of the samples."""
     (a, slope_a), (b, slope_b) = left, right
     smallest_value = min(a, b)
-    minimum, _ = minimum_of_cubic(a, b, distance * slope_a, distance * slope_b)
+    minimum, _ = cubic_minimum_and_position(a, b, distance * slope_a, distance * slope_b)
     unexplained_change = _unexplained_change(left, right, distance)
     return (
         # The limit 0 refuses a negative value at a sample, for which the first part alone would hold.

@@ -46,7 +46,7 @@ class SpectrumSample:
         """Whether the leading eigenvalues are a complex pair."""
         return bool(self.w[0].imag != 0)
 
-    def squared_pair_difference(self) -> tuple[float, float] | None:
+    def scaled_squared_eigenvalue_difference(self) -> tuple[float, float] | None:
         """Returns (tau^2 (w1 - w2)^2, derivative of this product with respect to p), tau: `relaxation_time`,
         for the two leading eigenvalues w1, w2; None if w1 is real and w2 is complex."""
         if self.oscillates:
@@ -61,17 +61,17 @@ class SpectrumSample:
         # The derivative of w itself is infinite at a double eigenvalue, that of the square is not.
         return gap**2, 2 * gap * slope
 
-    def leading_growth_gap(self) -> tuple[float, float] | None:
+    def scaled_growth_gap_to_other_type(self) -> tuple[float, float] | None:
         """Returns (tau Re(w1 - w), derivative of this product with respect to p), tau: `relaxation_time`. w1:
         leading eigenvalue. w: first complex eigenvalue if w1 is real, first real eigenvalue if w1 is complex;
         None if there is no such w at this sample."""
         for i, w in enumerate(self.w[1:], 1):
             # Eigenvalues are sorted by growth, so the first of the other kind can take the lead first.
             if (w.imag != 0) != self.oscillates:
-                return self.growth_gap(0, i)
+                return self.scaled_growth_gap(0, i)
         return None
 
-    def gaps_to_next_two(self) -> tuple[tuple[float, float], tuple[float, float]] | None:
+    def scaled_mean_and_product_of_next_gaps(self) -> tuple[tuple[float, float], tuple[float, float]] | None:
         """Returns (tau (r - (a + b)/2), tau^2 (r - a) (r - b)), each with its derivative with respect to p,
         tau: `relaxation_time`. r: real part of the leading eigenvalue. a, b: the two eigenvalues after the
         leading eigenvalue or pair; None unless a and b are both real or a complex pair.
@@ -99,20 +99,20 @@ class SpectrumSample:
             (product * squared_time[0], product_slope * squared_time[0] + product * squared_time[1]),
         )
 
-    def growth_gap(self, i: int, j: int) -> tuple[float, float]:
+    def scaled_growth_gap(self, i: int, j: int) -> tuple[float, float]:
         """Returns (tau Re(w - v), derivative of this product with respect to p), tau: `relaxation_time`, for
         the eigenvalues w and v with the indices i and j."""
         return self._times_relaxation_time((self.w[i] - self.w[j]).real, (self.slope[i] - self.slope[j]).real)
 
-    def growth_gap_of_leading_pair(self) -> tuple[float, float]:
+    def scaled_growth_gap_of_leading_pair(self) -> tuple[float, float]:
         """Returns (tau Re((w1 + w2)/2 - w3), derivative of this product with respect to p), tau:
         `relaxation_time`, for the first three eigenvalues w1, w2, w3."""
         # Each of the two alone has an infinite slope at the double eigenvalue; their mean has not.
-        first_gap, first_slope = self.growth_gap(0, 2)
-        second_gap, second_slope = self.growth_gap(1, 2)
+        first_gap, first_slope = self.scaled_growth_gap(0, 2)
+        second_gap, second_slope = self.scaled_growth_gap(1, 2)
         return (first_gap + second_gap) / 2, (first_slope + second_slope) / 2
 
-    def squared_frequency(self, i: int) -> tuple[float, float]:
+    def scaled_squared_frequency(self, i: int) -> tuple[float, float]:
         """Returns (tau^2 (Im w)^2, its derivative with respect to p), tau: `relaxation_time`, for w =
         `self.w[i]`."""
         frequency, slope = self._times_relaxation_time(self.w[i].imag, self.slope[i].imag)

@@ -29,7 +29,7 @@ class ThresholdSettings:
     sample_shift_fraction: float = 1e-4
     """Samples are added at this distance, as a fraction of the path, on both sides of a crossing whose pair
     must lead but does not lead in the list."""
-    merge_distance_ratio: float = 1e-5
+    max_merged_gap_per_parameter: float = 1e-5
     """Undecided boxes are merged if the gap between them is at most this number times the parameter."""
 
 
@@ -243,7 +243,7 @@ def _undecided_intervals(path: ParameterPath, undecided: list[Box]) -> list[tupl
     """Disjoint intervals of the parameter covered by the boxes `undecided`."""
     gaps: list[tuple[float, float]] = []
     for a, b in sorted(sorted((path.coordinate(box.p_from), path.coordinate(box.p_to))) for box in undecided):
-        if gaps and a <= gaps[-1][1] * (1 + THRESHOLD_SETTINGS.merge_distance_ratio):
+        if gaps and a <= gaps[-1][1] * (1 + THRESHOLD_SETTINGS.max_merged_gap_per_parameter):
             gaps[-1] = gaps[-1][0], max(b, gaps[-1][1])
         else:
             gaps.append((a, b))

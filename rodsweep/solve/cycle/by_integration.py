@@ -29,8 +29,14 @@ from ..point_outcome import outcome_or_failure
 from .accuracy.cycle_errors import CycleErrors, errors_of_two_integrations, message_of_error
 from .cycle_outcome import CycleOutcome, CycleRequest, with_measures
 from .integration_settings import INTEGRATION_SETTINGS
-from .settled_motion import NoCycleFound, ReturnDistances, ReturnTimes, SettledMotion, max_settled_distance
-from .status import IntegrationStatus
+from .settled_motion import (
+    NoCycleFound,
+    ReturnDistances,
+    ReturnTimeEstimate,
+    SettledMotion,
+    max_settled_distance_from_cycle,
+)
+from .status import IntegratedCycleStatus
 from .straight_rod import straight_rod_stability
 from .transient.motion_mesh import integrable_rod, motion_mesh
 from .transient.orbit_from_motion import collocation_states
@@ -51,7 +57,7 @@ def solve_by_integration(rod: Rod, request: CycleRequest) -> CycleOutcome:
 
     def failed(cause: str) -> CycleOutcome:
         destroy_integrators()  # after an error inside PETSc its objects are unusable
-        return CycleOutcome(status=IntegrationStatus.failed, message=cause)
+        return CycleOutcome(status=IntegratedCycleStatus.failed, message=cause)
 
     return outcome_or_failure(lambda: _IntegrationUntilSettled(rod, request).cycle(), failed)
 
@@ -69,7 +75,7 @@ class _IntegrationUntilSettled:
         self.system = ExplicitSystem(self.rod, self.mesh)
         self.leading_mode = leading_mode(self.system)
         self.return_count = 0
-        self.return_times = ReturnTimes(self.leading_mode.period)
+        self.return_times = ReturnTimeEstimate(self.leading_mode.period)
         self.intervals_per_return = INTEGRATION_SETTINGS.measurement_intervals_per_return
 
     def cycle(self) -> CycleOutcome:
@@ -78,7 +84,7 @@ class _IntegrationUntilSettled:
             self.limiting_rod
         ).w  # exact; an eigenvalue of the mesh has errors up to 1e-3
         straight = CycleOutcome(
-            status=IntegrationStatus.straight, linear_growth_rate=w.real, linear_frequency=w.imag
+            status=IntegratedCycleStatus.straight, linear_growth_rate=w.real, linear_frequency=w.imag
         )
         try:
             z = relax_fast_components(
@@ -87,13 +93,13 @@ class _IntegrationUntilSettled:
             settled = self._integrate_until_settled(z)
             motion = self._measured_path(settled)
             is_nearby_rod = self.rod != self.limiting_rod
-            error_ratio = INTEGRATION_SETTINGS.max_error_ratio_for_limiting_rod if is_nearby_rod else 1.0
+            error_ratio = INTEGRATION_SETTINGS.nearby_rod_error_over_accuracy if is_nearby_rod else 1.0
             tolerance = self.request.accuracy * error_ratio
             for _ in range(INTEGRATION_SETTINGS.max_comparisons):
                 settled = self._settled_on_finer_mesh(settled)
                 coarser_motion = motion
                 motion = self._measured_path(settled)
-                settled_distance = max_settled_distance(self.request.accuracy)
+                settled_distance = max_settled_distance_from_cycle(self.request.accuracy)
                 errors = errors_of_two_integrations(coarser_motion, motion, settled_distance)
                 if errors.largest_weighted_error <= tolerance:
                     break
@@ -140,17 +146,17 @@ class _IntegrationUntilSettled:
             past_moments.extend(self.system.layout.stress_field(states, "m3"))
             self.return_count += max(len(states), 1)
             if self.leading_mode.w.real < 0 and np.linalg.norm(z) < RETURN_SETTINGS.max_straight_norm:
-                raise NoCycleFound(IntegrationStatus.straight, "the motion has decayed to rounding error")
+                raise NoCycleFound(IntegratedCycleStatus.straight, "the motion has decayed to rounding error")
             if len(past_moments) <= TRANSIENT_SETTINGS.returns_per_run:
                 continue
             returns_per_repetition, distance = recurrence(list(past_moments))
             distances.record_test(distance, returns_per_repetition / TRANSIENT_SETTINGS.returns_per_run)
             # For distances in a geometric sequence the distance from the cycle is distance/(1 - rate).
-            tolerance = max_settled_distance(self.request.accuracy)
+            tolerance = max_settled_distance_from_cycle(self.request.accuracy)
             if distance <= tolerance * (1 - distances.contraction_rate):
                 return SettledMotion(z, returns_per_repetition, time_step)
         message = not_settled_text(self.return_count, len(past_moments), distances.last)
-        raise NoCycleFound(IntegrationStatus.not_settled, message)
+        raise NoCycleFound(IntegratedCycleStatus.not_settled, message)
 
     def _integrate(
         self, z: Array, duration: float, step: float, limit: RunLimit, scheme: TimeScheme | None = None
@@ -159,7 +165,11 @@ class _IntegrationUntilSettled:
         NoCycleFound if the run fails. step: first time step, in tau2. scheme: None for `self.scheme`."""
         run = integrator(self.system.mesh, scheme or self.scheme).run(self.system, z, duration, step, limit)
         if failure := run_failure(self.system, run, self.return_count):
-            status = IntegrationStatus.left_the_model if failure.left_the_model else IntegrationStatus.failed
+            status = (
+                IntegratedCycleStatus.left_the_model
+                if failure.left_the_model
+                else IntegratedCycleStatus.failed
+            )
             raise NoCycleFound(status, failure.message)
         return run
 
@@ -193,7 +203,7 @@ class _IntegrationUntilSettled:
         times = self._crossings(run)[0]
         if len(times) <= settled.returns_per_period:
             raise NoCycleFound(
-                IntegrationStatus.not_settled,
+                IntegratedCycleStatus.not_settled,
                 f"after {self.return_count} returns to theta = 0 the tip does not return again",
             )
         period = float(times[settled.returns_per_period] - times[0])
@@ -214,7 +224,7 @@ class _IntegrationUntilSettled:
     ) -> CycleErrors:
         """`errors` plus the error of integrating a nearby rod instead of a limiting rod; raises
         NoCycleFound."""
-        self.rod = integrable_rod(self.limiting_rod, INTEGRATION_SETTINGS.second_rod_distance_ratio)
+        self.rod = integrable_rod(self.limiting_rod, INTEGRATION_SETTINGS.second_rod_limit_distance_ratio)
         self.system = ExplicitSystem(self.rod, self.mesh)
         z = relax_fast_components(self.system, settled.state, self.leading_mode.period)
         limit_errors = errors_of_two_integrations(
@@ -232,7 +242,7 @@ class _IntegrationUntilSettled:
         is_accurate = errors.largest_weighted_error <= self.request.accuracy
         cycle = replace(
             outcome,
-            status=IntegrationStatus.cycle if is_accurate else IntegrationStatus.not_settled,
+            status=IntegratedCycleStatus.cycle if is_accurate else IntegratedCycleStatus.not_settled,
             message="" if is_accurate else message_of_error(errors, self.request.accuracy),
             periods=self.return_count,
         )

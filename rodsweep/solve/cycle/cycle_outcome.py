@@ -77,7 +77,7 @@ class CycleRequest:
     """Number of shapes per return of the tip that are stored for an animation; 0 for no animation."""
 
     @property
-    def is_recorded(self) -> bool:
+    def is_motion_recorded(self) -> bool:
         """Whether the tip's path or the rod's shapes are stored from the start of the motion on; the motion
         is then always integrated."""
         return self.transient > 0 or self.frames > 0

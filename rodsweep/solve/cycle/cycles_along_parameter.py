@@ -33,7 +33,7 @@ from ..unsolvable import Unsolvable
 class CyclePredictionSettings:
     """Settings for the polynomial prediction of cycles along one parameter."""
 
-    max_prediction_distance: float = 0.3
+    max_distance_from_prediction: float = 0.3
     """Largest relative distance of a cycle from its prediction; a cycle at a larger distance is rejected,
     because the cycle may lie on another branch."""
     max_matrix_distance: float = 1e-2
@@ -41,7 +41,7 @@ class CyclePredictionSettings:
     distance from the solution; otherwise a new matrix is assembled."""
     max_earlier_orbits: int = 4
     """Maximum number of earlier orbits whose values enter the predicting polynomial."""
-    orbits_without_second_tangent: int = 3
+    min_orbits_replacing_second_tangent: int = 3
     """The tangent of the previous orbit enters the polynomial only if there are fewer earlier orbits than
     this; otherwise the tangent would make the prediction less accurate."""
 
@@ -142,9 +142,9 @@ def predictor_from(solved: ConvergedOrbit, previous: CyclePredictor | None, name
     parameter. Raises ValueError if the orbit has no tangent.
 
     A tangent is as inaccurate as the prediction of its orbit; the values of an orbit are far more accurate.
-    With CYCLE_PREDICTION_SETTINGS.orbits_without_second_tangent or more earlier orbits, a second tangent
-    makes the prediction worse. Between two meshes, the values of an orbit differ more than the tangent, so
-    only tangents are used after a change of mesh."""
+    With CYCLE_PREDICTION_SETTINGS.min_orbits_replacing_second_tangent or more earlier orbits, a second
+    tangent makes the prediction worse. Between two meshes, the values of an orbit differ more than the
+    tangent, so only tangents are used after a change of mesh."""
     orbit = solved.orbit
     if solved.matrix.tangent is None:
         raise ValueError("the orbit was solved without its tangent")
@@ -166,7 +166,7 @@ def predictor_from(solved: ConvergedOrbit, previous: CyclePredictor | None, name
     # All offsets shift by the step, because the newest orbit has the offset 0.
     rows = [tangent, previous.normalised_values, *previous.values_and_derivatives[older_indices]]
     orders = [1.0] + [0.0] * (1 + len(older_indices))
-    if 1 + len(older_indices) < CYCLE_PREDICTION_SETTINGS.orbits_without_second_tangent:
+    if 1 + len(older_indices) < CYCLE_PREDICTION_SETTINGS.min_orbits_replacing_second_tangent:
         offsets.append(-step)
         rows.append(previous.normalised_tangent)
         orders.append(1.0)
@@ -186,9 +186,9 @@ def orbit_near_prediction(
 ) -> ConvergedOrbit:
     """The orbit near `predicted` with its tangent along the parameter `name`, by Newton's method to
     a relative tolerance; raises Unsolvable if the method does not converge, or if the orbit is farther from
-    `predicted` than CYCLE_PREDICTION_SETTINGS.max_prediction_distance."""
+    `predicted` than CYCLE_PREDICTION_SETTINGS.max_distance_from_prediction."""
     solved = newton(predicted, tolerance, workspace, name)
-    if _prediction_error(predicted, solved) > CYCLE_PREDICTION_SETTINGS.max_prediction_distance:
+    if _prediction_error(predicted, solved) > CYCLE_PREDICTION_SETTINGS.max_distance_from_prediction:
         raise Unsolvable("the cycle is too far from its prediction")
     return solved
 

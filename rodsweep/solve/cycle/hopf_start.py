@@ -53,14 +53,14 @@ def leading_eigenvalue(rod: Rod, guess: complex | None = None) -> complex:
 
 def hopf_point_below(rod: Rod) -> HopfPointBelow | None:
     """The nearest Hopf point below the force of the rod at which the leading mode becomes unstable; None if
-    not found. The leading growth rate is evaluated at decreasing forces (`force_scan_ratio`), so two Hopf
-    points between successive forces are missed. Raises Unsolvable if a leading eigenvalue is unknown, or if
-    the unstable mode does not oscillate."""
+    not found. The leading growth rate is evaluated at decreasing forces (`relative_scan_decrease`), so two
+    Hopf points between successive forces are missed. Raises Unsolvable if a leading eigenvalue is unknown, or
+    if the unstable mode does not oscillate."""
     F = rod.F
     upper_w = leading_eigenvalue(rod)
     while HOPF_START_SETTINGS.min_force < F:
         # Successive forces have a constant ratio: thresholds of a rod are far apart at large forces.
-        lower_F = F * (1 - HOPF_START_SETTINGS.force_scan_ratio)
+        lower_F = F * (1 - HOPF_START_SETTINGS.relative_scan_decrease)
         lower_w = leading_eigenvalue(replace(rod, F=lower_F), upper_w)
         if lower_w.real < 0 <= upper_w.real:
             return _hopf_point_between(rod, (lower_F, lower_w), (F, upper_w))
@@ -152,7 +152,7 @@ def orbit_from_hopf(form: StressForm, hopf: HopfPointBelow, workspace: NewtonWor
     raise failure
 
 
-def orbit_near_hopf(form: StressForm, w: complex, amplitude: float) -> Orbit:
+def predicted_orbit_near_hopf(form: StressForm, w: complex, amplitude: float) -> Orbit:
     """Approximate orbit, by the normal form, to which a motion from the leading mode converges near a Hopf
     point.
 

@@ -9,7 +9,7 @@ from ...model.rod import Rod
 class HopfStartSettings:
     """Settings for the search for the Hopf point below a force, and for Newton's method from this point."""
 
-    force_scan_ratio: float = 0.07
+    relative_scan_decrease: float = 0.07
     """Relative decrease between successive forces at which the search evaluates the leading growth rate."""
     min_force: float = 1e-2
     """Force, in k3/L^2, at which the search for a Hopf point ends: at smaller forces no rod oscillates,
@@ -27,7 +27,7 @@ class HopfStartSettings:
     normal_form_accuracy: float = 1e-3
     """Relative accuracy of the normal form's coefficients; the truncation error of the normal form is
     larger."""
-    max_drag_of_finer_normal_form: float = 1e-2
+    max_axial_drag_for_refinement: float = 1e-2
     """If the smallest axial drag along the rod is less, the mesh of the normal form is finer in proportion:
     mesh errors of the axial force are divided by the drag in the axial velocity, and the Landau coefficient
     would have an error of 3 percent at a drag of 1e-4 and of 100 times its value at 1e-6."""
@@ -70,5 +70,5 @@ def normal_form_accuracy(rod: Rod) -> float:
     """Relative accuracy for which the mesh of the normal form of `rod` is chosen, for the start of a
     branch."""
     settings = HOPF_START_SETTINGS
-    refinement = min(1.0, rod.least_axial_drag / settings.max_drag_of_finer_normal_form)
+    refinement = min(1.0, rod.least_axial_drag / settings.max_axial_drag_for_refinement)
     return max(settings.normal_form_accuracy * refinement, settings.finest_normal_form_accuracy)

@@ -17,22 +17,22 @@ class IntegrationSettings:
     """Increase of the element order from an integration to the next, finer integration."""
     max_comparisons: int = 3
     """Maximum number of comparisons of two successive integrations of increasing accuracy."""
-    settled_distance_ratio: float = 0.1
+    settled_distance_over_accuracy: float = 0.1
     """A motion has settled if its relative distance from the cycle is at most this fraction of the
     accuracy."""
     return_error_over_tolerance: float = 10.0
     """Relative distance between two returns that integration errors alone may cause, divided by the local
     tolerance."""
-    min_tests_below_error: int = 3
+    min_distances_below_integration_error: int = 3
     """Number of successive distances below the distance that integration errors may cause, which show that
     the integration errors are smaller."""
     difference_safety_factor: float = 2.0
     """Safety factor: error estimate divided by the difference between the results of two integrations."""
-    max_error_ratio_for_limiting_rod: float = 0.5
+    nearby_rod_error_over_accuracy: float = 0.5
     """For a limiting rod, such as a rod with k1 = inf, integrations are refined until their error is at most
     this fraction of the accuracy; the rest of the accuracy is left for the error of integrating a nearby
     rod."""
-    second_rod_distance_ratio: float = 2.0
+    second_rod_limit_distance_ratio: float = 2.0
     """A limiting rod is approximated by an integrated rod and, for the error estimate, by a second rod that
     is farther from the limit by this factor. Cycles change in proportion to the distance from the limit, so
     with the factor 2 the difference of the two cycles is the error of the nearer rod."""

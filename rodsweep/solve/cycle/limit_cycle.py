@@ -89,7 +89,7 @@ def _solve_cycle_or_raise(
         # A failed continuation is no failure of the point: the motion is integrated instead.
         with suppress(Unsolvable):
             refined = cycle_from_neighbour(neighbour, form, parameter_name, request.accuracy, workspace)
-    elif neighbour is None and not request.is_recorded:
+    elif neighbour is None and not request.is_motion_recorded:
         refined = stable_cycle_near_hopf(_form_on_motion_mesh(rod), w, request, parameter_name, workspace)
     # A motion ends at a stable cycle only; an unstable one is a hint for the integration below.
     if refined is not None and refined.verdict(request.accuracy)[0] == CycleStatus.cycle:
@@ -97,7 +97,7 @@ def _solve_cycle_or_raise(
         return _with_neighbour(cycle, refined, neighbour, parameter_name, request.accuracy, stability)
     is_from_mode = neighbour is None and request.tip is None
     decay_reason = reason_for_decay(rod, w, request.amplitude) if is_from_mode else ""
-    if decay_reason and not request.is_recorded:
+    if decay_reason and not request.is_motion_recorded:
         return replace(straight, message=decay_reason)
     unstable_cycle = refined if refined is not None and refined.stable is False else None
     for form in (StressForm(rod, mesh) for mesh in motion_meshes(rod, request.transient > 0)):

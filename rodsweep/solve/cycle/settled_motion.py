@@ -6,7 +6,7 @@ from math import isfinite, isnan, nan
 
 from ...arrays import Array
 from .integration_settings import INTEGRATION_SETTINGS
-from .status import IntegrationStatus
+from .status import IntegratedCycleStatus
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,12 +20,12 @@ class SettledMotion:
     last_time_step: float
 
 
-def max_settled_distance(accuracy: float) -> float:
+def max_settled_distance_from_cycle(accuracy: float) -> float:
     """Largest relative distance of a settled motion from its cycle, for a requested relative accuracy."""
-    return INTEGRATION_SETTINGS.settled_distance_ratio * accuracy
+    return INTEGRATION_SETTINGS.settled_distance_over_accuracy * accuracy
 
 
-class ReturnTimes:
+class ReturnTimeEstimate:
     """Time between returns of the tip to theta = 0, over successive runs of one motion.
 
     shortest: smallest value of `time_per_return`, in tau2, the period of the leading mode. time_per_return:
@@ -78,8 +78,8 @@ class ReturnDistances:
             self._below_error = []
         else:
             self._below_error.append(distance)
-        last_distances = self._below_error[-INTEGRATION_SETTINGS.min_tests_below_error :]
-        if len(last_distances) == INTEGRATION_SETTINGS.min_tests_below_error and isfinite(
+        last_distances = self._below_error[-INTEGRATION_SETTINGS.min_distances_below_integration_error :]
+        if len(last_distances) == INTEGRATION_SETTINGS.min_distances_below_integration_error and isfinite(
             self._last_above_error
         ):
             # Distances that stay small are no coincidence, so the integration_error is smaller than assumed.
@@ -92,7 +92,7 @@ class ReturnDistances:
 class NoCycleFound(Exception):
     """Raised if the motion does not settle on a cycle. status, message: outcome of the motion."""
 
-    def __init__(self, status: IntegrationStatus, message: str) -> None:
+    def __init__(self, status: IntegratedCycleStatus, message: str) -> None:
         super().__init__(message)
         self.status = status
         self.message = message

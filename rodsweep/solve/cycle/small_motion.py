@@ -16,7 +16,7 @@ from ..unsolvable import Unsolvable
 from .accuracy.refined_cycle import RefinedCycle
 from .accuracy.refinement import refined_cycle
 from .cycle_outcome import CycleRequest
-from .hopf_start import orbit_near_hopf
+from .hopf_start import predicted_orbit_near_hopf
 from .status import CycleStatus
 from .transient.transient_settings import TRANSIENT_SETTINGS
 
@@ -49,7 +49,7 @@ def stable_cycle_near_hopf(
     """
     try:
         cycle = refined_cycle(
-            orbit_near_hopf(form, w, request.amplitude), request.accuracy, workspace, parameter_name
+            predicted_orbit_near_hopf(form, w, request.amplitude), request.accuracy, workspace, parameter_name
         )
     except Unsolvable:
         return None

@@ -45,7 +45,7 @@ class CycleStatus(PointStatus):
     )
 
 
-class IntegrationStatus(PointStatus):
+class IntegratedCycleStatus(PointStatus):
     """Status of a point of the task limit_cycle with `method: integration`."""
 
     cycle = (

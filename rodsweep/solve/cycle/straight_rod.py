@@ -14,7 +14,7 @@ from ...arrays import Array, Complex
 from ...determinant.arm.determinant import forget_arm_determinants
 from ...determinant.roots.settings import ROOT_SETTINGS
 from ...model.rod import Rod
-from ..spectrum.path.followed_leader import follow_leading_eigenvalue, proves_leader
+from ..spectrum.path.followed_leader import follow_leading_eigenvalue, is_arm_leader_proved_without_count
 from ..spectrum.search import SpectrumRequest, solve_spectrum
 
 
@@ -128,7 +128,7 @@ def eigenvalues_to_follow(rod: Rod, stability: StraightRodStability) -> Complex:
             if not np.isfinite(w).all():
                 break
             # With too few eigenvalues the proof fails at the next arm too, and a count would be needed there.
-            if proves_leader(rod, w, error):
+            if is_arm_leader_proved_without_count(rod, w, error):
                 return w
             candidates.append(w)
         if candidates:
@@ -145,10 +145,12 @@ def _leading_eigenvalues(rod: Rod, number: int) -> tuple[Complex, Array]:
     return w[is_kept], spectrum.error_estimate[is_kept]
 
 
-def system_growth_rate(rod: Rod, system_rod: Rod, straight: StraightRodStability, rate: float) -> float:
-    """Linear growth rate of the integrated rod `system_rod`, in 1/tau2, from its exact spectrum; `rate`, of
-    the rod `rod` with the stability `straight`, if both are equal or the spectrum is unknown. A stiff matrix
-    would give errors of 1e-4."""
-    if system_rod == rod:
+def growth_rate_of_integrated_rod(
+    rod: Rod, integrated_rod: Rod, straight: StraightRodStability, rate: float
+) -> float:
+    """Linear growth rate of the integrated rod `integrated_rod`, in 1/tau2, from its exact spectrum; `rate`,
+    of the rod `rod` with the stability `straight`, if both are equal or the spectrum is unknown. A stiff
+    matrix would give errors of 1e-4."""
+    if integrated_rod == rod:
         return rate
-    return straight_rod_stability(system_rod, np.array([straight.w])).growth_rate(rate)
+    return straight_rod_stability(integrated_rod, np.array([straight.w])).growth_rate(rate)

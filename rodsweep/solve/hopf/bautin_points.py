@@ -36,7 +36,7 @@ class BautinPointSettings:
     accuracy."""
     tolerance: float = 1e-13
     """Tolerance of Brent's method, as a fraction of the distance between two neighbours."""
-    relative_difference_step: float = 1e-3
+    difference_step_over_spacing: float = 1e-3
     """Difference step for the derivative of Re c, as a fraction of the distance between two neighbours."""
     max_relative_real_part: float = 1e-6
     """A root found by Brent's method is a zero of Re c only if |Re c|/|c| is at most this number; otherwise
@@ -174,12 +174,12 @@ class HopfNormalForms:
         try:
             s = float(brentq(lambda s: on_chord(s).relative_real_part, 0.0, 1.0, xtol=settings.tolerance))
             hopf_point, point_before, point_after = (
-                on_chord(s + side * settings.relative_difference_step) for side in (0, -1, 1)
+                on_chord(s + side * settings.difference_step_over_spacing) for side in (0, -1, 1)
             )
         except (*FAILURES, ValueError):
             return None
         slope = (point_after.relative_real_part - point_before.relative_real_part) / (
-            2 * settings.relative_difference_step
+            2 * settings.difference_step_over_spacing
         )
         if abs(hopf_point.relative_real_part) > settings.max_relative_real_part or slope == 0:
             return None

@@ -41,7 +41,7 @@ class HopfCoefficientSettings:
     landau_rounding_per_condition_number: float = 1.5e-14
     """Relative rounding error of c, divided by the condition number of the eigenvalue. Most rods have 1e-15;
     the largest measured value is 9e-15, for nearly crushed rods that are soft in stretch and shear."""
-    max_force_sensitivity: float = 20.0
+    max_landau_force_sensitivity: float = 20.0
     """Bound on |dc/dF|/|c|, divided by |w''|/|w'| + 1/|F| + 1/|k1 - F|. The largest measured value is 10, for
     high modes of rods soft in shear; where a flutter window closes the value is 1."""
     relative_force_step: float = 1e-5
@@ -117,14 +117,14 @@ def hopf_coefficients(rod: Rod, hopf: Threshold, accuracy: float) -> HopfCoeffic
         fine_form = normal_form_on(finer_elements, rod, w, accuracy)
         landau_change = abs(fine_form.landau - coarse_form.landau) / abs(fine_form.landau)
         # The rounding error of c follows from the condition number of the eigenvalue.
-        product_sizes = straight_matrices(fine_form.form, TRANSVERSE_COMPONENTS).product_magnitude(
+        product_sizes = straight_matrices(fine_form.form, TRANSVERSE_COMPONENTS).A_product_magnitude(
             fine_form.p, fine_form.q
         )
         rounding_error = settings.landau_rounding_per_condition_number * product_sizes / abs(fine_form.w)
         if landau_change <= max(accuracy, rounding_error):
             break
     # The slope of the root of D has no error of a mesh.
-    slope, second_derivative = _eigenvalue_derivatives(rod, w)
+    slope, second_derivative = _eigenvalue_slope_and_curvature(rod, w)
     if rod.is_uniform_and_linear:
         slope_difference = abs(fine_form.eigenvalue_slope - slope) / abs(slope)
     else:  # for an arm the root's slope is a difference quotient, less accurate than the slope on the mesh
@@ -132,7 +132,7 @@ def hopf_coefficients(rod: Rod, hopf: Threshold, accuracy: float) -> HopfCoeffic
         slope_difference = abs(fine_form.eigenvalue_slope - coarse_form.eigenvalue_slope) / abs(slope)
     # c was computed at the force of `hopf`: an error of this force changes c.
     sensitivity_unit = second_derivative / abs(slope) + 1 / abs(rod.F) + 1 / abs(rod.crushing_force - rod.F)
-    force_effect = settings.max_force_sensitivity * hopf.error * sensitivity_unit
+    force_effect = settings.max_landau_force_sensitivity * hopf.error * sensitivity_unit
     landau_error = max(landau_change, rounding_error) + force_effect
     slope_error = max(slope_difference, rounding_error) + hopf.error * second_derivative / abs(slope)
     return _coefficients_with_errors(
@@ -174,7 +174,7 @@ def _coefficients_with_errors(
     )
 
 
-def _eigenvalue_derivatives(rod: Rod, w: complex) -> tuple[complex, float]:
+def _eigenvalue_slope_and_curvature(rod: Rod, w: complex) -> tuple[complex, float]:
     """Returns (dw/dF, |d^2w/dF^2|) of the root near w of the determinant D of `rod`."""
     # A one-sided difference suffices: the second derivative only enters error estimates.
     step = HOPF_COEFFICIENT_SETTINGS.relative_force_step * abs(rod.F)

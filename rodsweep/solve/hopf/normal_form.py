@@ -43,7 +43,7 @@ class NormalFormSettings:
 
     shift_offset: float = 1e-10
     """Relative offset of the shift from the eigenvalue estimate; without it the matrix might be singular."""
-    converged_distance: float = 1e-8
+    converged_shift_distance: float = 1e-8
     """The inverse iteration stops when the relative distance of shift and eigenvalue is at most this number:
     two iterations with this shift reach rounding error."""
     max_shifts: int = 10
@@ -63,8 +63,8 @@ class NormalFormSettings:
 NORMAL_FORM_SETTINGS = NormalFormSettings()
 ITERATIONS_PER_SHIFT = 2
 """Number of inverse iterations with one shift. After two iterations the error of the mode is about the square
-of `NORMAL_FORM_SETTINGS.converged_distance`, below rounding error; after one iteration the error of the mode
-would exceed the stated error of c."""
+of `NORMAL_FORM_SETTINGS.converged_shift_distance`, below rounding error; after one iteration the error of the
+mode would exceed the stated error of c."""
 
 
 HARMONIC_WAVE_NUMBER_RATIO = 2
@@ -172,13 +172,13 @@ def with_odd_order(elements: Elements) -> Elements:
 
 def elements_with_third_more_unknowns(elements: Elements) -> Elements:
     """Elements with about a third more unknowns than `elements`, of odd order."""
-    order = ceil(elements.order * RESOLUTION_SETTINGS.refinement_ratio)
+    order = ceil(elements.order * RESOLUTION_SETTINGS.finer_unknowns_ratio)
     if order <= RESOLUTION_SETTINGS.max_order:
         return with_odd_order(Elements(elements.edges, order))
     return with_odd_order(
         Elements(
             halved_element_edges(elements.edges),
-            ceil(RESOLUTION_SETTINGS.refinement_ratio / 2 * elements.order),
+            ceil(RESOLUTION_SETTINGS.finer_unknowns_ratio / 2 * elements.order),
         )
     )
 
@@ -187,7 +187,7 @@ def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) ->
     """Normal form of the eigenvalue w of `rod` on the mesh `elements`.
 
     Raises Unsolvable if the mesh has no eigenvalue equal to w within the larger of the relative accuracies
-    `accuracy` and `NORMAL_FORM_SETTINGS.converged_distance`, if the mesh has too many nodes, or for the
+    `accuracy` and `NORMAL_FORM_SETTINGS.converged_shift_distance`, if the mesh has too many nodes, or for the
     reasons of `normal_form`.
     """
     node_count = elements.node_count
@@ -200,7 +200,7 @@ def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) ->
             f"{max_node_count} allowed"
         )
     normal = normal_form(MixedForm(rod, mesh_with_edges(elements.edges, elements.order)), w)
-    if not abs(normal.w - w) <= max(accuracy, NORMAL_FORM_SETTINGS.converged_distance) * abs(w):
+    if not abs(normal.w - w) <= max(accuracy, NORMAL_FORM_SETTINGS.converged_shift_distance) * abs(w):
         raise Unsolvable(
             f"the mesh of the normal form misses the eigenvalue w = {w:.12g} of the rod at F = {rod.F:g}; "
             f"the nearest eigenvalue of the mesh is {normal.w:.12g}"
@@ -227,7 +227,7 @@ def _eigenvalue_and_modes(
             p = p / np.abs(p).max()
         Mq = elements.times_M(q)
         w = complex(np.vdot(p, elements.times_A(q)) / np.vdot(p, Mq))
-        if abs(w - shift) <= NORMAL_FORM_SETTINGS.converged_distance * abs(w):
+        if abs(w - shift) <= NORMAL_FORM_SETTINGS.converged_shift_distance * abs(w):
             break
     else:
         raise Unsolvable(f"inverse iteration finds no eigenvalue near w = {guess:.6g}")

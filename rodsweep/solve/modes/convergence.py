@@ -34,7 +34,7 @@ class ModeMeshSettings:
     """Largest number of unknowns of a mesh; dense linear algebra on a larger mesh takes seconds."""
     min_accuracy: float = 1e-24
     """The first mesh is chosen for a relative accuracy of eigenvalues not smaller than this."""
-    condition_rounding_factor: float = 2.0
+    condition_rounding_per_separation: float = 2.0
     """Relative rounding error of a condition number, divided by (rounding error of the eigenvalue)/(distance
     to the nearest eigenvalue); measured: median 0.6, maximum 3.4."""
 
@@ -98,7 +98,7 @@ def _with_errors_from_coarse(coarse: ModeVectors, fine: ModeVectors, separations
         mode_error = np.maximum(mode_error, relative_change.max(axis=0))
     # Rounding does not turn the eigenvectors of a normal operator, whose condition numbers are 1.
     rotation_by_rounding = (
-        MODE_MESH_SETTINGS.condition_rounding_factor
+        MODE_MESH_SETTINGS.condition_rounding_per_separation
         * (1 - 1 / fine.condition**2)
         * fine.rounding
         / np.maximum(separations, EXPONENT_SETTINGS.min_divisor)

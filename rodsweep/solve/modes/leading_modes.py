@@ -97,7 +97,7 @@ def solve_modes(rod: Rod, request: ModesRequest) -> Modes:
 
 def _modes_by_equivalent_rod(rod: Rod, request: ModesRequest) -> Modes:
     """Modes of a uniform rod of nonlinear material, from the equivalent linear rod; times are rescaled."""
-    linear, rate = rod.equivalent_linear_rod
+    linear, rate = rod.equivalent_linear_rod_and_rate
     modes_of_linear = solve_modes(linear, request)
     spectrum = modes_of_linear.spectrum
     growth = modes_of_linear.growth

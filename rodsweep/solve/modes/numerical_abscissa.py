@@ -8,10 +8,10 @@ import numpy as np
 from ...determinant.arm.hull.hull import hull_of
 from ...determinant.certificate.box import eigenvalue_box
 from ...discretization.straight.dense_eigenproblem import AnyPencil, dense_eigenproblem
-from ...discretization.straight.tip_layer import tip_layer_ratio
+from ...discretization.straight.tip_layer import tip_angle_moment_ratio
 from ...model.adjoint import hermitian_tip_coefficients
 from ...model.rod import Rod
-from .propagator import shifted_inverse
+from .propagator import symmetrised_shifted_inverse
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -21,7 +21,7 @@ class NumericalAbscissaSettings:
     max_shifts: int = 60
     """Maximum number of shifts; a shift below the numerical abscissa is followed by a shift about twice as
     large."""
-    final_shift_distance_ratio: float = 0.05
+    relative_shift_distance_above_abscissa: float = 0.05
     """Distance of the next shift above the current estimate a of the numerical abscissa, divided by 1 + |a|:
     so small that shift + 1/eigenvalue loses no digits by cancellation. An estimate is final if its shift was
     at most twice this distance above it."""
@@ -43,13 +43,13 @@ def numerical_abscissa(rod: Rod, pencil: AnyPencil) -> float:
     """
     settings = NUMERICAL_ABSCISSA_SETTINGS
     form = dense_eigenproblem(rod, pencil)
-    A = form.with_tip_terms(*hermitian_tip_coefficients(rod.F, tip_layer_ratio(rod)))
+    A = form.with_tip_terms(*hermitian_tip_coefficients(rod.F, tip_angle_moment_ratio(rod)))
     B = form.B
     bound, _ = eigenvalue_box(rod) if rod.is_uniform_and_linear else hull_of(rod).box()
     # Any shift above the abscissa is allowed; the bound of the eigenvalues is the first guess.
     shift = bound + 1 if bound < inf else rod.F**2 + 1
     for _ in range(settings.max_shifts):
-        H = shifted_inverse(A, B, shift)
+        H = symmetrised_shifted_inverse(A, B, shift)
         # H is symmetric but for rounding errors, and `eigvalsh` would read only one of its triangles.
         eigenvalues = np.linalg.eigvalsh((H + H.T) / 2)
         # A positive eigenvalue: an eigenvalue of the operator lies above the shift.
@@ -61,8 +61,8 @@ def numerical_abscissa(rod: Rod, pencil: AnyPencil) -> float:
         abscissa = shift + 1 / float(eigenvalues[0])
         is_close = (
             abscissa
-            + settings.final_shift_distance_ratio * abs(abscissa)
-            + settings.final_shift_distance_ratio
+            + settings.relative_shift_distance_above_abscissa * abs(abscissa)
+            + settings.relative_shift_distance_above_abscissa
         )
         if shift - abscissa <= 2 * (is_close - abscissa):
             return abscissa

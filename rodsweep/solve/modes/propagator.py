@@ -39,7 +39,7 @@ class PropagatorSettings:
 PROPAGATOR_SETTINGS = PropagatorSettings()
 
 
-def shifted_inverse(A: Array, B: Array, shift: float) -> Array:
+def symmetrised_shifted_inverse(A: Array, B: Array, shift: float) -> Array:
     """B^1/2 (A - shift B)^-1 B^1/2 on the n unknowns with a time derivative, (n, n). A: (unknowns, unknowns).
     B: diagonal matrix, as (unknowns,); 0 for an unknown without time derivative.
 
@@ -124,7 +124,7 @@ class Propagator:
             -np.linalg.eigvalsh(half_second_derivative + np.swapaxes(half_second_derivative, 1, 2))[:, 0], 0.0
         )
 
-    def truncation_contribution(self, m: int, time: float) -> float:
+    def norm_of_truncated_modes(self, m: int, time: float) -> float:
         """|exp(L t) (P_k - P_m)|, of the modes m + 1 to k at `time`; m < k must not split a complex pair."""
         E = self.propagators_at(np.array([time]))[0]
         E[:m, :m] -= matrix_exponential(self.generator[:m, :m] * time) @ np.linalg.inv(self.overlap[:m, :m])

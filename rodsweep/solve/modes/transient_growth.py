@@ -20,7 +20,7 @@ from ...discretization.straight.transverse_mesh import AnyMesh, pencil_on
 from ...model.rod import Rod
 from .norm_maximum import NORM_MAXIMUM_SETTINGS, maximum_propagator_norm
 from .numerical_abscissa import numerical_abscissa
-from .propagator import Propagator, shifted_inverse
+from .propagator import Propagator, symmetrised_shifted_inverse
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -135,7 +135,7 @@ def converged_transient_growth(
 def propagator_of(rod: Rod, pencil: AnyPencil) -> Propagator:
     """exp(L t) of the rod on the mesh of `pencil`, in coordinates in which the Gamma norm is Euclidean."""
     form = dense_eigenproblem(rod, pencil)
-    return Propagator(shifted_inverse(form.A, form.B, 0.0))
+    return Propagator(symmetrised_shifted_inverse(form.A, form.B, 0.0))
 
 
 def transient_growth(
@@ -161,7 +161,7 @@ def transient_growth(
         # After this time the omitted modes have decayed to the accuracy; before, more modes are needed.
         first_time = decay_exponent / abs(fine.w[min(mode_count, len(fine.w) - 1)].real)
         if not end_time:
-            end_time, later_excess = _end_of_growth(fine, first_time, decay_exponent)
+            end_time, later_excess = _end_of_growth_and_excess(fine, first_time, decay_exponent)
         if end_time > first_time and fine.norm_and_log_slope(first_time)[0] >= 1:
             peak = maximum_propagator_norm(fine, (first_time, end_time), abscissa, maximum[0], tolerance)
             maximum = max(maximum, (peak.norm, peak.time))
@@ -185,7 +185,9 @@ def transient_growth(
     return TransientGrowth(transient_growth=maximum[0], transient_time=maximum[1], growth_error=error)
 
 
-def _end_of_growth(propagator: Propagator, earliest_end: float, decay_exponent: float) -> tuple[float, float]:
+def _end_of_growth_and_excess(
+    propagator: Propagator, earliest_end: float, decay_exponent: float
+) -> tuple[float, float]:
     """Returns (end, excess). end: a time after which |exp(L t)| does not exceed its earlier values. excess:
     relative amount by which a later norm may nevertheless exceed these values. earliest_end: earliest end, in
     tau2. decay_exponent: the other modes are negligible once they are exp(-decay_exponent) times the leading
@@ -211,4 +213,4 @@ def _end_of_growth(propagator: Propagator, earliest_end: float, decay_exponent: 
     # The norm of a decaying pair repeats with half its period, so a maximum may be half a period later.
     return pair_only_time + (
         pi / w[0].imag if leading_count == 2 else 0.0
-    ), 2 * propagator.truncation_contribution(leading_count, pair_only_time)
+    ), 2 * propagator.norm_of_truncated_modes(leading_count, pair_only_time)

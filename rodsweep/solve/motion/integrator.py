@@ -29,10 +29,10 @@ from .time_scheme import TimeScheme
 class IntegratorSettings:
     """Settings of the time integration: tolerances, limits, and the run in `relax_fast_components`."""
 
-    max_stagnation_ratio: float = 1e-9
+    max_stagnant_step_ratio: float = 1e-9
     """Newton's method for a stage stops, as converged, if it stagnates at steps whose rms size, divided by
     the largest component of the initial state, is below this."""
-    first_step_ratio: float = 1e-3
+    first_step_over_duration: float = 1e-3
     """Default first time step, as a fraction of the run's duration."""
     max_steps: int = 100_000
     """Default maximum number of time steps of a run."""
@@ -168,13 +168,13 @@ class Integrator:
         ts.setTolerances(rtol=0.0, atol=scheme.tolerance * state_size)
         tolerance = scheme.newton_tolerance_ratio * scheme.tolerance * state_size
         self.workspace.set_rod_and_tolerances(
-            system, tolerance, INTEGRATOR_SETTINGS.max_stagnation_ratio * state_size
+            system, tolerance, INTEGRATOR_SETTINGS.max_stagnant_step_ratio * state_size
         )
         ts.setTime(0.0)
         ts.setStepNumber(0)
         ts.setMaxTime(duration)
         ts.setMaxSteps(limit.max_steps)
-        ts.setTimeStep(first_step or INTEGRATOR_SETTINGS.first_step_ratio * duration)
+        ts.setTimeStep(first_step or INTEGRATOR_SETTINGS.first_step_over_duration * duration)
         # The first step must not extrapolate from an earlier run.
         ts.restartStep()
         ts.setConvergedReason(PETSc.TS.ConvergedReason.CONVERGED_ITERATING)

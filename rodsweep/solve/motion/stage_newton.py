@@ -76,7 +76,7 @@ ITERATING, STEP_SMALL, NOT_FINITE, NOT_CONTRACTING = 0, 4, -4, -5
 
 
 @compiled
-def request_matrix_at_start(c: Any) -> None:
+def request_matrix_after_failed_stage(c: Any) -> None:
     """After a failed stage, requests that the matrix of the repeated, shorter step be evaluated at the start
     of the step. c: context record (`CONTEXT_DTYPE`). The last matrix may belong to a diverged iterate and
     have entries that are not finite; with such a matrix all shorter steps would fail."""
@@ -96,7 +96,7 @@ def convergence_reason(c: Any, iteration: int, dx: float) -> int:
     reuse a small old contraction, with errors a hundred times too large.
     """
     if not np.isfinite(dx):
-        request_matrix_at_start(c)
+        request_matrix_after_failed_stage(c)
         return NOT_FINITE
     # The first iteration of a stage has no previous step.
     theta = dx / c.last_step if iteration > 1 and c.last_step > 0 else 0.0
@@ -115,7 +115,7 @@ def convergence_reason(c: Any, iteration: int, dx: float) -> int:
         return STEP_SMALL
     may_give_up = iteration > STAGE_NEWTON_SETTINGS.iterations_before_giving_up
     if may_give_up and c.growing >= STAGE_NEWTON_SETTINGS.max_growing_steps:
-        request_matrix_at_start(c)
+        request_matrix_after_failed_stage(c)
         return NOT_CONTRACTING
     if theta > STAGE_NEWTON_SETTINGS.new_matrix_contraction:
         c.matrix_due = AT_ITERATE
@@ -133,7 +133,7 @@ def test_newton_convergence(  # noqa: PLR0913, PLR0917 - PETSc's signature
     reason_array = numba.carray(pointer(reason), (1,), np.int32)
     reason_array[0] = ITERATING
     if not np.isfinite(size):
-        request_matrix_at_start(c)
+        request_matrix_after_failed_stage(c)
         reason_array[0] = NOT_FINITE
     elif iteration > 0:
         reason_array[0] = convergence_reason(c, iteration, dx)
@@ -234,7 +234,7 @@ def solve_stage(snes: int, X: int) -> int:
         iteration += 1
         reason = convergence_reason(c, iteration, newton_step(c, scratch, X))
         if reason == ITERATING and iteration >= c.most_iterations:
-            request_matrix_at_start(c)
+            request_matrix_after_failed_stage(c)
             reason = NOT_CONTRACTING
     get_array_for_reading(X, scratch)
     store_stage(c, doubles_at(integers_at(scratch, 1)[0], c.unknowns))

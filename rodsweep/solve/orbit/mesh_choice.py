@@ -9,7 +9,7 @@ from ...discretization.elements.elements import halved_element_edges
 from ...discretization.elements.resolution import RESOLUTION_SETTINGS
 from .element_order_ratios import element_order_ratios
 from .orbit import Orbit, interval_lengths
-from .orbit_mesh import ORBIT_MESH_SETTINGS, OrbitMesh, mesh_of, ratios_of_halves
+from .orbit_mesh import ORBIT_MESH_SETTINGS, OrbitMesh, mesh_of, order_ratios_after_halving
 from .tails import tails_of, tails_of_intervals
 from .time_grading import UNIFORM_TIME, TimeGrading, fitted_grading
 
@@ -44,7 +44,7 @@ def mesh_from_tails(orbit: Orbit, accuracy: float, stage_count: int) -> OrbitMes
     while order > RESOLUTION_SETTINGS.max_order:
         order = ceil(ORBIT_MESH_SETTINGS.halving_order_ratio * order)
         edges = halved_element_edges(edges)
-        ratios = ratios_of_halves(ratios)
+        ratios = order_ratios_after_halving(ratios)
     grading, interval_ratio = grading_and_interval_ratio(orbit, max_time_tail, stage_count)
     interval_count = ceil(current_mesh.interval_count * interval_ratio)
     order = min(
@@ -91,13 +91,15 @@ def regraded(mesh: OrbitMesh, orbit: Orbit) -> OrbitMesh:
     if interval_ratio > ORBIT_MESH_SETTINGS.max_regraded_ratio or grading == mesh.grading:
         return mesh
     # One more interval, because the last two have half the length.
-    interval_count = max(ORBIT_MESH_SETTINGS.min_intervals, ceil(interval_ratio * mesh.full_intervals) + 1)
+    interval_count = max(
+        ORBIT_MESH_SETTINGS.min_intervals, ceil(interval_ratio * mesh.full_length_interval_count) + 1
+    )
     return replace(mesh, interval_count=interval_count, grading=grading)
 
 
 def finer_orbit_mesh(mesh: OrbitMesh, target: OrbitMesh) -> OrbitMesh:
     """A mesh that is at least as fine as `target` and finer than the current mesh `mesh`."""
-    order = max(target.order, mesh.order) if target.has_same_edges_and_ratios(mesh) else target.order
+    order = max(target.order, mesh.order) if target.has_same_edges_and_order_ratios(mesh) else target.order
     # With another grading the target may be finer in time with fewer intervals.
     min_interval_count = mesh.interval_count if target.grading == mesh.grading else 0
     interval_count = max(target.interval_count, min_interval_count)

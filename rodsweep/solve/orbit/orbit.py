@@ -90,8 +90,8 @@ class Orbit:
     @property
     def equidistant_time_rates(self) -> Array:
         """dt/dtau at the equidistant mesh times tau of `equidistant_states`, (K - 1,)."""
-        full_intervals = self.interval_count - 1
-        return self.grading.rates(np.arange(full_intervals) / full_intervals)
+        full_length_interval_count = self.interval_count - 1
+        return self.grading.rates(np.arange(full_length_interval_count) / full_length_interval_count)
 
     @property
     def collocation(self) -> CollocationMethod:

@@ -64,7 +64,7 @@ class OrbitMeshSettings:
     not finer than the current mesh."""
     halving_order_ratio: float = 0.6
     """Ratio of the element order after all elements are halved to the order before, for equal errors."""
-    doubles_per_vector: int = 8
+    doubles_per_vector_register: int = 8
     """Number of doubles in a vector register. The computing time of matrix products depends on the number of
     unknowns rounded up to a multiple of this number."""
     max_unknowns: int = 400
@@ -106,7 +106,7 @@ class OrbitMesh:
         """Number of elements."""
         return len(self.edges) - 1
 
-    def has_same_edges_and_ratios(self, other: "OrbitMesh") -> bool:
+    def has_same_edges_and_order_ratios(self, other: "OrbitMesh") -> bool:
         """Whether both meshes have elements with the same edges and order ratios; largest orders and time
         intervals may differ."""
         return (self.edges, self.order_ratios) == (other.edges, other.order_ratios)
@@ -117,7 +117,7 @@ class OrbitMesh:
         return self.interval_count, self.stage_count, self.grading
 
     @property
-    def full_intervals(self) -> int:
+    def full_length_interval_count(self) -> int:
         """Solved duration divided by the length of a full interval; the last two intervals have half this
         length."""
         return self.interval_count - 1
@@ -197,7 +197,7 @@ class OrbitMesh:
             self,
             edges=halved_element_edges(self.edges),
             order=ceil(ORBIT_MESH_SETTINGS.halving_order_ratio * self.order),
-            order_ratios=ratios_of_halves(self.order_ratios),
+            order_ratios=order_ratios_after_halving(self.order_ratios),
         )
 
     @property
@@ -214,9 +214,9 @@ class OrbitMesh:
     @property
     def cost(self) -> float:
         """Relative cost of the elimination of Newton's matrix; the number of unknowns is rounded up to a
-        multiple of `ORBIT_MESH_SETTINGS.doubles_per_vector`."""
-        padded_unknown_count = ORBIT_MESH_SETTINGS.doubles_per_vector * ceil(
-            self.unknown_count / ORBIT_MESH_SETTINGS.doubles_per_vector
+        multiple of `ORBIT_MESH_SETTINGS.doubles_per_vector_register`."""
+        padded_unknown_count = ORBIT_MESH_SETTINGS.doubles_per_vector_register * ceil(
+            self.unknown_count / ORBIT_MESH_SETTINGS.doubles_per_vector_register
         )
         return float(padded_unknown_count**3 * self.interval_count * self.stage_count**2)
 
@@ -231,6 +231,6 @@ def mesh_of(orbit: Orbit) -> OrbitMesh:
     return OrbitMesh(mesh.edges, mesh.order, *orbit.time_mesh[:2], mesh.order_ratios, orbit.grading)
 
 
-def ratios_of_halves(ratios: tuple[float, ...]) -> tuple[float, ...]:
+def order_ratios_after_halving(ratios: tuple[float, ...]) -> tuple[float, ...]:
     """Ratios of the orders after all elements are halved."""
     return tuple(ratio for ratio in ratios for _ in range(2))

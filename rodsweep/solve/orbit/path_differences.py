@@ -26,7 +26,8 @@ def path_differences(coarse: CycleMotion, fine: CycleMotion) -> Array:
     differences = {name: abs(value - extrema[name]) for name, value in coarse.extrema.items()}
     largest_y = abs(extrema["tip_y_max"])
     period_difference = max(
-        abs(coarse.orbit.period / fine.orbit.period - 1), rod_difference(coarse.orbit, fine.orbit)
+        abs(coarse.orbit.period / fine.orbit.period - 1),
+        max_relative_parameter_difference(coarse.orbit, fine.orbit),
     )
     return np.array(
         [
@@ -36,15 +37,15 @@ def path_differences(coarse: CycleMotion, fine: CycleMotion) -> Array:
     )
 
 
-def rod_difference(first: Orbit, reference: Orbit) -> float:
+def max_relative_parameter_difference(first: Orbit, reference: Orbit) -> float:
     """Largest difference between the parameters of the rods of two orbits, relative to the parameters of the
     orbit `reference`; absolute for a parameter of `reference` that is 0."""
-    a, b = (_rod_coordinates(orbit.form.rod) for orbit in (first, reference))
+    a, b = (_rod_parameter_coordinates(orbit.form.rod) for orbit in (first, reference))
     # A coefficient is 0 only in a limit, such as c1 = 0, where it is exactly 0 for both rods.
     return float(np.abs((a - b) / np.where(b == 0, 1, b)).max())
 
 
-def _rod_coordinates(rod: Rod) -> Array:
+def _rod_parameter_coordinates(rod: Rod) -> Array:
     """Coefficients of the equations of a uniform linear rod, or coordinates of all parameters of any other
     rod, (n,)."""
     if rod.is_uniform_and_linear:

@@ -28,12 +28,12 @@ def orbit_arrays(orbit: Orbit) -> dict[str, Array]:
     }
 
 
-def orbit_from_arrays(arrays: Mapping[str, Array], keeps_omega: bool = False) -> Orbit:
-    """The orbit from named arrays with the shapes that `orbit_arrays` gives, as "orbit" (N,). keeps_omega:
-    option of the orbit's `StressForm`."""
+def orbit_from_arrays(arrays: Mapping[str, Array], is_omega_always_unknown: bool = False) -> Orbit:
+    """The orbit from named arrays with the shapes that `orbit_arrays` gives, as "orbit" (N,).
+    is_omega_always_unknown: option of the orbit's `StressForm`."""
     mesh = OrbitMesh.from_array(arrays["mesh"])
     parameters: dict[str, Any] = dict(zip(PARAMETERS, map(float, arrays["rod"]), strict=True))
     rod = Rod(**parameters, material=RodMaterial.from_json_text(bytes(arrays["build"]).decode()))
-    form = StressForm(rod, mesh.space_mesh, keeps_omega)
+    form = StressForm(rod, mesh.space_mesh, is_omega_always_unknown)
     symmetry = REFLECTION if arrays["symmetric"] else NO_SYMMETRY
     return Orbit(form, symmetry, mesh.interval_count, mesh.stage_count, arrays["orbit"], mesh.grading)

@@ -27,16 +27,16 @@ from .orbit import Orbit
 class CoefficientTailSettings(KernelConstants):
     """Settings for the tails of an orbit and for the decay of its coefficients."""
 
-    min_decay: float = 0.2
+    min_log_decay_per_order: float = 0.2
     """Lower limit of the measured decay of the coefficients in space, as the natural logarithm per order."""
-    max_decay: float = 1.2
+    max_log_decay_per_order: float = 1.2
     """Upper limit of the measured decay of the coefficients in space, as the natural logarithm per order."""
     min_tail_ratio: float = 1e-16
     """Coefficients smaller than this number times the largest coefficient are replaced by this limit in the
     measurement of the decay."""
     last_coefficients: int = 4
-    """Number of last coefficients in space whose norm is the tail of `smooth_tails`; the norm of this many
-    coefficients changes smoothly along a branch."""
+    """Number of last coefficients in space whose norm is the tail of `smooth_space_and_time_tails`; the norm
+    of this many coefficients changes smoothly along a branch."""
 
 
 COEFFICIENT_TAIL_SETTINGS = CoefficientTailSettings()
@@ -67,15 +67,16 @@ def tails_of(orbit: Orbit) -> CoefficientTails:
     return CoefficientTails(
         float(last_coefficients.max()),
         float(tails_of_intervals(orbit).max()),
-        _coefficient_decay(highest_order_coefficients),
+        _coefficient_log_decay_per_order(highest_order_coefficients),
     )
 
 
 @compiled_for_vectors
-def _coefficient_decay(c: Array) -> float:
+def _coefficient_log_decay_per_order(c: Array) -> float:
     """Decay of coefficients: minus the slope, per order, of the natural logarithm of their envelope, fitted
-    over the upper half of the orders and limited to `COEFFICIENT_TAIL_SETTINGS.min_decay` ...
-    `COEFFICIENT_TAIL_SETTINGS.max_decay`. c: moduli of the coefficients of orders 0 to p, (fields, p + 1)."""
+    over the upper half of the orders and limited to `COEFFICIENT_TAIL_SETTINGS.min_log_decay_per_order` ...
+    `COEFFICIENT_TAIL_SETTINGS.max_log_decay_per_order`. c: moduli of the coefficients of orders 0 to p,
+    (fields, p + 1)."""
     fields, size = c.shape
     middle = (size - 1) / 2 + (size // 2) / 2
     envelope = COEFFICIENT_TAIL_SETTINGS.min_tail_ratio
@@ -89,7 +90,8 @@ def _coefficient_decay(c: Array) -> float:
         squares += (k - middle) ** 2
     # Slope of the least-squares line through the logarithms.
     return min(
-        max(-slope_sum / squares, COEFFICIENT_TAIL_SETTINGS.min_decay), COEFFICIENT_TAIL_SETTINGS.max_decay
+        max(-slope_sum / squares, COEFFICIENT_TAIL_SETTINGS.min_log_decay_per_order),
+        COEFFICIENT_TAIL_SETTINGS.max_log_decay_per_order,
     )
 
 
@@ -130,14 +132,14 @@ def largest_coefficients(values: Array, analysis: Array) -> Array:
     return moduli
 
 
-def smooth_tails(orbit: Orbit) -> Array:
+def smooth_space_and_time_tails(orbit: Orbit) -> Array:
     """Tails in space and in time, (2,), each divided by the largest value of the field: the largest of
-    `smooth_tails_of_elements`, and the tail in time."""
-    tails = smooth_tails_of_elements(orbit)
+    `smooth_element_and_time_tails`, and the tail in time."""
+    tails = smooth_element_and_time_tails(orbit)
     return np.array([tails[:-1].max(), tails[-1]])
 
 
-def smooth_tails_of_elements(orbit: Orbit) -> Array:
+def smooth_element_and_time_tails(orbit: Orbit) -> Array:
     """Tail in space of each element, then the tail in time, (elements + 1,), each divided by the largest
     value of the field. These tails change smoothly along a branch, because a tail in space is the norm of
     `COEFFICIENT_TAIL_SETTINGS.last_coefficients` coefficients: a single coefficient may vanish."""

@@ -20,7 +20,7 @@ from ...discretization.elements.trigonometric import fourier_coefficients
 class TimeGradingSettings:
     """Settings for the grading of the time intervals of an orbit."""
 
-    parameter_step: float = 0.05
+    amplitude_spacing: float = 0.05
     """The two numbers of a grading are multiples of this step, so that similar orbits share their meshes."""
     max_amplitude: float = 0.6
     """Largest amplitude of dt/dtau - 1: the longest interval is at most four times as long as the
@@ -116,7 +116,7 @@ def fitted_grading(tails: Array, edges: Array, stage_count: int, harmonic: int) 
     amplitude = float(np.hypot(cosine, sine))
     max_amplitude = TIME_GRADING_SETTINGS.max_amplitude
     amplitude_factor = max_amplitude / amplitude if amplitude > max_amplitude else 1.0
-    step = TIME_GRADING_SETTINGS.parameter_step
+    step = TIME_GRADING_SETTINGS.amplitude_spacing
     return TimeGrading(
         step * round(amplitude_factor * cosine / step), step * round(amplitude_factor * sine / step), harmonic
     )
@@ -132,14 +132,14 @@ def coefficients_in_time(c: Complex, grading: TimeGrading, part_count: int) -> C
 
 def samples_in_time(c: Complex, grading: TimeGrading, part_count: int) -> Array:
     """Values at equidistant times of the period, (m, ...), of the function of `coefficients_in_time`."""
-    cosines, sines = _waves_at_equal_times(len(c), grading, part_count)
+    cosines, sines = _mesh_time_waves_at_equal_times(len(c), grading, part_count)
     columns = c.reshape(len(c), -1)
     samples: Array = cosines @ columns.real - sines @ columns.imag
     return samples.reshape(len(samples), *c.shape[1:])
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
-def _waves_at_equal_times(
+def _mesh_time_waves_at_equal_times(
     coefficient_count: int, grading: TimeGrading, part_count: int
 ) -> tuple[Array, Array]:
     """Cosines and sines of 2 pi k tau, (m, count) each, k = 0 ... count - 1, at the mesh times tau of m

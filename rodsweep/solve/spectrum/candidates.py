@@ -25,12 +25,12 @@ from .problem import TransverseProblem
 class CandidateSettings(KernelConstants):
     """Settings for the eigenvalues of a mesh, and for the lines right of which eigenvalues are counted."""
 
-    wide_gap_ratio: float = 0.2
+    wide_gap_over_real_part: float = 0.2
     """Gaps between successive real parts, in which a line for a count may lie, are treated as equally wide if
     their width, divided by |Re w| of the left eigenvalue, exceeds this (stable rods)."""
-    wide_gap_ratio_if_unstable: float = 0.05
-    """Like `wide_gap_ratio`, for an unstable rod; less than `wide_gap_ratio`, because eigenvalues far to the
-    left converge last and need a finer mesh."""
+    wide_gap_over_real_part_if_unstable: float = 0.05
+    """Like `wide_gap_over_real_part`, for an unstable rod; less than `wide_gap_over_real_part`, because
+    eigenvalues far to the left converge last and need a finer mesh."""
     last_line_distance_ratio: float = 0.05
     """Distance from the last eigenvalue w found to the last line, to the left of w, divided by |w|."""
     leader_line_distance_ratio: float = 0.5
@@ -159,7 +159,7 @@ def compare_with_count(problem: TransverseProblem, roots: Roots, mode_count: int
     errors: Any = roots.error.tolist()
     # A proof is far cheaper than a count, so it is tried first.
     line = line_for_proof(w[mode_count - 1], errors[mode_count - 1])
-    is_complete, evaluations = problem.prove_completeness(line, roots)
+    is_complete, evaluations = problem.completeness_proof_and_evaluations(line, roots)
     if is_complete:
         found_count, is_line_clear = _count_right_of(line, w, errors)
         return CountComparison(EigenvalueCount(found_count, evaluations), found_count, is_line_clear)
@@ -194,12 +194,14 @@ def lines_for_count(w: list[complex], mode_count: int) -> list[float]:
     best first: middles of the widest gaps between real parts, to the left of the `mode_count` leading and of
     all unstable eigenvalues.
 
-    w: eigenvalues found, by descending real part. Gaps wider than `wide_gap_ratio` (unstable rod:
-    `wide_gap_ratio_if_unstable`) are equally good; the rightmost comes first. The last line lies to the left
-    of all eigenvalues found.
+    w: eigenvalues found, by descending real part. Gaps wider than `wide_gap_over_real_part` (unstable rod:
+    `wide_gap_over_real_part_if_unstable`) are equally good; the rightmost comes first. The last line lies to
+    the left of all eigenvalues found.
     """
-    wide_gap_ratio = (
-        CANDIDATE_SETTINGS.wide_gap_ratio_if_unstable if w[0].real > 0 else CANDIDATE_SETTINGS.wide_gap_ratio
+    wide_gap_over_real_part = (
+        CANDIDATE_SETTINGS.wide_gap_over_real_part_if_unstable
+        if w[0].real > 0
+        else CANDIDATE_SETTINGS.wide_gap_over_real_part
     )
     # Left of the imaginary axis too, so that one count also gives the number of unstable modes.
     rightmost_end = min(w[mode_count - 1].real, 0.0)
@@ -210,7 +212,7 @@ def lines_for_count(w: list[complex], mode_count: int) -> list[float]:
         width = (right - left) / abs(left)
         if width > CANDIDATE_SETTINGS.min_gap_ratio:
             # Wider gaps count as equal, because eigenvalues far to the left converge last.
-            gaps.append((min(width, wide_gap_ratio), (left + right) / 2))
+            gaps.append((min(width, wide_gap_over_real_part), (left + right) / 2))
     gaps.sort(key=lambda gap: -gap[0])  # stable sort: the first wide gap stays first
     last_real_part = real_parts[-1]
     last_line = last_real_part - CANDIDATE_SETTINGS.last_line_distance_ratio * (

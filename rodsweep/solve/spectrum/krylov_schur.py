@@ -45,7 +45,7 @@ class UniformSolver(ShiftInvertSolver):
         self.mass_diagonal: Array = np.ones(self.pencil.unknown_count)
 
     def load(self, rod: Rod, shift: float) -> LoadedPencil:
-        rod, deflection_ratio = _equivalent_filament(rod)
+        rod, deflection_ratio = _equivalent_filament_and_deflection_ratio(rod)
         # The filament's eigenvalues are those of the rod times this factor, and so is the shift.
         shift *= deflection_ratio**2
         coefficients = self.pencil.term_coefficients(rod)
@@ -76,7 +76,7 @@ class UniformSolver(ShiftInvertSolver):
         return fields_of_vectors(vectors, self.pencil.displacement_factors(rod))
 
 
-def _equivalent_filament(rod: Rod) -> tuple[Rod, float]:
+def _equivalent_filament_and_deflection_ratio(rod: Rod) -> tuple[Rod, float]:
     """Returns (equivalent rod, deflection_ratio). Eigenvalues of `rod` = eigenvalues of the equivalent rod /
     deflection_ratio^2; y of `rod` = y of the equivalent rod * deflection_ratio.
 

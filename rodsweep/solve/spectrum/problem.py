@@ -31,7 +31,11 @@ from ...discretization.elements.resolution import (
 )
 from ...discretization.straight.arm_resolution import ArmMesh, arm_mesh, finer_arm_mesh, graded_towards_ends
 from ...discretization.straight.transverse_mesh import AnyMesh, finer_mesh
-from ...model.dispersion import largest_growth_at_ends, most_amplified_local_waves, most_amplified_wave
+from ...model.dispersion import (
+    largest_growth_and_wave_number,
+    largest_growth_at_ends,
+    local_growths_and_wave_numbers,
+)
 from ...model.rod import Rod
 from .arm_solver import ArmSolver, arm_solver
 from .krylov_schur import UniformSolver, uniform_solver
@@ -88,7 +92,7 @@ class TransverseProblem(ABC):
     def count(self, line: float, roots: Roots | KnownRoots | None = None) -> EigenvalueCount:
         """Proved number of eigenvalues with Re w > line. roots: known roots of D, for a faster count."""
 
-    def prove_completeness(self, line: float, roots: Roots) -> tuple[bool, int]:
+    def completeness_proof_and_evaluations(self, line: float, roots: Roots) -> tuple[bool, int]:
         """Returns (proved, evaluations). proved: whether it is proved that `roots` contains all eigenvalues
         to the right of `line`. evaluations: number of evaluations of D. The proof needs no count. For a
         uniform rod, whose count is fast, no proof is tried."""
@@ -107,7 +111,7 @@ class UniformProblem(TransverseProblem):
 
     def __init__(self, rod: Rod):
         self.rod = rod
-        growth, self._wave_number = most_amplified_wave(rod)
+        growth, self._wave_number = largest_growth_and_wave_number(rod)
         self.shift = KRYLOV_SETTINGS.shift_over_growth_rate * growth
         self._sqrt_frequency_bound = sqrt(frequency_bound(rod))
         self.has_bound = isfinite(self._sqrt_frequency_bound)
@@ -124,7 +128,7 @@ class UniformProblem(TransverseProblem):
     def refined_roots(self, mesh_eigenvalues: Complex, mesh: Any) -> Roots:
         """Roots of D refined from the eigenvalues `mesh_eigenvalues`, (n,), as in
         `TransverseProblem.refined_roots`."""
-        max_q = RESOLUTION_SETTINGS.max_waves_per_node * mesh.element_count * mesh.order
+        max_q = RESOLUTION_SETTINGS.max_wave_number_per_node * mesh.element_count * mesh.order
         return refined_roots(mesh_eigenvalues, self.rod.coefficients, self._sqrt_frequency_bound, max_q)
 
     def count(self, line: float, roots: Roots | KnownRoots | None = None) -> EigenvalueCount:
@@ -147,7 +151,7 @@ class ArmProblem(TransverseProblem):
         self.additional_eigenvalue_count = (
             COMPLETENESS_SETTINGS.further_eigenvalue_count if modes_to_prove and self.has_bound else 0
         )
-        growth, _ = most_amplified_local_waves(rod)
+        growth, _ = local_growths_and_wave_numbers(rod)
         # So far right that the eigenvalues nearest to it are mostly the rightmost.
         self.shift = KRYLOV_SETTINGS.shift_over_growth_rate * float(growth.max())
 
@@ -171,9 +175,9 @@ class ArmProblem(TransverseProblem):
     def refined_roots(self, mesh_eigenvalues: Complex, mesh: Any) -> Roots:
         """Roots of D refined from `mesh_eigenvalues`, (n,); if a proof is requested, and until one fails,
         only from the eigenvalues that the proof needs."""
-        needed_mask, max_abs_w = self._eigenvalues_for_proof(mesh_eigenvalues)
+        needed_mask, max_abs_w = self._proof_mask_and_max_abs_w(mesh_eigenvalues)
         max_q = (
-            RESOLUTION_SETTINGS.max_waves_per_node
+            RESOLUTION_SETTINGS.max_wave_number_per_node
             * mesh.order
             * np.append(mesh.element_count, 1 / mesh.lengths[[0, -1]])
         )
@@ -181,7 +185,7 @@ class ArmProblem(TransverseProblem):
         w = np.where(needed_mask, mesh_eigenvalues, np.inf)
         return roots_of_arm(w, self._determinant, self._hull, max_q[0], max_abs_w, max_q[1:])
 
-    def _eigenvalues_for_proof(self, mesh_eigenvalues: Complex) -> tuple[NDArray[np.bool_], float]:
+    def _proof_mask_and_max_abs_w(self, mesh_eigenvalues: Complex) -> tuple[NDArray[np.bool_], float]:
         """Returns (mask, max_abs_w). mask: True for each of the `mesh_eigenvalues` that the proof will need,
         (n,). max_abs_w: largest |w| at which the proof needs D; 0 if unknown."""
         needed_mask = np.isfinite(mesh_eigenvalues)
@@ -205,7 +209,7 @@ class ArmProblem(TransverseProblem):
     def is_countable(self) -> bool:
         return is_countable(self._determinant, self._hull)
 
-    def prove_completeness(self, line: float, roots: Roots) -> tuple[bool, int]:
+    def completeness_proof_and_evaluations(self, line: float, roots: Roots) -> tuple[bool, int]:
         is_complete, evaluations = prove_complete(line, roots.w, roots.error, self._determinant, self._hull)
         # The next mesh then refines all eigenvalues, as a count needs them.
         self._has_proof_failed |= not is_complete

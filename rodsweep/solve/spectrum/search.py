@@ -32,7 +32,7 @@ def solve_spectrum(rod: Rod, request: SpectrumRequest) -> Spectrum:
     """The leading `request.modes` eigenvalues of a rod; a failure is returned as a status, never raised."""
     if not rod.is_uniform or rod.is_uniform_and_linear:
         return spectrum_or_failure(lambda: SpectrumSearch(rod, request).outcome(), request)
-    linear, rate = rod.equivalent_linear_rod
+    linear, rate = rod.equivalent_linear_rod_and_rate
     scaled = solve_spectrum(linear, request)
     return replace(scaled, eigenvalues=rate * scaled.eigenvalues, error_estimate=rate * scaled.error_estimate)
 
@@ -105,7 +105,7 @@ class SpectrumSearch:
             # Too few eigenvalues converged to roots of D, or SLEPc failed: a finer mesh.
             self.failure_count += bool(candidates.failure)
             # If few eigenvalues are roots, the mesh is too coarse: further eigenvalues would be no roots.
-            if len(candidates.roots.w) >= SEARCH_SETTINGS.min_resolved_fraction * self.modes:
+            if len(candidates.roots.w) >= SEARCH_SETTINGS.min_found_fraction_for_more_modes * self.modes:
                 self.requested_count += self.modes
             self.mesh = self.problem.finer_mesh(self.mesh)
             return None
@@ -225,7 +225,7 @@ def _best_spectrum(best: CheckedCandidates, problem: TransverseProblem, request:
     status = SpectrumStatus.ok if is_accurate else SpectrumStatus.accuracy_not_reached
     is_proved = comparison is not None and comparison.agrees
     w: Any = roots.w.tolist()
-    on_axis: Any = roots.is_on_axis.tolist()
+    on_axis: Any = roots.is_imaginary.tolist()
     is_undecided = any(on_axis)
     message = ""
     if status == SpectrumStatus.ok and request.certify:

@@ -14,7 +14,7 @@ class SearchSettings:
     max_unproved_modes: int = 50
     """If all modes found grow and no count is possible, more modes are requested only while fewer than this
     number are found: each doubling takes several times as long, and nothing is proved in the end."""
-    min_resolved_fraction: float = 0.5
+    min_found_fraction_for_more_modes: float = 0.5
     """If a mesh gives too few roots of D, but at least this fraction of the number of requested modes, the
     search requests more eigenvalues on a finer mesh; otherwise the search only refines the mesh."""
     max_meshes: int = 16

@@ -50,11 +50,11 @@ class KrylovSettings:
     """The number of Krylov vectors is at most the number of finite eigenvalues plus this. Applying
     shift-and-invert once, or twice for k2 = inf, removes all components of infinite eigenvalues. A larger
     Krylov space would add only rounding errors, on which LAPACK may fail (trexc)."""
-    start_vector_width_ratio: float = 3.3
+    start_vector_width_over_node_spacing: float = 3.3
     """Width of the first Krylov vector, a displacement concentrated at the tip, divided by the distance
     between nodes. Every mode moves the tip, and the vector is as smooth as the wanted modes, which saves two
     Krylov steps of eleven."""
-    start_vector_rotation: float = 0.1
+    start_vector_rotation_over_displacement: float = 0.1
     """Ratio of rotation and displacement in the first Krylov vector. Without rotation only rounding errors
     would excite modes of pure rotation, in rods whose displacement and rotation are uncoupled."""
     max_uniform_solvers: int = 24
@@ -112,12 +112,14 @@ class ShiftInvertSolver(ABC):
         )
         first = np.zeros(n)
         distance = (
-            (1 - pattern.node_positions[1:]) * pattern.node_count / KRYLOV_SETTINGS.start_vector_width_ratio
+            (1 - pattern.node_positions[1:])
+            * pattern.node_count
+            / KRYLOV_SETTINGS.start_vector_width_over_node_spacing
         )
         # Every mode moves the tip, so a vector concentrated there contains all of them.
         first[: pattern.node_count] = np.exp(-(distance**2)) * np.sqrt(mass)
         first[pattern.node_count : 2 * pattern.node_count] = (
-            KRYLOV_SETTINGS.start_vector_rotation * first[: pattern.node_count]
+            KRYLOV_SETTINGS.start_vector_rotation_over_displacement * first[: pattern.node_count]
         )
         self.start_vector = PETSc.Vec().createWithArray(first, comm=PETSc.COMM_SELF)
         self.krylov_size_option = PETSc.Options(SPECTRUM_OPTIONS_PREFIX).getInt("eps_ncv", 0)

@@ -31,9 +31,9 @@ class TwoMeshSettings:
     """Maximum number of meshes after the first; each has a third more unknowns than its predecessor."""
     spare_eigenvalue_count: int = 2
     """Number of eigenvalues requested first on a mesh, in addition to the wanted modes."""
-    unchanged_tolerance: float = 1e-9
+    max_relative_change_by_doubling: float = 1e-9
     """The number of requested eigenvalues is doubled until the leading ones change relatively by less."""
-    unchanged_rounding_tolerance: float = 3e-11
+    max_scaled_change_by_doubling: float = 3e-11
     """The doubling also ends if the leading eigenvalues change by less than this times (|shift| + F^2). The
     value is a hundred times `rounding_ratio`, as rounding differs between SLEPc's releases and processors."""
     mesh_error_factor: float = 3.0
@@ -73,7 +73,7 @@ def _spectrum_or_raise(rod: Rod, request: SpectrumRequest) -> Spectrum:
             break
         eigenvalues = _leading_eigenvalues(problem, mesh, modes)
         if len(eigenvalues.w) >= modes and len(coarser_eigenvalues.w):
-            rounding_scale = _eigenvalue_rounding_scale(problem)
+            rounding_scale = _shift_and_squared_force_sum(problem)
             error = _errors_between_meshes(eigenvalues.w, coarser_eigenvalues.w, rounding_scale)
             spectrum = _spectrum_of_mesh(problem, request, mesh, eigenvalues, error)
             if spectrum.status == SpectrumStatus.ok:
@@ -99,7 +99,9 @@ def _missed_accuracy_text(problem: TransverseProblem, request: SpectrumRequest, 
     moduli = np.abs(spectrum.eigenvalues)
     relative_errors = spectrum.error_estimate / moduli
     index = int(np.argmax(relative_errors))
-    rounding_error = TWO_MESH_SETTINGS.rounding_ratio * (moduli[index] + _eigenvalue_rounding_scale(problem))
+    rounding_error = TWO_MESH_SETTINGS.rounding_ratio * (
+        moduli[index] + _shift_and_squared_force_sum(problem)
+    )
     cause = "rounding errors" if rounding_error > request.accuracy * moduli[index] else "the meshes"
     max_error = float(relative_errors[index])
     return (
@@ -108,7 +110,7 @@ def _missed_accuracy_text(problem: TransverseProblem, request: SpectrumRequest, 
     )
 
 
-def _eigenvalue_rounding_scale(problem: TransverseProblem) -> float:
+def _shift_and_squared_force_sum(problem: TransverseProblem) -> float:
     """Sum of |shift| and F^2, in 1/tau2: rounding errors of eigenvalues are proportional to this rate."""
     return abs(problem.shift) + problem.rod.F**2
 
@@ -133,9 +135,14 @@ def _leading_eigenvalues(problem: TransverseProblem, mesh: AnyMesh, mode_count: 
         order = np.lexsort((-mesh_eigenvalues.imag, -mesh_eigenvalues.real))
         leading_w = mesh_eigenvalues[order[:mode_count]]
         is_complete = len(leading_w) == len(previous_w) == mode_count
-        rounding_change = TWO_MESH_SETTINGS.unchanged_rounding_tolerance * _eigenvalue_rounding_scale(problem)
+        rounding_change = TWO_MESH_SETTINGS.max_scaled_change_by_doubling * _shift_and_squared_force_sum(
+            problem
+        )
         if is_complete and np.allclose(
-            leading_w, previous_w, rtol=TWO_MESH_SETTINGS.unchanged_tolerance, atol=rounding_change
+            leading_w,
+            previous_w,
+            rtol=TWO_MESH_SETTINGS.max_relative_change_by_doubling,
+            atol=rounding_change,
         ):
             return _MeshEigenvalues(mesh_eigenvalues[order], order)
         if 2 * requested_count > mesh.unknown_count // TWO_MESH_SETTINGS.min_unknowns_per_mode:
@@ -148,10 +155,10 @@ def _errors_between_meshes(w: Complex, coarser_w: Complex, rounding_scale: float
     """Absolute errors of the sorted eigenvalues w, (k,), from the unsorted eigenvalues `coarser_w`, (l,), of
     a coarser mesh.
 
-    rounding_scale: result of `_eigenvalue_rounding_scale`. Two meshes may agree on one eigenvalue by chance.
-    The relative error of an eigenvalue is therefore the largest of three differences: of the eigenvalue and
-    of its two neighbours. Near a double eigenvalue the stated rounding errors are larger than elsewhere.
-    """
+    rounding_scale: result of `_shift_and_squared_force_sum`. Two meshes may agree on one eigenvalue by
+    chance. The relative error of an eigenvalue is therefore the largest of three differences: of the
+    eigenvalue and of its two neighbours. Near a double eigenvalue the stated rounding errors are larger than
+    elsewhere."""
     distances = np.abs(w[:, None] - coarser_w).min(axis=1) / np.abs(w)
     # In a cluster the nearest eigenvalue of the coarser mesh may be a neighbour's, so neighbours count too.
     padded_distances = np.pad(distances, 1)

@@ -15,7 +15,7 @@ from ...config.base_config import Config
 from ...errors import InputError
 from ...model.arm.refusals import CRUSHED_FORCE_RATIO
 from ...model.material.rod_material import DEFAULT_MATERIAL, RodMaterial
-from ...model.parameters import CRUSHING_PARAMETERS, PARAMETERS, Range
+from ...model.parameters import FORCE_AND_STRETCH_STIFFNESS, PARAMETERS, Range
 from ...model.rod import Rod
 from .arm_grid import grid_of_arms
 from .csv_points import read_points
@@ -76,7 +76,7 @@ def _crushing_codes(axes: dict[str, Array], material: RodMaterial) -> NDArray[np
     rods. None if all rods or no rods are crushed, for a grid without F or k1, and for grids of more than
     MAX_ARM_GRID_POINTS points. axes: values of each parameter, (n,)."""
     count = math.prod(map(len, axes.values()))
-    if not set(CRUSHING_PARAMETERS) <= axes.keys() or count > MAX_ARM_GRID_POINTS:
+    if not set(FORCE_AND_STRETCH_STIFFNESS) <= axes.keys() or count > MAX_ARM_GRID_POINTS:
         return None
     columns = {
         name: axes[name].reshape([-1 if axis_name == name else 1 for axis_name in axes]) for name in axes
@@ -123,7 +123,7 @@ def refuse_invalid_axes(
     the grid may be crushed."""
     for name, column in axes.items():
         require_in_range(PARAMETERS[name].allowed, name, column)
-    if not set(CRUSHING_PARAMETERS) <= axes.keys():
+    if not set(FORCE_AND_STRETCH_STIFFNESS) <= axes.keys():
         return
     crushing_forces = material.relative_crushing_forces(axes.get("taper", np.ones(1)))
     if (crushing_forces == 1).all():

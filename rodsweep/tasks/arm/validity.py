@@ -23,9 +23,9 @@ from ...config.arm.status import SLENDER
 from ...config.base_config import Config
 from ...model.arm.arm import SlenderArm
 from ...model.arm.neglected import LARGE_AMPLITUDE, Validity, neglected_effects, smallest_drag, worst_validity
-from ...model.material.laws import LINEAR
+from ...model.material.laws import LINEAR_CONSTITUTIVE_LAW
 from ...results.layouts.phase_diagram import STABILITY_CLASSES
-from ...results.layouts.si_variables import NEGLECTED_EFFECTS, VALIDITY_NOT_KNOWN
+from ...results.layouts.si_variables import NEGLECTED_EFFECTS, UNKNOWN_VALIDITY_NUMBER
 from ...results.layouts.thresholds import HOPF_CROSSING_CODES
 from ...results.layouts.variables import STATUS_VARIABLE
 from ...solve.cycle.status import CycleStatus
@@ -36,13 +36,15 @@ Record = Mapping[str, Any]
 """Variables of a point, or of several points, by name."""
 CACHED_ARM_COUNT = 64
 """Maximum number of arms cached by an `ArmValidity`."""
-AT_REST_STATUSES: dict[str, tuple[str, ...]] = {
+UNSUCCESSFUL_STATUSES_AT_REST: dict[str, tuple[str, ...]] = {
     "thresholds": ("accuracy_not_reached", "list_full"),
     "phase_diagram": ("accuracy_not_reached", "special_undecided", "special_full"),
 }
 """Unsuccessful statuses for which an arm without a stored Hopf point is nevertheless treated as at rest, by
 task."""
-CLASSES_WITH_FLUTTER = [value for value, name in STABILITY_CLASSES if name in ("flutter", "undecided")]
+DIAGRAM_CLASSES_WITH_POSSIBLE_FLUTTER = [
+    value for value, name in STABILITY_CLASSES if name in ("flutter", "undecided")
+]
 """Values of the variable class, in a phase diagram, of rods that flutter or may flutter."""
 
 
@@ -93,7 +95,7 @@ def _motion_at_hopf_point(F_name: str) -> Callable[[Record], ArmMotion]:
 def _motion_of_row(record: Record) -> ArmMotion:
     """Motion at the first Hopf point of a row. `may_be_missed` is True if rods of the row flutter or may
     flutter."""
-    has_flutter = np.isin(record["class"], CLASSES_WITH_FLUTTER).any(axis=-1)
+    has_flutter = np.isin(record["class"], DIAGRAM_CLASSES_WITH_POSSIBLE_FLUTTER).any(axis=-1)
     return replace(_motion_at_hopf_point("crossing_at")(record), may_be_missed=has_flutter)
 
 
@@ -112,7 +114,7 @@ def _motion_of_cycle(record: Record) -> ArmMotion:
     return ArmMotion(frequency, None, np.where(np.isfinite(amplitude), amplitude, 0.0), is_cycle=True)
 
 
-def _motion_of_branches(record: Record) -> ArmMotion:
+def _motions_on_all_branches(record: Record) -> ArmMotion:
     """Motions on the cycles of all branches."""
     period, F, amplitude = (np.asarray(record[name], float) for name in ("period", "branch_F", "tip_y_max"))
     return ArmMotion(2 * pi / period, F, amplitude, is_cycle=True)
@@ -125,7 +127,7 @@ MOTION_OF_TASK: dict[str, Callable[[Record], ArmMotion]] = {
     "criticality": _motion_at_hopf_point("crossing_F"),
     "phase_diagram": _motion_of_row,
     "limit_cycle": _motion_of_cycle,
-    "branch": _motion_of_branches,
+    "branch": _motions_on_all_branches,
 }
 """Function from the variables of a point to the motions of the arm, by task."""
 
@@ -139,7 +141,7 @@ class ArmValidity:
         self.section: ArmConfig = config.parameters.arm
         self.points = points
         self.task = config.task
-        at_rest = AT_REST_STATUSES.get(self.task, ())
+        at_rest = UNSUCCESSFUL_STATUSES_AT_REST.get(self.task, ())
         self.searched_statuses = [
             int(status) for status in statuses if status.succeeded or status.name in at_rest
         ]
@@ -181,8 +183,8 @@ class ArmValidity:
     ) -> dict[str, Any]:
         drag = arm.chosen_drag if "drag" in self.points.arm_axes else smallest_drag(arm)
         rate = motion.frequency / arm.tau2_with(drag)
-        F = self._force_of_points(arm, motion, index)
-        base_force = self._equivalent_base_force(F, index)
+        F = self._force_scaled_to_arm_stiffness(arm, motion, index)
+        base_force = self._force_compressing_base_equally(F, index)
         effects = neglected_effects(arm, rate, base_force, drag=drag, amplitude=motion.amplitude)
         relevant = [effect for effect in effects if motion.is_cycle or not effect.of_cycles_only]
         excesses = np.array([effect.value_over_limit for effect in relevant])  # (effects, n, ...)
@@ -199,12 +201,14 @@ class ArmValidity:
         # Compression or weight beyond its limit ends the model whatever the motion.
         is_known = has_motion | ~np.asarray(motion.may_be_missed) | (validities == Validity.does_not_apply)
         return {
-            "model_applies": np.where(is_known, validities, VALIDITY_NOT_KNOWN),
+            "model_applies": np.where(is_known, validities, UNKNOWN_VALIDITY_NUMBER),
             "neglected_effect": np.where(is_known & (at_worst > 0), effect_numbers, -1),
             "neglected_excess": np.where(is_known & (at_worst >= 0), at_worst, np.nan),
         }
 
-    def _force_of_points(self, arm: SlenderArm, motion: ArmMotion, index: int | NDArray[np.int64]) -> Array:
+    def _force_scaled_to_arm_stiffness(
+        self, arm: SlenderArm, motion: ArmMotion, index: int | NDArray[np.int64]
+    ) -> Array:
         """F, multiplied by (arm's k1)/(k1 in the config) if the config gives k1 in addition to the arm; NaN
         if the arm has no load. index: index of the point, or indices, (n,)."""
         k1 = self._parameter_values("k1", index)
@@ -214,12 +218,12 @@ class ArmValidity:
         k1 = k1.reshape(k1.shape + (1,) * (np.ndim(F) - k1.ndim))
         return np.asarray(F) * (arm.k1 / k1)
 
-    def _equivalent_base_force(self, F: Array, index: int | NDArray[np.int64]) -> Array:
+    def _force_compressing_base_equally(self, F: Array, index: int | NDArray[np.int64]) -> Array:
         """The force that would compress the base as much as F compresses the weakest section; NaN for rubber,
         whose constitutive law includes large compression. F, index: forces, and indices of their points, as
         in `variables_of_points`."""
         material = self.points.material_of(int(np.ravel(index)[0]))
-        if material.law != LINEAR.law_name:
+        if material.law != LINEAR_CONSTITUTIVE_LAW.law_name:
             return np.full(np.shape(F), np.nan)
         tapers = self._parameter_values("taper", index)
         ratios = material.relative_crushing_forces(np.ones(()) if tapers is None else tapers)

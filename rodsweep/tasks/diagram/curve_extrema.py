@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...results.layouts.curve_extrema import EXTREMA_UNLOCATED, curve_extremum_variables
+from ...results.layouts.curve_extrema import EXTREMA_UNLOCATED, fold_curve_extremum_variables
 from ...results.layouts.variables import FilledVariable
 
 if TYPE_CHECKING:
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from ...solve.continuation.curve_search import TracedCurves
 
 
-def curve_extremum_values(
+def fold_curve_extremum_values(
     traced: "TracedCurves[SpecialPointCurve]", plane: tuple[str, str]
 ) -> list[FilledVariable]:
     """Variables of the extrema of the row parameter along the curves `traced`, located or not; [] if there
@@ -24,7 +24,7 @@ def curve_extremum_values(
         for point in curve.points
         if point.row_extremum_error > 0
     ]
-    variables = curve_extremum_variables(*plane).values() if rows else ()
+    variables = fold_curve_extremum_variables(*plane).values() if rows else ()
     columns = zip(variables, zip(*rows, strict=True), strict=True)
     filled = [(variable, np.array(column)) for variable, column in columns]
     points = (point for curve in traced.curves for point in curve.points)

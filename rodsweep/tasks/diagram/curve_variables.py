@@ -64,7 +64,7 @@ def boundary_curve_values(
     return _variables_with_values(declared, values | limit_values)
 
 
-def criticality_record(
+def criticality_and_bautin_record(
     criticalities: Sequence["CurveCriticality"], plane: tuple[str, str], gamma1: float
 ) -> list[FilledVariable]:
     """Variables of the criticality along each boundary curve, and of the generalised Hopf points.
@@ -107,7 +107,7 @@ def bautin_curve_values(
     )
 
 
-def cycle_curve_values(
+def fold_and_torus_curve_values(
     traced: "TracedCurves[SpecialPointCurve]", plane: tuple[str, str]
 ) -> list[FilledVariable]:
     """Variables of the curves of folds and torus points of cycles, with the Hopf points at their ends. plane:
@@ -232,7 +232,7 @@ def unstored_special_count(view: ResultView, finite: np.ndarray) -> int:
     return int(lacking[finite].clip(min=0).sum())
 
 
-def with_hopf_ends(
+def with_ends_on_hopf_curves(
     traced: "TracedCurves[SpecialPointCurve]",
     plane: "ParameterPlane",
     criticalities: "Sequence[CurveCriticality]",

@@ -7,21 +7,21 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...model.parameters import CRUSHING_PARAMETERS
+from ...model.parameters import FORCE_AND_STRETCH_STIFFNESS
 from ...model.rod import Rod
 from ...results.file.view import ResultView
 from ...results.layouts.phase_diagram import MAX_CYCLE_SPECIAL_POINTS
 from ..protocol import NamedArrays, SweepWideResult
 from .boundary_curves import boundary_curves, criticality_along, generalised_hopf_curves
-from .curve_extrema import curve_extremum_values
+from .curve_extrema import fold_curve_extremum_values
 from .curve_variables import (
     boundary_curve_values,
-    criticality_record,
-    cycle_curve_values,
+    criticality_and_bautin_record,
+    fold_and_torus_curve_values,
     special_points_of_row,
     special_points_of_rows,
     unstored_special_count,
-    with_hopf_ends,
+    with_ends_on_hopf_curves,
 )
 from .detached_branches import (
     COMPLETE_ROW_STATUS,
@@ -29,8 +29,8 @@ from .detached_branches import (
     detached_branch_values,
     row_message,
     row_result,
-    rows_with_further_branches,
-    rows_with_leaving_branches,
+    rows_changed_when_solved_again,
+    rows_with_branches_across_limits,
 )
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from ...solve.orbit.matrix.workspace import NewtonWorkspace
     from ..phase_diagram import PhaseDiagramTask
 
-RowKey = tuple[int, int]
+RowAndStartCount = tuple[int, int]
 """(number of a row, number of special points from which its branches are followed beside Hopf points)."""
 MAX_CACHED_ROWS = 200
 """Maximum number of rows whose special points are cached in a process, because the cycles of a row take up to
@@ -62,7 +62,7 @@ class DiagramCurves:
     task: "PhaseDiagramTask"
     workspace: "NewtonWorkspace"
     """Buffers of Newton's matrices in this process."""
-    special_points_by_row: "dict[RowKey, tuple[SpecialPoint, ...]]" = field(default_factory=dict)
+    special_points_by_row: "dict[RowAndStartCount, tuple[SpecialPoint, ...]]" = field(default_factory=dict)
     """Special points of cycles of the rows solved in this process."""
 
     def cache_row(self, number: int, row: "CoexistenceRow") -> "CoexistenceRow":
@@ -73,7 +73,7 @@ class DiagramCurves:
             self.special_points_by_row[number, 0] = row.special_points + row.folds_beyond
         return row
 
-    def cached_starts(self, items: "Stage", item_numbers: Sequence[int]) -> "dict[RowKey, Any]":
+    def cached_starts(self, items: "Stage", item_numbers: Sequence[int]) -> "dict[RowAndStartCount, Any]":
         """Special points cached on this rank, by row, for the rows on which the half curves numbered
         `item_numbers` start. items: work items of the current stage: half curves, or rows to be solved again,
         which need no special points."""
@@ -84,7 +84,7 @@ class DiagramCurves:
         keys = {(row, len(items.starts_of_row(row))) for row in map(items.row_of, item_numbers)}
         return {key: self.special_points_by_row[key] for key in keys if key in self.special_points_by_row}
 
-    def add_starts(self, starts: "Mapping[RowKey, Any]") -> None:
+    def add_starts(self, starts: "Mapping[RowAndStartCount, Any]") -> None:
         """Caches special points of rows solved on other ranks."""
         self.special_points_by_row.update(starts)
 
@@ -120,7 +120,7 @@ class DiagramCurves:
             tracer,
             lambda number, values: special_points_of_row(values, line_parameter, number, row_values[number]),
             PlaneAxis(line_parameter, *extended_range(line_parameter, low, high)),
-            rows_with_leaving_branches(view, line_parameter, tracer.complete_rows, (low, high)),
+            rows_with_branches_across_limits(view, line_parameter, tracer.complete_rows, (low, high)),
         )
 
     @property
@@ -170,7 +170,7 @@ class DiagramCurves:
         options = self.task.config.phase_diagram
         traced = boundary_curves(plane, view, self.task.points.columns_by_name[row_parameter])
         limit = {}
-        if plane_names == CRUSHING_PARAMETERS and self.task.config.is_uniform_and_linear:
+        if plane_names == FORCE_AND_STRETCH_STIFFNESS and self.task.config.is_uniform_and_linear:
             # The fold of the Hopf curve in the partial beam limit (Sec. VIII).
             from ...solve.changes.thresholds import filament_flutter_force
 
@@ -181,16 +181,19 @@ class DiagramCurves:
         needs_criticality = options.criticality or options.cycles
         criticalities = criticality_along(plane, traced, accuracy) if needs_criticality else []
         if options.criticality:
-            variables += criticality_record(criticalities, plane_names, self.task.config.gamma1)
+            variables += criticality_and_bautin_record(criticalities, plane_names, self.task.config.gamma1)
         if options.bautin_parameter is not None:
             variables += generalised_hopf_curves(plane, criticalities, options.bautin_parameter, accuracy)
         stages = self._stages(view)
         if stages is None:
             return SweepWideResult(variables)
         unstored = unstored_special_count(view, self._is_row_finite)
-        curves = with_hopf_ends(stages.curves(results), plane, criticalities, unstored)
-        changed = rows_with_further_branches(view, stages.changed_rows(results))
-        variables += [*cycle_curve_values(curves, plane_names), *curve_extremum_values(curves, plane_names)]
+        curves = with_ends_on_hopf_curves(stages.curves(results), plane, criticalities, unstored)
+        changed = rows_changed_when_solved_again(view, stages.changed_rows(results))
+        variables += [
+            *fold_and_torus_curve_values(curves, plane_names),
+            *fold_curve_extremum_values(curves, plane_names),
+        ]
         variables += detached_branch_values(view, changed)
         variables += curves_lost_beyond_values(stages.lost_beyond_count(results))
         messages = {number: row_message(result) for number, result in changed.items()}

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...results.file.view import ResultView
-from ...results.layouts.detached_branches import CURVES_LOST_BEYOND, DETACHED_BRANCH_VARIABLES
+from ...results.layouts.detached_branches import CURVES_LOST_BEYOND, DETACHED_ROW_VARIABLES_BY_NAME
 from ...results.layouts.variables import FilledVariable
 from ..protocol import NamedArrays
 
@@ -55,7 +55,7 @@ def followed_special_points(
     ]
 
 
-def rows_with_leaving_branches(
+def rows_with_branches_across_limits(
     view: ResultView, line_parameter: str, rows: Mapping[int, float], limits: tuple[float, float]
 ) -> dict[int, float]:
     """The rows of `rows` with branches that leave or enter the range `limits`; values of the row parameter by
@@ -74,7 +74,7 @@ def rows_with_leaving_branches(
     return {row: value for row, value in rows.items() if is_leaving[row]}
 
 
-def rows_with_further_branches(
+def rows_changed_when_solved_again(
     view: ResultView, solved_again: Mapping[int, NamedArrays]
 ) -> dict[int, NamedArrays]:
     """The rows of `solved_again` that have further branches or another status than in the file. view: the
@@ -105,5 +105,5 @@ def detached_branch_values(view: ResultView, changed: Mapping[int, NamedArrays])
     )
     return [
         (variable, np.array(column))
-        for variable, column in zip(DETACHED_BRANCH_VARIABLES.values(), values, strict=True)
+        for variable, column in zip(DETACHED_ROW_VARIABLES_BY_NAME.values(), values, strict=True)
     ]

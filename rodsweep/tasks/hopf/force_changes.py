@@ -23,7 +23,7 @@ from ...sweep.points.points import Points, lines_along
 
 MAX_POINTS_IN_MEMORY = 1 << 13
 """Maximum number of points whose eigenvalues are read at once; this limits memory for large files."""
-MAX_FORCE_SPACING = 0.02
+MAX_SPACING_OVER_FORCE_RANGE = 0.02
 """Two neighbouring forces are far from each other if their difference exceeds this share of the range of all
 forces."""
 
@@ -101,20 +101,20 @@ def _thresholds_on_lines(lines: ForceLines) -> Iterator[dict[str, float]]:
     """Yields the thresholds on some lines of points, one line after another, as values of variables by
     name."""
     from ...determinant.stability_changes import onset_between, stability_change_between
-    from .onset import locate_onset
+    from .oscillation_onset import locate_oscillation_onset
 
     F = lines.F.tolist()
     eigenvalues = lines.eigenvalues
-    onsets = _pairs_by_line(_pairs_at_onset(lines.F, eigenvalues))
+    onsets = _pairs_by_line(_pairs_at_oscillation_onset(lines.F, eigenvalues))
     changes = _pairs_by_line(_sign_changes(eigenvalues))
     for number in sorted(onsets.keys() | changes.keys()):
         fixed = dict(zip(lines.names, lines.fixed_values[number].tolist(), strict=True))
         rod = Rod(F=0.0, **fixed)
         eigenvalues_here = eigenvalues[number]
         rods = rod.coefficients, rod.coefficient_derivative("F")
-        max_spacing = MAX_FORCE_SPACING * (F[-1] - F[0])
+        max_spacing = MAX_SPACING_OVER_FORCE_RANGE * (F[-1] - F[0])
         candidates = (
-            locate_onset(rods, rod, (F[i], F[j]), eigenvalues_here[i], eigenvalues_here[j])
+            locate_oscillation_onset(rods, rod, (F[i], F[j]), eigenvalues_here[i], eigenvalues_here[j])
             if F[j] - F[i] > max_spacing
             else onset_between(rods, (F[i], F[j]), eigenvalues_here[i], eigenvalues_here[j])
             for i, j in onsets.get(number, ())
@@ -147,7 +147,7 @@ def _sign_changes(eigenvalues: Complex) -> NeighbourPairs:
     return np.stack([line, lower, upper], axis=-1)[differ]
 
 
-def _pairs_at_onset(F: Array, eigenvalues: Complex) -> NeighbourPairs:
+def _pairs_at_oscillation_onset(F: Array, eigenvalues: Complex) -> NeighbourPairs:
     """Pairs of neighbouring points between which two leading real eigenvalues can become a complex pair: the
     leading eigenvalue is real at the first point and complex at the second. Between forces that are close to
     each other, the second eigenvalue at the first point is real too; otherwise a complex pair overtakes a
@@ -156,7 +156,7 @@ def _pairs_at_onset(F: Array, eigenvalues: Complex) -> NeighbourPairs:
         return np.empty((0, 3), np.int64)
     is_real = eigenvalues[..., :2].imag == 0
     line, lower, upper = _neighbouring_points(np.isfinite(eigenvalues[..., :2].real).all(axis=-1))
-    is_far = F[upper] - F[lower] > MAX_FORCE_SPACING * np.ptp(F)
+    is_far = F[upper] - F[lower] > MAX_SPACING_OVER_FORCE_RANGE * np.ptp(F)
     is_complex = eigenvalues[line, upper, 0].imag > 0
     is_onset = is_real[line, lower, 0] & (is_real[line, lower, 1] | is_far) & is_complex
     return np.stack([line, lower, upper], axis=-1)[is_onset]

@@ -32,7 +32,7 @@ from rodsweep.solve.branch.status import BranchStatus
 from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.orbit import orbit_mesh
-from rodsweep.solve.orbit.matrix.linearisation import reduced_variation_sides
+from rodsweep.solve.orbit.matrix.linearisation import reduced_stage_residual_variations
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.unsolvable import Unsolvable
 from rodsweep.solve_progress import reporting_to
@@ -104,10 +104,10 @@ def test_a_fold_needs_no_compilation_beyond_that_of_the_installation(monkeypatch
 
     def recorded(*arguments):
         called.append(tuple(map(numba.typeof, arguments)))
-        return reduced_variation_sides(*arguments)
+        return reduced_stage_residual_variations(*arguments)
 
     for module in (seldom_used_kernels, matrix):
-        monkeypatch.setattr(module, "reduced_variation_sides", recorded)
+        monkeypatch.setattr(module, "reduced_stage_residual_variations", recorded)
     seldom_used_kernels.warm_up()
     (compiled,) = called
     (curve,) = solve_branches(SHORT, BranchRequest("F", 0.0, 200.0, 1e-4, True, 500, 50)).curves

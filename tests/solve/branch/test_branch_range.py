@@ -75,8 +75,8 @@ def test_cycles_are_the_same_whether_omega_is_an_unknown_or_eliminated():
     path = ParameterPath(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.33), "taper")
     (crossing,) = find_axis_crossings(path, 0.33, 0.45).thresholds
     ends = []
-    for keeps_omega in (False, True):
-        hopf = hopf_branch_start(path, crossing, keeps_omega)
+    for is_omega_always_unknown in (False, True):
+        hopf = hopf_branch_start(path, crossing, is_omega_always_unknown)
         reasons = (BranchEndReason.range_end,) * 2
         limits = BranchLimits([hopf], (0.33, 0.45), reasons, 1e-6, 100, NewtonWorkspace())
         last = follow_branch(0, limits).special_points[-1]

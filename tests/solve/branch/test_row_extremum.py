@@ -188,7 +188,7 @@ def test_two_branches_with_one_cycle_at_the_end_of_the_range_are_a_failure():
     limits = BranchLimits([], (120.0, 130.0), (BranchEndReason.range_end,) * 2, 1e-4, 500, NewtonWorkspace())
     for curves, count in (([first, second], 0), ([first, second, first], 2)):
         search = BranchSearch(limits, "F", curves=curves)
-        search._add_failures_at_range_ends()
+        search._add_messages_on_shared_range_ends()
         assert len(search.failures) == count
     assert search.failures[-1] == "branches 1 and 3 have the same cycle at F = 130: two branches nearly touch"
 

@@ -108,7 +108,7 @@ STEPPED = Rod(F=0.0, k1=inf, k2=1e4, gamma3=0.0, material=RodMaterial(profile=ST
 @pytest.fixture
 def no_bound_beyond_some_force(monkeypatch):
     """The a-priori bound of the stepped arm grows with F; a smaller limit leaves none from F = 36 on."""
-    monkeypatch.setattr(hull, "HULL_SETTINGS", replace(hull.HULL_SETTINGS, min_remainder=0.995))
+    monkeypatch.setattr(hull, "HULL_SETTINGS", replace(hull.HULL_SETTINGS, min_one_minus_c=0.995))
 
 
 def test_a_place_that_cannot_be_proved_ends_the_search_there(no_bound_beyond_some_force, monkeypatch):
@@ -134,7 +134,7 @@ def test_a_place_that_cannot_be_proved_ends_the_search_there(no_bound_beyond_som
 
 
 def test_a_search_that_cannot_begin_has_failed(monkeypatch):
-    monkeypatch.setattr(hull, "HULL_SETTINGS", replace(hull.HULL_SETTINGS, min_remainder=1.0))
+    monkeypatch.setattr(hull, "HULL_SETTINGS", replace(hull.HULL_SETTINGS, min_one_minus_c=1.0))
     found = solve_thresholds(STEPPED, ThresholdsRequest(60.0, 1e-10, True, 16))
     assert (found.status, found.thresholds) == (ThresholdStatus.failed, ())
     assert "no a-priori bound" in found.message

@@ -16,7 +16,7 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.by_integration import solve_by_integration
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.settled_motion import ReturnDistances
-from rodsweep.solve.cycle.status import IntegrationStatus
+from rodsweep.solve.cycle.status import IntegratedCycleStatus
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
 ACCURACY = 1e-5
@@ -51,9 +51,9 @@ def pairs():
 
 @pytest.mark.long
 def test_cycles_are_those_of_collocation_within_their_errors():
-    assert any(other.status == IntegrationStatus.cycle for _, other in pairs())
+    assert any(other.status == IntegratedCycleStatus.cycle for _, other in pairs())
     for one, other in pairs():
-        if other.status != IntegrationStatus.cycle:
+        if other.status != IntegratedCycleStatus.cycle:
             continue
         assert one.status == CycleStatus.cycle
         a, b, errors = one.measures, other.measures, other.errors
@@ -71,9 +71,9 @@ def test_a_motion_that_ends_otherwise_ends_so_by_collocation_too():
     """But for motions that settle too slowly to be waited for."""
     slow = 0
     for one, other in pairs():
-        if other.status == IntegrationStatus.not_settled:
+        if other.status == IntegratedCycleStatus.not_settled:
             slow += 1
-        elif other.status != IntegrationStatus.cycle:
+        elif other.status != IntegratedCycleStatus.cycle:
             assert other.status.name == one.status.name, (one, other)
     assert slow <= MOST_NOT_SETTLED * len(pairs()) + 1
 
@@ -82,7 +82,7 @@ def test_a_straight_rod_stays_straight():
     rod = Rod(F=20.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0)
     found = solve_by_integration(rod, request(ACCURACY))
     assert (found.status, found.message) == (
-        IntegrationStatus.straight,
+        IntegratedCycleStatus.straight,
         "the motion has decayed to rounding error",
     )
     assert np.isnan(found.measures.period)
@@ -92,7 +92,7 @@ def test_a_motion_beside_the_hopf_point_is_not_called_a_cycle_before_it_has_sett
     """F** = 27.43: here it needs some thousands of returns."""
     rod = Rod(F=27.45, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0)
     found = solve_by_integration(rod, request(1e-6, most_periods=60))
-    assert found.status == IntegrationStatus.not_settled
+    assert found.status == IntegratedCycleStatus.not_settled
     assert "returns of the tip the state still differs by a relative" in found.message
 
 
@@ -100,7 +100,7 @@ def test_a_tip_that_does_not_return_has_a_reason_in_words():
     """A pull beyond the shear stiffness bends the rod for good."""
     rod = Rod(F=-20.0, k1=150.0, k2=10.0, gamma3=0.0)
     found = solve_by_integration(rod, request(1e-3, most_periods=20))
-    assert found.status == IntegrationStatus.not_settled
+    assert found.status == IntegratedCycleStatus.not_settled
     assert re.fullmatch(r"the tip returned to theta = 0 only \d times?, so no period is known", found.message)
 
 
@@ -108,7 +108,7 @@ def test_a_crushed_rod_leaves_the_model():
     found = solve_by_integration(
         Rod(F=195.0, k1=200.0, k2=1e4, gamma3=1e-4), replace(request(ACCURACY, most_periods=9), amplitude=0.5)
     )
-    assert found.status == IntegrationStatus.left_the_model
+    assert found.status == IntegratedCycleStatus.left_the_model
 
 
 @pytest.mark.parametrize("rod", [(np.inf, np.inf, 0.0), (np.inf, 300.0, 1e-3), (400.0, np.inf, 1e-3)])
@@ -163,7 +163,7 @@ def test_a_cycle_may_be_much_longer_than_the_time_constant_of_a_mode_that_does_n
     one, other = solve_cycle(rod, request(1e-4)), solve_by_integration(rod, request(1e-3))
     assert other.linear_frequency == 0
     assert one.measures.period * other.linear_growth_rate > 15
-    assert (one.status, other.status) == (CycleStatus.cycle, IntegrationStatus.cycle)
+    assert (one.status, other.status) == (CycleStatus.cycle, IntegratedCycleStatus.cycle)
     assert abs(other.measures.period / one.measures.period - 1) <= (
         one.errors.period_error + other.errors.period_error
     )
@@ -201,4 +201,4 @@ def test_a_motion_that_settles_fast_is_settled_at_low_accuracy():
     )
     rod = Rod(F=68.823, k1=254.7, k2=346.3, gamma3=0.1302, gamma1=1.196, taper=0.663, material=material)
     found = solve_by_integration(rod, replace(request(1e-2, most_periods=60), amplitude=0.01))
-    assert found.status == IntegrationStatus.cycle
+    assert found.status == IntegratedCycleStatus.cycle

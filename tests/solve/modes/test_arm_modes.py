@@ -9,7 +9,7 @@ from scipy.linalg import expm
 from surveyed import RODS, few
 
 from rodsweep.discretization.straight.dense_eigenproblem import dense_eigenproblem
-from rodsweep.discretization.straight.tip_layer import tip_layer_ratio
+from rodsweep.discretization.straight.tip_layer import tip_angle_moment_ratio
 from rodsweep.discretization.straight.transverse_mesh import mesh_for, pencil_on
 from rodsweep.model.adjoint import tip_layer_factor
 from rodsweep.model.material.profile import Profile
@@ -198,13 +198,13 @@ def test_the_slaved_layer_of_an_arm_solves_its_riccati_equation(rod):
     T, breaks, poles = np.zeros(1), rod.material.breaks, rod.F < 0
     for start, end in zip(breaks[:-1], breaks[1:], strict=True):
         T = solve_ivp(slope, (start, end), T, method="Radau", rtol=1e-11, atol=1e-14).y[:, -1]
-    assert tip_layer_ratio(rod) == pytest.approx(np.tan(T[0]) if poles else T[0], rel=1e-8)
+    assert tip_angle_moment_ratio(rod) == pytest.approx(np.tan(T[0]) if poles else T[0], rel=1e-8)
 
 
 @pytest.mark.parametrize("k2", [30.0, 1e4, 1e9])
 def test_the_slaved_layer_of_a_uniform_arm_is_the_closed_form(k2):
     values = {"F": 15.0, "k1": 1e4, "k2": k2, "gamma3": 0.0}
-    assert tip_layer_ratio(Rod(**values, material=ONES)) == pytest.approx(
+    assert tip_angle_moment_ratio(Rod(**values, material=ONES)) == pytest.approx(
         tip_layer_factor(Rod(**values)), rel=1e-12
     )
 

@@ -504,7 +504,7 @@ def brute_force(propagator, times):
 def test_a_peak_later_than_the_decay_time_is_found():
     """Three close modes in a chain, |exp(L t)| near 1800 t^2 exp(-t): the peak is at t = 2, not before 1."""
     propagator = toy(np.diag([-1.0, -1.002, -1.004]) + np.diag([60.0, 60.0], 1))
-    end, tail = growth_module._end_of_growth(propagator, 1e-3, 20.0)
+    end, tail = growth_module._end_of_growth_and_excess(propagator, 1e-3, 20.0)
     largest, time, bound = maximum_propagator_norm(
         propagator, (1e-3, end), abscissa_of(propagator), 1.0, 1e-6
     )
@@ -637,7 +637,7 @@ def test_a_leading_pair_next_to_its_threshold_is_followed_for_half_a_turn_only()
     generator[2:, 2:] = [[-1.0, 8.0], [0.0, -1.5]]
     generator[:2, 2:] = 4.0
     propagator = toy(generator)
-    end, tail = growth_module._end_of_growth(propagator, 1e-2, 25.0)
+    end, tail = growth_module._end_of_growth_and_excess(propagator, 1e-2, 25.0)
     assert 20 < end < 40
     left_over = expm(generator * (end - np.pi / 6)) - mode_part(generator, end - np.pi / 6)
     assert tail == pytest.approx(2 * np.linalg.norm(left_over, 2), rel=1e-3)

@@ -11,7 +11,11 @@ from surveyed import RODS
 
 from rodsweep.determinant import moving_line
 from rodsweep.determinant.certificate.winding_number import count_right_of, phase_change_by_nodes
-from rodsweep.determinant.moving_line import IntervalEnd, examine_rectangle, proves_no_crossing
+from rodsweep.determinant.moving_line import (
+    IntervalEnd,
+    proves_no_crossing,
+    rectangle_proof_and_costs,
+)
 from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.model.rod import Coefficients, Rod
 from rodsweep.solve.spectrum.path import neighbouring_rods
@@ -109,17 +113,17 @@ def holds_always(*words):
 
 def no_width_in_p(at, y, direction, half, tilt):
     """The proof for the rod in the middle alone, which is what negative half-widths make of it."""
-    return examine_rectangle(at, y, direction, (half[0], 1e-12 * half[1]), 0.0)
+    return rectangle_proof_and_costs(at, y, direction, (half[0], 1e-12 * half[1]), 0.0)
 
 
 @pytest.mark.parametrize(
     ("name", "broken"),
-    [("is_remainder_below", holds_always), ("examine_rectangle", no_width_in_p)],
+    [("is_remainder_below", holds_always), ("rectangle_proof_and_costs", no_width_in_p)],
     ids=["bound", "width"],
 )
 def test_a_broken_proof_is_noticed(monkeypatch, name, broken):
     """Without the remainder, or the width of a rectangle in p, strips are proved that counts refute."""
-    monkeypatch.setattr(moving_line, "examine_rectangle", examine_rectangle.py_func)
+    monkeypatch.setattr(moving_line, "rectangle_proof_and_costs", rectangle_proof_and_costs.py_func)
     monkeypatch.setattr(moving_line, name, broken)
     _, wrong = wrong_proofs(proves_no_crossing.py_func, random_strips(20))
     assert wrong >= 3
@@ -130,7 +134,7 @@ def test_rectangles_without_an_inside_are_refused(half):
     rod = Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4)
     at = IntervalEnd(30.0, rod.coefficients, -20.0)
     with pytest.raises(ValueError, match="half-widths of a rectangle must be above 0"):
-        examine_rectangle(at, 5.0, Coefficients(1.0, -1e-4, 0.0, 0.0), half, 0.0)
+        rectangle_proof_and_costs(at, 5.0, Coefficients(1.0, -1e-4, 0.0, 0.0), half, 0.0)
 
 
 def test_what_is_proved_has_no_zero_inside():
@@ -142,7 +146,7 @@ def test_what_is_proved_has_no_zero_inside():
         half = (y * 10 ** rng.uniform(-2, -0.4), 10 ** rng.uniform(-3, 0.5))
         tilt = rng.normal() * at_line / 10
         at = IntervalEnd(p, path.rod_at(p).coefficients, at_line)
-        if examine_rectangle(at, y, path.direction, half, tilt)[0]:
+        if rectangle_proof_and_costs(at, y, path.direction, half, tilt)[0]:
             proved += 1
             for share in (-1, -0.3, 0.6, 1):
                 rod = path.rod_at(p + share * half[1]).coefficients

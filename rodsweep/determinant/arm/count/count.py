@@ -83,7 +83,7 @@ def count_right_of(
     # D divided by one factor of a pair would not be real on the real axis, and half a box would not suffice.
     known_w = known_w[has_conjugate(known_w)]
     height = np.maximum(np.abs(known_w.imag), abs(line))
-    known_w = known_w[np.abs(known_w.real - line) < CONTOUR_SETTINGS.max_known_distance_ratio * height]
+    known_w = known_w[np.abs(known_w.real - line) < CONTOUR_SETTINGS.max_known_line_distance_ratio * height]
     try:
         phase_change, node_count = _phase_change(line, determinant, hull, known_w)
     except PhaseLost as lost:
@@ -201,7 +201,7 @@ def _continue_traversal(  # noqa: PLR0913, PLR0917 - state and constants of one 
 @compiled
 def _is_lost(node: PhaseNode, node_count: int) -> bool:
     """Whether the phase is lost: the valid radius of the node is too small, or there are too many nodes."""
-    min_radius = CONTOUR_SETTINGS.min_valid_radius_ratio * abs(node.w)
+    min_radius = CONTOUR_SETTINGS.min_valid_radius_over_w * abs(node.w)
     # Negated, so that a valid radius of nan counts as lost.
     return not node.valid_radius > min_radius or node_count > CONTOUR_SETTINGS.max_nodes
 
@@ -225,11 +225,13 @@ def _overlapping_distance(reach: float, growth: float) -> float:
 def _shortened_distance(reach: float, growth: float, distance: float) -> float:
     """A distance to the next node below `distance`. Repeated calls lead to a distance below `reach`, the
     valid radius. growth: expected change of the valid radius per distance."""
-    shorter_distance = min(_overlapping_distance(reach, growth), CONTOUR_SETTINGS.max_step_ratio * distance)
+    shorter_distance = min(
+        _overlapping_distance(reach, growth), CONTOUR_SETTINGS.max_shortened_step_ratio * distance
+    )
     return (
         shorter_distance
         if shorter_distance > reach
-        else min(CONTOUR_SETTINGS.safe_step_ratio * reach, distance / 2)
+        else min(CONTOUR_SETTINGS.safe_step_over_radius * reach, distance / 2)
     )
 
 

@@ -29,7 +29,7 @@ class NearAxisSettings(KernelConstants):
     """Im w of the first starting point, in 1/tau2; crossings of all arms of the surveys lie above 1."""
     height_ratio: float = 1.25
     """Ratio of Im w of a starting point to Im w of the previous starting point."""
-    max_distance_ratio: float = 0.5
+    max_distance_from_start_ratio: float = 0.5
     """Newton's method stops if a step, or the distance of w from the starting point, exceeds this number
     times Im w of the starting point."""
     max_steps: int = 12
@@ -38,7 +38,7 @@ class NearAxisSettings(KernelConstants):
     """Newton's method has converged if |step| <= this number times |w|; eigenvalues are refined later."""
     max_modes: int = 64
     """Maximum number of eigenvalues, including the known eigenvalues."""
-    field_ranges: ClassVar = {"height_ratio": (1.0, math.inf), "max_distance_ratio": (0.0, 1.0)}
+    field_ranges: ClassVar = {"height_ratio": (1.0, math.inf), "max_distance_from_start_ratio": (0.0, 1.0)}
 
 
 NEAR_AXIS_SETTINGS = NearAxisSettings()
@@ -53,11 +53,11 @@ def modes_near_axis(determinant: ArmDeterminant, max_frequency: float, known_w: 
     while height < max_frequency:
         # Newton's iterates move up by at most this ratio, so all of them stay within the propagators' W.
         W, propagators = determinant.propagators_for(
-            (1 + NEAR_AXIS_SETTINGS.max_distance_ratio) * height, CONTOUR_SETTINGS.max_W_ratio
+            (1 + NEAR_AXIS_SETTINGS.max_distance_from_start_ratio) * height, CONTOUR_SETTINGS.max_W_ratio
         )
         heights = [height]
         while heights[-1] * NEAR_AXIS_SETTINGS.height_ratio < min(
-            max_frequency, W / (1 + NEAR_AXIS_SETTINGS.max_distance_ratio)
+            max_frequency, W / (1 + NEAR_AXIS_SETTINGS.max_distance_from_start_ratio)
         ):
             heights.append(heights[-1] * NEAR_AXIS_SETTINGS.height_ratio)
         eigenvalues = _modes_from(np.array(heights), eigenvalues, (W, propagators), determinant.gauss_samples)
@@ -98,11 +98,13 @@ def _mode_near(
         for k in range(len(known_w)):
             slope -= 1 / (w - known_w[k]) if w != known_w[k] else 0j
         # The step, 1/slope, would leave the neighbourhood of the starting point. Negated, to end at nan too.
-        if not abs(slope) * NEAR_AXIS_SETTINGS.max_distance_ratio * guess.imag > 1:
+        if not abs(slope) * NEAR_AXIS_SETTINGS.max_distance_from_start_ratio * guess.imag > 1:
             break
         step = 1 / slope
         w -= step
-        if not (w.imag > 0 and abs(w - guess) < NEAR_AXIS_SETTINGS.max_distance_ratio * guess.imag):
+        if not (
+            w.imag > 0 and abs(w - guess) < NEAR_AXIS_SETTINGS.max_distance_from_start_ratio * guess.imag
+        ):
             break
         if abs(step) <= NEAR_AXIS_SETTINGS.converged_step_ratio * abs(w):
             return w

@@ -136,12 +136,14 @@ def covered_height(
     radius, smallest = radii
     while height < top:
         max_valid_radius = (arms.largest_w - abs(complex(line, height))) / 2
-        if max_valid_radius < NO_CROSSING_SETTINGS.min_fitting_fraction * radius:
+        if max_valid_radius < NO_CROSSING_SETTINGS.min_allowed_radius_fraction * radius:
             return height, radius
         radius = min(radius, max_valid_radius)
-        w0 = complex(line, 0.0 if height == 0 else height + NO_CROSSING_SETTINGS.overlap_ratio * radius)
+        w0 = complex(
+            line, 0.0 if height == 0 else height + NO_CROSSING_SETTINGS.covered_length_over_radius * radius
+        )
         if _is_zero_free(w0, radius, arms):
-            height = w0.imag + NO_CROSSING_SETTINGS.overlap_ratio * radius
+            height = w0.imag + NO_CROSSING_SETTINGS.covered_length_over_radius * radius
             radius *= NO_CROSSING_SETTINGS.radius_growth
         else:
             radius /= NO_CROSSING_SETTINGS.radius_divisor
@@ -181,15 +183,15 @@ def _is_zero_free(w0: complex, radius: float, arms: ArmsOfInterval) -> bool:
 def _is_too_close_to_divide(v: complex, w: complex, error: float) -> bool:
     """Whether v is too close to the known eigenvalue w, with `error`, for D(v)/(v - w)."""
     return not abs(v - w) > max(
-        NO_CROSSING_SETTINGS.min_known_distance_ratio * abs(v),
+        NO_CROSSING_SETTINGS.min_relative_known_distance * abs(v),
         NO_CROSSING_SETTINGS.min_distance_in_errors * error,
     )
 
 
 @compiled
 def _has_small_change(node: LineNode, radius: float, arm: int, arms: ArmsOfInterval) -> bool:
-    """Whether |f(v, p)/f(w0, q) - 1| <= `NO_CROSSING_SETTINGS.max_change` at the points v of the circle, for
-    the arm number `arm`; False if a point is too close to a known eigenvalue."""
+    """Whether |f(v, p)/f(w0, q) - 1| <= `NO_CROSSING_SETTINGS.max_D_change_ratio` at the points v of the
+    circle, for the arm number `arm`; False if a point is too close to a known eigenvalue."""
     samples = ExponentSamples(arms.squares[arm], arms.weights)
     growth = 0.0
     if node.exponent_and_slope[0] == 0:
@@ -209,6 +211,6 @@ def _has_small_change(node: LineNode, radius: float, arm: int, arms: ArmsOfInter
             if _is_too_close_to_divide(v, arms.known_eigenvalues[arm, n], arms.known_errors[arm, n]):
                 return False
             ratio *= (node.w - arms.known_eigenvalues[0, n]) / (v - arms.known_eigenvalues[arm, n])
-        if not abs(ratio - 1) <= NO_CROSSING_SETTINGS.max_change:
+        if not abs(ratio - 1) <= NO_CROSSING_SETTINGS.max_D_change_ratio:
             return False
     return True

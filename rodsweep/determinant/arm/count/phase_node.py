@@ -105,9 +105,9 @@ def _node_inside(
     w = node.w
     samples, (W, propagators) = arm
     unit = min(trial[0], CONTOUR_SETTINGS.max_log_slope / max(abs(node.L), EXPONENT_SETTINGS.min_divisor))
-    min_rho = CONTOUR_SETTINGS.min_circle_radius * unit
+    min_rho = CONTOUR_SETTINGS.min_circle_radius_in_lengths * unit
     rounding = CONTOUR_SETTINGS.rounding_safety_factor * value.rounding_error
-    excess = CONTOUR_SETTINGS.max_change - rounding / abs(value.D)
+    excess = CONTOUR_SETTINGS.max_D_change_ratio - rounding / abs(value.D)
     log_D = math.log(abs(value.D)) + value.log_scale - _log_of_distance_product(w, known_w)
     best, rho = node, max(trial[1], min_rho)
     while rho >= min_rho:
@@ -124,7 +124,7 @@ def _node_inside(
             log_max = max(log_max, log_f - linearised_log_determinant(tried, v, samples).real)
             growth = math.exp(min(log_max - log_D, EXPONENT_SETTINGS.max_exponent))
             reach = _valid_radius(rho, CONTOUR_SETTINGS.circle_safety_factor * growth, excess)
-            min_reach = CONTOUR_SETTINGS.min_radius_ratio * rho if rho / 2 >= min_rho else 0.0
+            min_reach = CONTOUR_SETTINGS.min_valid_over_circle_radius * rho if rho / 2 >= min_rho else 0.0
             if reach <= best.valid_radius or reach < min_reach:
                 reach = 0.0
                 break
@@ -141,7 +141,8 @@ def _node_inside(
 
 @compiled
 def _valid_radius(rho: float, M: float, excess: float) -> float:
-    """Distance from w within which f changes by less than max_change |D|, if |f| <= M |D| at radius rho."""
+    """Distance from w within which f changes by less than max_D_change_ratio |D|, if |f| <= M |D| at
+    radius rho."""
     # As f'(w) = 0, Cauchy's estimate is |f(v) - f(w)| <= M |D| r^2/(rho (rho - r)), solved here for r.
     q = excess / M
     return rho * (math.sqrt(q * q + 4 * q) - q) / 2 if q > 0 else 0.0

@@ -19,20 +19,20 @@ class ContourSettings(KernelConstants):
     """Number of points of a circle at which |f| is evaluated; a multiple of 4."""
     circle_safety_factor: float = 1.5
     """Safety factor on the largest |f| at the points of a circle, for larger values between the points."""
-    max_change: float = 0.9
+    max_D_change_ratio: float = 0.9
     """The change of f within the valid radius of a node is at most this number times |D|."""
     rounding_safety_factor: float = 100.0
     """|rounding error of D| <= this number times `rounding_error` of the value. Where |D| is below this
     bound, the valid radius of a node is 0."""
     max_log_slope: float = 1.0
-    """Radii of circles are in units of max_log_slope/|L| if this is below the length over which D changes, so
-    that circles get smaller close to a zero of D."""
+    """Radii of circles are in units of max_log_slope/|L| if this is below the length over which
+    D changes, so that circles get smaller close to a zero of D."""
     max_known_error_ratio: float = 1e-3
     """A known eigenvalue is divided out of D only if its error is below this fraction of the distance."""
-    max_known_distance_ratio: float = 1.0
+    max_known_line_distance_ratio: float = 1.0
     """Distance of a known eigenvalue w from the line, divided by max(|Im w|, |line|), below which the
     eigenvalue is divided out of D. D without farther eigenvalues would not follow the dominant wave."""
-    min_valid_radius_ratio: float = 1e-12
+    min_valid_radius_over_w: float = 1e-12
     """The count fails if the valid radius of a node w, the distance within which the phase of D is known, is
     below this number times |w|: a zero of D is too close."""
     max_W_ratio: float = 16.0
@@ -44,29 +44,29 @@ class ContourSettings(KernelConstants):
     """Distance to the next node divided by the sum of the expected valid radii of both nodes."""
     max_radius_growth: float = 0.5
     """Largest expected growth of the valid radius per distance; the next node is at most 3.6 radii away."""
-    min_radius_ratio: float = 0.2
+    min_valid_over_circle_radius: float = 0.2
     """If the valid radius is below this fraction of a circle's radius, a smaller circle is tried at once."""
     first_radius_in_lengths: float = 12.0
     """Radius of the first circle at a first node, in units of the length over which D changes."""
-    min_circle_radius: float = 0.75
+    min_circle_radius_in_lengths: float = 0.75
     """Radius of the smallest circle at any node, in units of the length over which D changes. Every trial
     halves the radius."""
     max_circle_radius: float = 48.0
     """Radius of the largest circle at any node, in units of the length over which D changes."""
     max_wave_radius: float = 0.8
     """Circles up to this radius, in units of Im w, use `dominant_wave`, branched on the real axis."""
-    max_step_ratio: float = 0.9
+    max_shortened_step_ratio: float = 0.9
     """If the valid discs of two nodes do not overlap, the step is shortened at least by this factor."""
-    safe_step_ratio: float = 0.99
+    safe_step_over_radius: float = 0.99
     """A step within the valid radius of a node is at most this times that radius, because of rounding."""
     field_ranges: ClassVar = {
         "max_tangent_error": (0.0, math.pi / 2),
-        "max_change": (0.0, 1.0),
+        "max_D_change_ratio": (0.0, 1.0),
         "max_wave_radius": (0.0, 1.0),
         "radius_overlap": (0.0, 1.0),
         "max_radius_growth": (0.0, 1.0),
-        "max_step_ratio": (0.0, 1.0),
-        "safe_step_ratio": (0.0, 1.0),
+        "max_shortened_step_ratio": (0.0, 1.0),
+        "safe_step_over_radius": (0.0, 1.0),
     }
 
     @property
@@ -86,22 +86,22 @@ class NoCrossingSettings(KernelConstants):
 
     arm_count: int = 5
     """Number of arms of an interval at which D is evaluated, including the middle arm and both ends."""
-    line_distance_ratio: float = 0.05
+    line_distance_over_last_w: float = 0.05
     """Distance of the line left of the last requested eigenvalue w, or of the axis if w grows, over |w|."""
     arms_safety_factor: float = 1.5
     """Safety factor on the largest change of f at these arms, for arms between them."""
     divided_distance_ratio: float = 3.0
     """Distance of a known eigenvalue from a node, divided by the radius of the node's disc, below which the
     eigenvalue is divided out of D."""
-    min_known_distance_ratio: float = 1e-6
+    min_relative_known_distance: float = 1e-6
     """Distance of a point v of a circle from a known eigenvalue, divided by |v|, below which the circle is
     not used: D and the divisor are then both inaccurate."""
     min_distance_in_errors: float = 1e3
     """Distance of a point of a circle from a known eigenvalue, divided by the error of this eigenvalue, below
     which the circle is not used."""
-    overlap_ratio: float = 0.98
+    covered_length_over_radius: float = 0.98
     """Length of the line that a disc covers on each side of its node, divided by the radius."""
-    min_fitting_fraction: float = 0.25
+    min_allowed_radius_fraction: float = 0.25
     """If the largest |w| of the propagators allows only a disc below this fraction of the radius, propagators
     for larger |w| are made."""
     w_bound_ratio: float = 2.0
@@ -116,14 +116,16 @@ class NoCrossingSettings(KernelConstants):
     field_ranges: ClassVar = {
         "arm_count": (2, math.inf),
         "arms_safety_factor": (1.0, math.inf),
-        "overlap_ratio": (0.0, 1.0),
+        "covered_length_over_radius": (0.0, 1.0),
         "radius_divisor": (1.0, math.inf),
     }
 
     @property
-    def max_change(self) -> float:
+    def max_D_change_ratio(self) -> float:
         """Largest change of f, relative to |f(w0, q)|, at the points and arms where f is evaluated."""
-        return CONTOUR_SETTINGS.max_change / (CONTOUR_SETTINGS.circle_safety_factor * self.arms_safety_factor)
+        return CONTOUR_SETTINGS.max_D_change_ratio / (
+            CONTOUR_SETTINGS.circle_safety_factor * self.arms_safety_factor
+        )
 
 
 NO_CROSSING_SETTINGS = NoCrossingSettings()

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from ....arrays import Array
 from ....model.compiled.compilation import compiled
-from ...exponents import ROUNDING_UNIT
+from ...exponents import TWO_MACHINE_EPSILONS
 
 
 @compiled
@@ -17,7 +17,7 @@ def numbers_of_different_elements(local: Array, lengths: Array) -> NDArray[np.in
     numbers = np.zeros(len(lengths), np.int64)
     for e in range(1, len(lengths)):
         # Lengths are differences of positions from 0 to 1, so they have rounding errors.
-        is_equal = abs(lengths[e] - lengths[e - 1]) <= 2 * ROUNDING_UNIT
+        is_equal = abs(lengths[e] - lengths[e - 1]) <= 2 * TWO_MACHINE_EPSILONS
         is_equal = is_equal and (local[:, :, e] == local[:, :, e - 1]).all()
         numbers[e] = numbers[e - 1] if is_equal else numbers[e - 1] + 1
     return numbers

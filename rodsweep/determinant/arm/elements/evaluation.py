@@ -175,7 +175,7 @@ def modulus_sum_of_real_form(a: Array, sizes: Array, t: float, x: Array) -> floa
 
 
 @compiled_for_vectors
-def apply_propagator_with_change(C: Array, t: Array, change: Array, x: Array, out: Array) -> None:
+def propagate_tangent(C: Array, t: Array, change: Array, x: Array, out: Array) -> None:
     """out = C t + change x for propagators C, change, (2 or more, PADDED), minors t, x, out, (2, MINORS)."""
     for i in range(MINORS):
         out[0, i] = out[1, i] = 0.0
@@ -202,7 +202,7 @@ def apply_real_propagator(C: Array, x: Array, out: Array) -> None:
 
 
 @compiled_for_vectors
-def apply_real_propagator_with_change(C: Array, t: Array, change: Array, x: Array, out: Array) -> None:
+def propagate_real_tangent(C: Array, t: Array, change: Array, x: Array, out: Array) -> None:
     """out = C t + change x for real propagators C, change, (PADDED,), and minors t, x, out, (MINORS,)."""
     for i in range(MINORS):
         out[i] = 0.0
@@ -214,7 +214,7 @@ def apply_real_propagator_with_change(C: Array, t: Array, change: Array, x: Arra
 
 
 @compiled
-def modulus_sum_of_products(C: Array, x: Array) -> float:
+def minor_sm_modulus_sum(C: Array, x: Array) -> float:
     """Sum of the moduli of all terms of C x that add up to the minor s^m at the end of an element. C:
     propagator, (2 or more, PADDED). x: minors, (2, MINORS). Near a root of D the terms cancel, and the
     rounding error of D is relative to their moduli, not to s^m."""
@@ -226,8 +226,8 @@ def modulus_sum_of_products(C: Array, x: Array) -> float:
 
 
 @compiled_for_vectors
-def modulus_sum_of_real_products(C: Array, x: Array) -> float:
-    """`modulus_sum_of_products` for a real propagator C, (PADDED,), and real minors x, (MINORS,)."""
+def real_minor_sm_modulus_sum(C: Array, x: Array) -> float:
+    """`minor_sm_modulus_sum` for a real propagator C, (PADDED,), and real minors x, (MINORS,)."""
     total = 0.0
     for j in range(MINORS):
         total += abs(C[MINORS * j + SM] * x[j])

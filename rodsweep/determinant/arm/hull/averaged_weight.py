@@ -27,19 +27,19 @@ from ....model.compiled.kernel_constants import KernelConstants
 class AveragedWeightSettings(KernelConstants):
     """Settings for the averaged weights alpha that are tried."""
 
-    factors: tuple[float, ...] = (0.0, 0.5, 1.0)
+    load_term_factors: tuple[float, ...] = (0.0, 0.5, 1.0)
     """Values of f in l = f |F| sqrt(c2 c3 gamma3/gamma2), the term with the load in the trial weight t."""
     half_widths: tuple[float, ...] = (0.01, 0.02, 0.04, 0.08, 0.16, 0.32)
     """Values of the half-width h of the window, in L."""
-    max_jump_distance: float = 1e-6
+    max_distance_across_jump: float = 1e-6
     """Two successive points closer than this distance, in L, lie on the two sides of a jump."""
-    point_distance: float = 1e-12
+    added_point_distance: float = 1e-12
     """Distance, in L, between the points added on both sides of u at which the slope of alpha jumps."""
 
     @property
     def trial_count(self) -> int:
         """Number of trial regions: two for each pair of f and h."""
-        return 2 * len(self.factors) * len(self.half_widths)
+        return 2 * len(self.load_term_factors) * len(self.half_widths)
 
 
 AVERAGED_WEIGHT_SETTINGS = AveragedWeightSettings()
@@ -70,7 +70,7 @@ def averaged_regions(u: Array, coefficients: Array, F: float, only_smallest: boo
         _, c2, c3, gamma2, gamma3, _ = coefficients_at_points
         loads = abs(F) * np.sqrt(c2 * c3 * gamma3 / gamma2)
         window = (_grid_positions(points - h, points), _grid_positions(points + h, points))
-        for f in AVERAGED_WEIGHT_SETTINGS.factors:
+        for f in AVERAGED_WEIGHT_SETTINGS.load_term_factors:
             arm = (points, coefficients_at_points, f * loads)
             _write_regions_of_trial(regions[row : row + 2], arm, window, (F, h, max_a2))
             if only_smallest:
@@ -87,11 +87,11 @@ def _with_points_where_window_ends_jump(u: Array, h: float) -> Array:
     count = len(u)
     points[:count] = u
     for i in range(len(u) - 1):
-        if u[i + 1] - u[i] < AVERAGED_WEIGHT_SETTINGS.max_jump_distance:
+        if u[i + 1] - u[i] < AVERAGED_WEIGHT_SETTINGS.max_distance_across_jump:
             for window_end in (-h, h):
                 for offset in (
-                    -AVERAGED_WEIGHT_SETTINGS.point_distance,
-                    AVERAGED_WEIGHT_SETTINGS.point_distance,
+                    -AVERAGED_WEIGHT_SETTINGS.added_point_distance,
+                    AVERAGED_WEIGHT_SETTINGS.added_point_distance,
                 ):
                     position = (u[i + 1] + u[i]) / 2 + window_end + offset
                     if u[0] < position < u[-1]:
@@ -182,12 +182,12 @@ def _trial_weights(
     integral = np.zeros(len(u))
     for i in range(1, len(u)):
         integral[i] = integral[i - 1] + (u[i] - u[i - 1]) * (log_t[i] + log_t[i - 1]) / 2
-    log_t_left, log_t_right, log_t_integrals = _averaged_log_weight(u, log_t, integral, window, h)
+    log_t_left, log_t_right, log_t_integrals = _log_weight_ends_and_integral(u, log_t, integral, window, h)
     return t, np.exp(log_t_integrals / (2 * h)), (log_t_right - log_t_left) / (2 * h)
 
 
 @compiled
-def _averaged_log_weight(
+def _log_weight_ends_and_integral(
     u: Array, log_t: Array, integral: Array, window: tuple[GridPositions, GridPositions], h: float
 ) -> tuple[Array, Array, Array]:
     """Returns (log t at u - h, log t at u + h, integral of log t over [u - h, u + h]), all (points,). u:

@@ -36,7 +36,12 @@ from ....model.rod import Rod
 from ...parameter_path import ParameterPath
 from .averaged_weight import AVERAGED_WEIGHT_SETTINGS, averaged_regions
 from .region import HULL_SETTINGS, UNBOUNDED_HULL, EigenvalueHull, PathHulls
-from .weights import clamp_integrals, least_squared_norm, trial_constant_weights, varying_weight_norms
+from .weights import (
+    four_c_squared_by_clamp,
+    smallest_squared_norm,
+    trial_constant_weights,
+    varying_weight_norms,
+)
 
 
 def hull_of(rod: Rod) -> EigenvalueHull:
@@ -56,8 +61,8 @@ def hulls_along(path: ParameterPath, low: float, high: float, point_count: int) 
 
 def _hull_of_sampled_arms(arms: "HullSamples") -> EigenvalueHull:
     """The smallest hull found for the spectra of all sampled arms; `UNBOUNDED_HULL` if no bound is found."""
-    max_c = 1 - HULL_SETTINGS.min_remainder
-    a, c = _smallest_region(
+    max_c = 1 - HULL_SETTINGS.min_one_minus_c
+    a, c = _smallest_common_region(
         arms.F, arms.lengths, arms.local, arms.averaged_regions, _chebyshev_matrices(), max_c
     )
     return EigenvalueHull((1 + HULL_SETTINGS.enlargement_fraction) * a, c) if isfinite(a) else UNBOUNDED_HULL
@@ -151,7 +156,7 @@ def _chebyshev_matrices() -> ChebyshevMatrices:
 
 
 @compiled
-def _smallest_region(
+def _smallest_common_region(
     F: Array, lengths: Array, coefficients: Array, averaged: Array, chebyshev: ChebyshevMatrices, max_c: float
 ) -> tuple[float, float]:
     """Returns (a, c) of the smallest region that contains the spectra of all arms, before a is enlarged;
@@ -171,7 +176,7 @@ def _smallest_region(
         smallest = (sqrt(max_weighted_force), 0.0)
     # The norm divides by the rotational drag.
     elif (gamma3 > 0).all():
-        smallest = (sqrt(least_squared_norm(alphas, coefficients.reshape(6, -1), max_weighted_force)), 0.0)
+        smallest = (sqrt(smallest_squared_norm(alphas, coefficients.reshape(6, -1), max_weighted_force)), 0.0)
     continuous = averaged.shape[1] == 0
     if continuous and (g > 0).all() and (c2 > 0).all():
         for square in varying_weight_norms(F, lengths, coefficients, chebyshev.derivative):
@@ -183,7 +188,7 @@ def _smallest_region(
     # Where c2 = 0, g equals nu: only alpha = 1 keeps (g - alpha nu)^2/c2 finite.
     if not (c2 > 0).all():
         alphas = np.ones(1)
-    integrals = clamp_integrals(alphas, F, lengths, coefficients, chebyshev.integral)
+    integrals = four_c_squared_by_clamp(alphas, F, lengths, coefficients, chebyshev.integral)
     for k in range(len(alphas)):
         c = (1 + HULL_SETTINGS.enlargement_fraction) * sqrt(integrals[k]) / 2
         smallest = _smaller_region(smallest, (sqrt(alphas[k] * max_weighted_force), c), max_c)

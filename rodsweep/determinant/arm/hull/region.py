@@ -22,7 +22,7 @@ class HullSettings(KernelConstants):
     end_distance_fraction: float = 1e-9
     """Distance of the first and last Chebyshev point from the ends of an interval between breaks, divided by
     the length of the interval, so that no point lies on a jump."""
-    min_remainder: float = 0.1
+    min_one_minus_c: float = 0.1
     """Hulls with 1 - c below this number are not used: they are too large to be useful."""
     c_doubling_measure: float = 0.15
     """The smallest hull has the least a^2 (1 + (c/c_doubling_measure)^4), which is 2 a^2 at this c."""
@@ -34,7 +34,7 @@ class HullSettings(KernelConstants):
     """Number of supporting lines of the hull tried for the distance of a point w from the hull."""
     max_cached_materials: int = 16
     """Maximum number of materials whose points are cached: it bounds the memory and changes no number."""
-    weight_factors: tuple[float, ...] = (0.0, 0.5, 1.0)
+    load_term_factors: tuple[float, ...] = (0.0, 0.5, 1.0)
     """Factors of |F| sqrt(c2 c3 gamma3/gamma2) in the varying weights alpha that are tried."""
 
 

@@ -11,7 +11,7 @@ from .region import HULL_SETTINGS
 
 
 @compiled
-def least_squared_norm(alphas: Array, coefficients: Array, max_weighted_force: float) -> float:
+def smallest_squared_norm(alphas: Array, coefficients: Array, max_weighted_force: float) -> float:
     """The smallest a^2 of the constant weights `alphas`, (n,). a: largest norm, along all arms, of the matrix
     given in `rodsweep.determinant.arm.hull.hull`. coefficients: coefficients at all points, (6, points).
     max_weighted_force: the largest F^2 c3/gamma2."""
@@ -48,21 +48,24 @@ def trial_constant_weights(coefficients: Array) -> Array:
 @compiled
 def varying_weight_norms(F: Array, lengths: Array, coefficients: Array, derivative: Array) -> Array:
     """a^2 of each weight alpha(u) = g/(nu + f |F| sqrt(c2 c3 gamma3/gamma2)), f from
-    `HULL_SETTINGS.weight_factors`: the largest squared norm of the hull's matrix along all arms, (factors,).
+    `HULL_SETTINGS.load_term_factors`: the largest squared norm of the hull's matrix along all arms,
+    (factors,).
 
     F: (n,). lengths: (pieces,). coefficients: coefficients, (6, n, pieces, points). derivative:
     (points, points), matrix of `ChebyshevMatrices`.
     """
-    squared_norms = np.zeros(len(HULL_SETTINGS.weight_factors))
+    squared_norms = np.zeros(len(HULL_SETTINGS.load_term_factors))
     points = coefficients.shape[3]
     level = np.empty(points)
     log_alpha = np.empty(points)
-    for m in range(len(HULL_SETTINGS.weight_factors)):
+    for m in range(len(HULL_SETTINGS.load_term_factors)):
         for arm in range(len(F)):
             for interval in range(len(lengths)):
                 for i in range(points):
                     nu, c2, c3, gamma2, gamma3, g = coefficients[:, arm, interval, i]
-                    level[i] = HULL_SETTINGS.weight_factors[m] * abs(F[arm]) * sqrt(c2 * c3 * gamma3 / gamma2)
+                    level[i] = (
+                        HULL_SETTINGS.load_term_factors[m] * abs(F[arm]) * sqrt(c2 * c3 * gamma3 / gamma2)
+                    )
                     log_alpha[i] = log(g / (nu + level[i]))
                 for i in range(points):
                     nu, c2, c3, gamma2, gamma3, g = coefficients[:, arm, interval, i]
@@ -79,7 +82,9 @@ def varying_weight_norms(F: Array, lengths: Array, coefficients: Array, derivati
 
 
 @compiled
-def clamp_integrals(alphas: Array, F: Array, lengths: Array, coefficients: Array, integral: Array) -> Array:
+def four_c_squared_by_clamp(
+    alphas: Array, F: Array, lengths: Array, coefficients: Array, integral: Array
+) -> Array:
     """4 c^2 = int (g - alpha nu)^2/(alpha c2) (int_0^u c3) du, largest of all arms, for each constant alpha,
     (alphas,).
 

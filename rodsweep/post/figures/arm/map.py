@@ -18,7 +18,7 @@ from matplotlib.patches import Patch
 
 from ....arrays import Array
 from ....config.arm.status import CRUSHED, FLUTTER_UNKNOWN, NO_FLUTTER, NO_WALL, NOT_SLENDER
-from ....model.arm.drag import DRAG_NAMES
+from ....model.arm.drag import DRAG_ESTIMATE_NAMES
 from ....model.arm.neglected import Validity
 from ....results.file.view import ResultView
 from ...summary.arm.arm import quantity_words
@@ -28,7 +28,7 @@ from ..request import FigureRequest
 from .panels import PANEL_MAKERS, Panel
 from .quantities import NO_BREAK_SPACE, constant_quantities_text, in_typed_unit, quantity_text
 
-MAP_KINDS = ("map", "maps")
+ARM_MAP_FIGURE_KINDS = ("map", "maps")
 """Values of `--what` that request this figure."""
 COVERED_CELL_LOOKS: tuple[tuple[str, int, str, dict[str, Any]], ...] = (
     ("model_applies", Validity.doubtful, "model doubtful", {"fc": "none", "hatch": "..."}),
@@ -108,7 +108,7 @@ def can_draw_arm_map(request: FigureRequest) -> bool:
     """Whether `draw_arm_map` draws the requested figure: quantities of the arm vary in the only file, and the
     user has not chosen another kind of figure."""
     view = request.views[0]
-    has_other_options = request.what not in (None, *MAP_KINDS) or request.points or request.roots
+    has_other_options = request.what not in (None, *ARM_MAP_FIGURE_KINDS) or request.points or request.roots
     has_map = any(len(view.variables[name]) > 1 for name in view.arm_axes)
     return len(request.views) == 1 and has_map and view.task in PANEL_MAKERS and not has_other_options
 
@@ -141,9 +141,9 @@ def _draw_map(axes: Axes, panel: Panel, view: ResultView, names: tuple[str, str]
         axes, (cell_edges(x_values), cell_edges(y_values)), panel.values[index].T, panel.label
     )
     handles: list[Artist] = []
-    if panel.zero_label and values.min() < 0 < values.max():
+    if panel.zero_contour_label and values.min() < 0 < values.max():
         axes.contour(x_values, y_values, values, [0.0], colors="k", linewidths=1.4)
-        handles.append(Line2D([], [], color="k", lw=1.4, label=panel.zero_label))
+        handles.append(Line2D([], [], color="k", lw=1.4, label=panel.zero_contour_label))
     style.scale_axis(axes, "x", x_values)
     style.scale_axis(axes, "y", y_values)
     style.label_outer(axes, x_label, y_label)
@@ -165,7 +165,7 @@ def _draw_curves(axes: Axes, panel: Panel, view: ResultView, name: str, index: A
     style.scale_axis(axes, "x", x_values)
     if name == DRAG_AXIS:
         axes.set_xticks(
-            x_values, [DRAG_NAMES[int(drag)].replace("_", "\n") for drag in x_values], rotation=90
+            x_values, [DRAG_ESTIMATE_NAMES[int(drag)].replace("_", "\n") for drag in x_values], rotation=90
         )
     has_several_lines = sum(isinstance(artist, Line2D) for artist in handles) > 1
     style.label_outer(axes, label, panel.lines_label if has_several_lines else panel.label)
@@ -185,7 +185,7 @@ def _draw_drag_band(
     bounds = (bound.reduce(values_by_drag, axis=-1) for bound in (np.fmin, np.fmax))
     x_values, _ = _axis_values_and_label(view, x_name)
     axes.fill_between(x_values, *bounds, color=colour, alpha=BAND_OPACITY, lw=0, zorder=1)
-    line_name = DRAG_NAMES[int(view.variables[DRAG_AXIS].min())].replace("_", " ")
+    line_name = DRAG_ESTIMATE_NAMES[int(view.variables[DRAG_AXIS].min())].replace("_", " ")
     return [Patch(color="0.3", alpha=BAND_OPACITY, lw=0, label=f"range of drag (line: {line_name})")]
 
 

@@ -17,13 +17,13 @@ THRESHOLD_KIND_WORDS = {"hopf": "flutter", "onset": "onset of oscillations", "re
 class Panel:
     """Content of one panel. label: name and unit of the result. values: result at all points of the file.
     threshold_lines: several results that are drawn against one quantity in one panel, by legend entry; empty
-    if only `values` are drawn. zero_label: legend entry of the contour of zero in a map; empty if no contour
-    is drawn."""
+    if only `values` are drawn. zero_contour_label: legend entry of the contour of zero in a map; empty if no
+    contour is drawn."""
 
     label: str
     values: Array
     threshold_lines: Mapping[str, Array] = field(default_factory=dict)
-    zero_label: str = ""
+    zero_contour_label: str = ""
     lines_label: str = ""
     """Label of the vertical axis if `threshold_lines` are drawn."""
     no_value_label: str = "nothing computed"
@@ -53,7 +53,7 @@ def _mode_panels(view: ResultView) -> list[Panel]:
     """Panels of the tasks `spectrum` and `modes`: growth rate and frequency of the leading mode."""
     rates, frequencies = (view.variables[name][..., 0] for name in ("growth_rate_si", "frequency_hz"))
     return [
-        Panel("leading growth rate (1/s)", rates, zero_label="growth rate 0"),
+        Panel("leading growth rate (1/s)", rates, zero_contour_label="growth rate 0"),
         Panel("leading frequency (Hz)", np.abs(frequencies)),
     ]
 

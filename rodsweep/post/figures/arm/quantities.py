@@ -8,10 +8,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ....arrays import Array
-from ....config.arm.axes import NON_LOAD_KEYS, PARAMETER_STORED_ALONG
+from ....config.arm.axes import NON_LOAD_KEYS, STORAGE_AXIS_OF_QUANTITY
 from ....config.arm.shape import MATERIAL_KEYS
 from ....model.arm.arm import SlenderArm
-from ....model.arm.drag import DRAG_NAMES
+from ....model.arm.drag import DRAG_ESTIMATE_NAMES
 from ....model.arm.quantities import ALL_QUANTITIES, ARM_SCALES, LOAD_OF_RATIO
 from ....model.units import value_in_unit
 from ....results.file.view import ResultView
@@ -20,7 +20,7 @@ from ..style import heading_text
 
 NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
 """No-break space, used between a number and its unit; a line is never broken at this character."""
-SAME_NUMBER_TOLERANCE = 1e-9
+EQUAL_PARAMETER_TOLERANCE = 1e-9
 """A stored parameter equals the parameter computed from the arm if the relative difference is at most this
 number."""
 
@@ -35,9 +35,9 @@ def in_typed_unit(view: ResultView, name: str, values: Array, si: str = "") -> t
 
 def quantity_text(view: ResultView, name: str, value: float) -> str:
     """Name and value of the quantity `name` in the unit typed by the user, such as "length 12 cm". value: in
-    SI units; for a drag, index in DRAG_NAMES."""
+    SI units; for a drag, index in DRAG_ESTIMATE_NAMES."""
     if name == "drag":
-        return f"{name}{NO_BREAK_SPACE}{DRAG_NAMES[int(value)].replace('_', NO_BREAK_SPACE)}"
+        return f"{name}{NO_BREAK_SPACE}{DRAG_ESTIMATE_NAMES[int(value)].replace('_', NO_BREAK_SPACE)}"
     converted, unit = in_typed_unit(view, name, np.array([value]))
     unit = unit.replace("^3", "$^3$").replace("*", " ").replace(" ", NO_BREAK_SPACE)
     return f"{quantity_words(name)}{NO_BREAK_SPACE}{converted[0]:.4g}{NO_BREAK_SPACE}{unit}".rstrip(
@@ -76,7 +76,7 @@ def quantity_at_point(view: ResultView, name: str, number: int) -> float:
         return float(values.ravel()[0])
     if view.is_grid:  # the quantity is stored along the parameter that depends on it
         position = np.unravel_index(number - 1, view.variables["status"].shape)
-        return float(values[position[view.parameters.index(PARAMETER_STORED_ALONG[name])]])
+        return float(values[position[view.parameters.index(STORAGE_AXIS_OF_QUANTITY[name])]])
     return float(values.ravel()[number - 1])
 
 
@@ -106,7 +106,7 @@ def replaced_parameters(view: ResultView, number: int) -> dict[str, float]:
         for name_of_quantity in given_quantities(view)
     }
     if "drag" in quantities:
-        quantities["drag"] = DRAG_NAMES[int(quantities["drag"])]
+        quantities["drag"] = DRAG_ESTIMATE_NAMES[int(quantities["drag"])]
     arm = _arm_of(view, quantities)
     stored_parameters = {name: float(view.point_columns[name][number - 1]) for name in view.parameters}
     if arm.load:
@@ -114,5 +114,5 @@ def replaced_parameters(view: ResultView, number: int) -> dict[str, float]:
     return {
         name: value
         for name, value in stored_parameters.items()
-        if name == "F" or not isclose(value, getattr(arm, name), rel_tol=SAME_NUMBER_TOLERANCE)
+        if name == "F" or not isclose(value, getattr(arm, name), rel_tol=EQUAL_PARAMETER_TOLERANCE)
     }

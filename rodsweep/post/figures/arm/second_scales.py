@@ -19,11 +19,11 @@ from ....results.file.view import ResultView
 from ..style import CRITICAL_FORCE_LABEL, LABELS
 from .quantities import shear_stiffness
 
-SCALES_WITH_SECOND_AXIS = ("linear", "log")
+SUPPORTED_AXIS_SCALES = ("linear", "log")
 """Scales of an axis for which matplotlib places the ticks of a second scale correctly."""
 MAX_TICK_INTERVALS = 5
 """Largest number of intervals between the ticks of the second scale."""
-AXIS_ROUNDING_TOLERANCE = 1e-9
+TICK_ROUNDING_TOLERANCE = 1e-9
 """Relative rounding error of k2 at a tick of Poisson's ratio."""
 LOAD_WORDS = {"pressure": "pressure on the tip", "force": "force at the tip"}
 """Label of the second scale, by kind of load."""
@@ -48,7 +48,7 @@ def _add_si_scales(figure: Figure, views: Sequence[ResultView]) -> None:
     for axes in list(figure.axes):
         for letter in ("x", "y"):
             label, scale = (getattr(axes, f"get_{letter}{what}")() for what in ("label", "scale"))
-            if label in (LABELS["F"], CRITICAL_FORCE_LABEL) and scale in SCALES_WITH_SECOND_AXIS:
+            if label in (LABELS["F"], CRITICAL_FORCE_LABEL) and scale in SUPPORTED_AXIS_SCALES:
                 _add_second_scale(_outermost_panel(axes, letter), letter, unit, load_word)
 
 
@@ -68,8 +68,8 @@ def _add_poisson_scales(figure: Figure, view: ResultView) -> None:
             ticks = ticks[(ticks >= ratios.min()) & (ticks <= ratios.max())]
             positions = np.array([shear_stiffness(view, float(ratio)) for ratio in ticks])
             # The ends of the range are drawn, whatever the rounding error.
-            is_visible = (positions >= limits[0] * (1 - AXIS_ROUNDING_TOLERANCE)) & (
-                positions <= limits[1] * (1 + AXIS_ROUNDING_TOLERANCE)
+            is_visible = (positions >= limits[0] * (1 - TICK_ROUNDING_TOLERANCE)) & (
+                positions <= limits[1] * (1 + TICK_ROUNDING_TOLERANCE)
             )
             poisson_axis = _opposite_axis(panel, letter)
             poisson_axis.set(**{f"{letter}label": "Poisson's ratio"})

@@ -33,11 +33,11 @@ def hatch_invalid_points(figure: Figure, views: Sequence[ResultView]) -> None:
     the axes are parameters of the file; adds notes to the title. Without such points, the figure is
     unchanged."""
     validities = [view.variables["model_applies"] for view in views if "model_applies" in view.variables]
-    notes = [_hatched_note(figure, views, validities, validity) for validity in VALIDITY_HATCHES]
+    notes = [_hatch_and_note(figure, views, validities, validity) for validity in VALIDITY_HATCHES]
     figure.suptitle("\n".join(filter(None, (figure.get_suptitle(), *notes))))
 
 
-def _hatched_note(
+def _hatch_and_note(
     figure: Figure, views: Sequence[ResultView], validities: Sequence[np.ndarray], validity: Validity
 ) -> str:
     """Hatches the points of a figure with a validity of the model, and returns the note for the title; empty

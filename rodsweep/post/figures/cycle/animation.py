@@ -15,7 +15,7 @@ from ....results.file.view import ResultView
 from ...output_files import replaced_file
 from ..layout.fitting import fit_layout
 from ..style import BLUE, VERMILION
-from .portrait import draw_clamp, draw_force_arrow, draw_tip_path, set_frame
+from .portrait import draw_clamp, draw_force_arrow, draw_tip_path, set_common_limits
 from .selection import SHAPE_VARIABLE_NAMES, CycleSelection, StoredCycle, chosen_cycles
 
 FILM_SUFFIXES = (".gif", ".mp4")
@@ -26,7 +26,7 @@ MIN_SHAPES = 8
 """Smallest number of stored shapes per period; with fewer shapes the motion is not recognisable."""
 EARLIER_SHAPE_COUNT = 6
 """Number of earlier shapes drawn in fading colours behind the arm."""
-TIME_DIGITS = 3
+PERIOD_DIGITS = 3
 """Number of significant digits of the period. The running time is printed with as many decimals as the
 period."""
 TIME_TEXT_HEIGHT = 0.08
@@ -61,7 +61,7 @@ def prepared_animation(selection: CycleSelection) -> tuple[Figure, list["MovingA
     figure.suptitle(selection.title)
     panels[0].set_ylabel(cycles[0].units.axis_label("y"))
     arms = [MovingArm(axes, cycle) for axes, cycle in zip(panels, cycles, strict=True)]
-    set_frame(panels, cycles)
+    set_common_limits(panels, cycles)
     low, high = panels[0].get_ylim()  # shared by all panels
     panels[0].set_ylim(low - TIME_TEXT_HEIGHT * (high - low), high)
     for arm in arms:
@@ -112,6 +112,6 @@ class MovingArm:
         self.arrow.remove()
         self.arrow = draw_force_arrow(self.axes, x, y, theta, VERMILION, self.cycle.units.length)
         time = self.cycle.period * frame_index / self.frames
-        decimals = max(0, TIME_DIGITS - 1 - floor(log10(self.cycle.period)))
+        decimals = max(0, PERIOD_DIGITS - 1 - floor(log10(self.cycle.period)))
         time_unit = self.cycle.units.names[1]
         self.text.set_text(f"$t$ = {time:.{decimals}f} {time_unit} = {frame_index / self.frames:.2f} $T$")

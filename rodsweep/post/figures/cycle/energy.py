@@ -12,9 +12,9 @@ from ...summary.errors import relative_power_error
 from ...summary.number_texts import rounded_text
 from ..arm.quantities import NO_BREAK_SPACE
 from ..style import BLUE, GREEN, VERMILION, draw_legend_below
-from .selection import ENERGY_BUDGET_VARIABLE_NAMES, StoredCycle, chosen_cycles, power_in_tex
+from .selection import ENERGY_BUDGET_VARIABLE_NAMES, StoredCycle, chosen_cycles, rounded_number_in_tex
 
-RATE_MARK_COUNT = 24
+ENERGY_RATE_MARK_COUNT = 24
 """Number of times at which marks of dU/dt are drawn over the curve of injection minus dissipation."""
 
 
@@ -34,7 +34,7 @@ def draw_energy(view: ResultView, points: Sequence[int], is_narrow: bool = False
     )
     for panels, cycle in zip(panel_rows.T, cycles, strict=True):
         _draw_budget(panels, cycle)
-        panels[0].set_title(cycle.heading(cycle.period_text, *_budget_words(cycle)))
+        panels[0].set_title(cycle.heading(cycle.period_text, *_power_and_imbalance_texts(cycle)))
     panel_rows[1, 0].set_ylim(bottom=min(0.0, panel_rows[1, 0].get_ylim()[0]))
     for axes, label in zip(panel_rows[:, 0], cycles[0].units.energy_and_power_labels, strict=True):
         axes.set_ylabel(label)
@@ -45,12 +45,12 @@ def draw_energy(view: ResultView, points: Sequence[int], is_narrow: bool = False
     return figure, "energy, injection and dissipation over a cycle" + selection.omissions
 
 
-def _budget_words(cycle: StoredCycle) -> tuple[str, str]:
+def _power_and_imbalance_texts(cycle: StoredCycle) -> tuple[str, str]:
     """Returns (mean power of the force, relative energy imbalance) as text, the power in the unit of the
     panels, rounded according to its error."""
     cycle_values = {name: float(cycle.values[name]) for name in ("injection_mean", "energy_imbalance")}
     error = relative_power_error(cycle.values)
-    mean_text = power_in_tex(
+    mean_text = rounded_number_in_tex(
         rounded_text(cycle_values["injection_mean"], abs(cycle_values["injection_mean"]) * float(error))
     )
     unit = cycle.units.names[3]
@@ -78,7 +78,7 @@ def _draw_budget(panels: Sequence[Axes], cycle: StoredCycle) -> None:
     middle.plot(time, dissipation, color=BLUE, lw=1.5, ls="--", label="dissipation")
     bottom.axhline(0, color="0.8", lw=0.6, zorder=0)
     bottom.plot(time, injection - dissipation, color=GREEN, lw=1.5, label=r"injection $-$ dissipation")
-    marks = np.arange(RATE_MARK_COUNT) / RATE_MARK_COUNT
+    marks = np.arange(ENERGY_RATE_MARK_COUNT) / ENERGY_RATE_MARK_COUNT
     rate = interpolate_samples(time_derivative(cycle.values["energy"]), marks) / cycle.period
     rate = rate * cycle.units.power_of_rate
     bottom.plot(marks * cycle.period, rate, "o", color="k", mfc="none", ms=3.5, label="derivative of $U$")

@@ -25,7 +25,7 @@ from ....sweep.points.points import ParameterLine
 from ...located_thresholds import LocatedThreshold, StoredThresholds
 from .. import style
 from .amplitudes.hopf_marks import HOPF_SYMBOL
-from .point_map import PointGrid, axis_coordinates, cell_edges, point_map
+from .point_map import PointGrid, axis_coordinates_and_inverse, cell_edges, point_map
 from .selection import shared_and_own_of_arms
 from .units_and_labels import units_of_files
 
@@ -43,10 +43,10 @@ UNLISTED_STATUS_LOOKS = (("#BFA893", "----"), ("#8F7A68", "oooo"))
 """(colour, hatch) of cells with a status that is not in STATUS_LOOKS, in order of appearance."""
 PANEL_WIDTH_POINTS = 250
 """Width of a panel, in points (1/72 inch)."""
-MARKER_SIZES = 1.0, 4.0
+MARKER_SIZE_LIMITS = 1.0, 4.0
 """Smallest and largest size, in points, of the open marker of an unstable cycle. Between these limits the
 size is half a cell."""
-CYCLE_HATCH_COLOUR = "0.25"
+CYCLE_MAP_GREY = "0.25"
 """Grey of the hatches of cells without a cycle, and of the markers of unstable cycles."""
 MAX_LEGEND_ROW_ENTRIES = 6
 """Largest number of entries in one row of the legend."""
@@ -124,9 +124,9 @@ def _draw_statuses(axes: Axes, points: PointGrid, statuses: NDArray[np.str_]) ->
         if word in CYCLE_STATUSES or not cells.any():
             continue
         colour, hatch = STATUS_LOOKS.get(word) or next(unlisted_looks)
-        keywords: dict[str, Any] = {"facecolor": colour, "hatch": hatch, "edgecolor": CYCLE_HATCH_COLOUR}
+        keywords: dict[str, Any] = {"facecolor": colour, "hatch": hatch, "edgecolor": CYCLE_MAP_GREY}
         for row, (bottom, top) in zip(cells, pairwise(cell_edges(points.y).tolist()), strict=True):
-            runs = _runs_of_cells(row, cell_edges(points.x))
+            runs = _run_edges_and_widths(row, cell_edges(points.x))
             axes.broken_barh(runs, (bottom, top - bottom), lw=0, **keywords)
         handles.append(Patch(label=word.replace("_", " "), lw=0.5, **keywords))
     return handles
@@ -137,14 +137,14 @@ def _mark_unstable(axes: Axes, points: PointGrid, unstable: NDArray[np.bool_]) -
     entry. The list is empty if no cell is marked."""
     if not unstable.any():
         return []
-    look: dict[str, Any] = {"marker": "o", "mfc": "white", "mec": CYCLE_HATCH_COLOUR, "ls": "", "mew": 0.6}
+    look: dict[str, Any] = {"marker": "o", "mfc": "white", "mec": CYCLE_MAP_GREY, "ls": "", "mew": 0.6}
     row, column = np.nonzero(unstable)
-    marker_size = float(np.clip(PANEL_WIDTH_POINTS / max(unstable.shape) / 2, *MARKER_SIZES))
+    marker_size = float(np.clip(PANEL_WIDTH_POINTS / max(unstable.shape) / 2, *MARKER_SIZE_LIMITS))
     axes.plot(points.x[column], points.y[row], ms=marker_size, **look)
-    return [Line2D([], [], label="unstable cycle", ms=MARKER_SIZES[1], **look)]
+    return [Line2D([], [], label="unstable cycle", ms=MARKER_SIZE_LIMITS[1], **look)]
 
 
-def _runs_of_cells(mask: NDArray[np.bool_], edges: Array) -> list[tuple[float, float]]:
+def _run_edges_and_widths(mask: NDArray[np.bool_], edges: Array) -> list[tuple[float, float]]:
     """(left edge, width) of each run of neighbouring chosen cells in a row. mask: mask of the cells, (n,).
     edges: edges of the cells, (n + 1,)."""
     steps = np.diff(np.concatenate(([0], mask.astype(int), [0])))
@@ -172,7 +172,7 @@ def hopf_lines(points: PointGrid, view: ResultView) -> list[Array]:
     Hopf points; between rows, linearly on the scale of y. A contour therefore passes through the located Hopf
     points of every row. Without a change of sign of the growth rate, the list is empty.
     """
-    (x, x_back), (y, y_back) = (axis_coordinates(values) for values in (points.x, points.y))
+    (x, x_back), (y, y_back) = (axis_coordinates_and_inverse(values) for values in (points.x, points.y))
     to_scale = np.log if style.is_logarithmic(points.x) else np.asarray
     growth = view.variables["linear_growth_rate"].ravel()[points.point_indices]
     zeros = [to_scale(hopf_values) for hopf_values in _hopf_points(points, view)]

@@ -11,7 +11,7 @@ from ....arrays import Array
 from ....errors import InputError
 from ....results.file.view import ResultView
 from ...summary.summary_lines import varied_parameters_at_points
-from ..grid_slices import left_out_clause
+from ..grid_slices import infinite_values_clause
 from ..style import is_logarithmic
 
 
@@ -55,7 +55,7 @@ def point_map(view: ResultView) -> PointGrid:
             f"{view.path} has fewer than two finite values of {names[0]} or {names[1]}; a map needs two of "
             "each"
         )
-    omissions = left_out_clause(columns, names)
+    omissions = infinite_values_clause(columns, names)
     constants = {name: float(values[0]) for name, values in columns.items() if name not in names}
     indices = indices[np.ix_(*finite[::-1])]
     return PointGrid((names[0], names[1]), x[finite[0]], y[finite[1]], indices, constants, omissions)
@@ -80,7 +80,7 @@ def _varied_parameters_clause(names: list[str]) -> str:
     return f"only {names[0]} varies; without --what maps, lines over {names[0]} are drawn"
 
 
-def axis_coordinates(values: Array) -> tuple[Array, Callable[[Array], Array]]:
+def axis_coordinates_and_inverse(values: Array) -> tuple[Array, Callable[[Array], Array]]:
     """Returns (coordinates, inverse): the values, (n,), on the linear or logarithmic scale of their axis, and
     the function that converts coordinates to values."""
     return (np.log(values), np.exp) if is_logarithmic(values) else (values, np.asarray)
@@ -88,7 +88,7 @@ def axis_coordinates(values: Array) -> tuple[Array, Callable[[Array], Array]]:
 
 def cell_edges(values: Array) -> Array:
     """Edges, (n + 1,), of the cells around increasing `values`, (n,): midpoints on the scale of the axis."""
-    centres, from_coordinates = axis_coordinates(values)
+    centres, from_coordinates = axis_coordinates_and_inverse(values)
     midpoints = (centres[1:] + centres[:-1]) / 2
     ends = (2 * centres[0] - midpoints[0], 2 * centres[-1] - midpoints[-1])
     return from_coordinates(np.array([ends[0], *midpoints, ends[1]]))

@@ -46,10 +46,10 @@ TIP_HEIGHT = 1.0
 PANEL_PADDING = 0.1
 """Space around panels, in inches. Matplotlib's layout misjudges the labels of panels with equal scales by up
 to half this space."""
-TEXT_HEIGHT = 1.4
+TOTAL_TEXT_HEIGHT = 1.4
 """Height of all labels and headings above and below the panels, in inches."""
-NARROW_TEXT_HEIGHT = 2.0
-"""Height corresponding to `TEXT_HEIGHT` on a narrow page, with the colour bar below the panels."""
+NARROW_TOTAL_TEXT_HEIGHT = 2.0
+"""Height corresponding to `TOTAL_TEXT_HEIGHT` on a narrow page, with the colour bar below the panels."""
 UNUSED_COLOUR_FRACTION = 0.14
 """Fraction of the colour map that is not used: the yellow end, which is invisible on white paper."""
 
@@ -82,7 +82,7 @@ def draw_portrait(view: ResultView, points: Sequence[int], is_narrow: bool = Fal
             draw_start_of_motion(upper, lower, cycle)
         else:
             _draw_tip_motion(upper, lower, cycle, end)
-    set_frame(shape_panels, cycles)
+    set_common_limits(shape_panels, cycles)
     shape_panels[0].set_ylabel(cycles[0].units.axis_label("y"))
     label_tip_axes(*tip_panels[0], cycles[0].units)
     _draw_phase_bar(figure, shape_panels, colours, step, is_narrow)
@@ -106,7 +106,7 @@ def _new_panels(
         table["x"].sharex(table["y"])
         return figure, [table["shapes"]], [(table["x"], table["y"])]
     shapes_height = SHAPES_WIDTH * (y_max - y_min) / (x_max - x_min)
-    text_height = NARROW_TEXT_HEIGHT if is_narrow else TEXT_HEIGHT
+    text_height = NARROW_TOTAL_TEXT_HEIGHT if is_narrow else TOTAL_TEXT_HEIGHT
     figure_size = SHAPES_WIDTH * cycle_count + 1.2, shapes_height + 2 * TIP_HEIGHT + text_height
     figure = Figure(figsize=figure_size, layout=ConstrainedLayoutEngine(w_pad=PANEL_PADDING))
     heights = (shapes_height, TIP_HEIGHT, TIP_HEIGHT)
@@ -168,7 +168,7 @@ def draw_clamp(axes: Axes, length: float) -> None:
     axes.plot([0, 0], [-half_height, half_height], color="k", lw=1.4, zorder=5)
 
 
-def set_frame(panels: Sequence[Axes], cycles: Sequence[StoredCycle]) -> None:
+def set_common_limits(panels: Sequence[Axes], cycles: Sequence[StoredCycle]) -> None:
     """Sets the same limits in all panels, with equal scales for x and y, so that all cycles fit."""
     x_limits, y_limits = limits_of_shapes(cycles)
     for axes in panels:

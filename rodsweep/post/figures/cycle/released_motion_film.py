@@ -13,7 +13,7 @@ from ....arrays import Array
 from ....solve_progress import SolvePosition, report
 from ..style import BLUE
 from .portrait import SHAPE_MARGIN, WALL_DEPTH, draw_clamp
-from .tip_path import PATH_SEGMENT_COUNT, smooth_tip_path
+from .tip_path import SEGMENTS_BETWEEN_SHAPES, smooth_tip_path
 
 FRAME_SIZE = (3.6, 4.0)
 """Width and height of a frame, in inches."""
@@ -56,7 +56,7 @@ def motion_film(motion: FilmedMotion) -> bytes:
             for k in range(frames):
                 report(lambda k=k: SolvePosition(f"frame {k + 1} of {frames}", k / frames))  # type: ignore[misc]
                 rod.set_data(motion.x[k], motion.y[k])
-                path.set_data(*tip_path[: k * PATH_SEGMENT_COUNT + 1].T)
+                path.set_data(*tip_path[: k * SEGMENTS_BETWEEN_SHAPES + 1].T)
                 axes.set_title(f"$t$ = {k * motion.step:.3g} {motion.units[1]}")
                 writer.grab_frame()
         return output.read_bytes()

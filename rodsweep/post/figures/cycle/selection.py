@@ -73,7 +73,7 @@ class StoredCycle:
         """A period with its unit as TeX. value: the period in `unit`. symbol: symbol before the equals sign,
         or empty."""
         error = float(self.values["period_error"])
-        return rf"${symbol}{{=}}$ ${power_in_tex(rounded_text(value, abs(value) * error))}\,{unit}$"
+        return rf"${symbol}{{=}}$ ${rounded_number_in_tex(rounded_text(value, abs(value) * error))}\,{unit}$"
 
     @property
     def tip(self) -> tuple[Array, Array]:
@@ -93,7 +93,7 @@ class StoredCycle:
         return "\n".join(filter(None, (self.label, *lines)))
 
 
-def power_in_tex(number: str) -> str:
+def rounded_number_in_tex(number: str) -> str:
     """TeX for a number written by `rounded_text`, with the power of ten as a superscript."""
     mantissa, _, power = number.partition("e")
     return rf"{mantissa}\times10^{{{int(power)}}}" if power else mantissa

@@ -4,14 +4,14 @@ import numpy as np
 
 from ....arrays import Array
 
-PATH_SEGMENT_COUNT = 8
+SEGMENTS_BETWEEN_SHAPES = 8
 """Number of straight segments that are drawn between two shapes. With 32 shapes per return of the tip, two
 segments enclose an angle of 1.4 degrees on average, and of 12 degrees at sharp turns."""
 
 
 def smooth_tip_path(tips: Array, is_closed: bool) -> Array:
-    """Path through the tips of shapes at equal distances in time, (n, 2): PATH_SEGMENT_COUNT segments between
-    two tips, (vertices, 2).
+    """Path through the tips of shapes at equal distances in time, (n, 2): SEGMENTS_BETWEEN_SHAPES segments
+    between two tips, (vertices, 2).
 
     Each coordinate is a cubic polynomial between two shapes, and its rate at a shape is the central
     difference of the neighbouring shapes. is_closed: whether the last shape is followed by the first; the
@@ -26,7 +26,7 @@ def smooth_tip_path(tips: Array, is_closed: bool) -> Array:
         tip_before = 3 * (tips[0] - tips[1]) + tips[2]
         tip_after = 3 * (tips[-1] - tips[-2]) + tips[-3]
         padded_tips = np.concatenate([[tip_before], tips, [tip_after]])
-    fraction = np.arange(PATH_SEGMENT_COUNT)[:, None] / PATH_SEGMENT_COUNT
+    fraction = np.arange(SEGMENTS_BETWEEN_SHAPES)[:, None] / SEGMENTS_BETWEEN_SHAPES
     slopes = (padded_tips[2:] - padded_tips[:-2]) / 2
     start, end = padded_tips[1:-2, None], padded_tips[2:-1, None]
     start_slope, end_slope = slopes[:-1, None], slopes[1:, None]

@@ -30,7 +30,7 @@ MAX_LAYOUT_PASSES = 6
 have been measured."""
 MIN_PANEL_HEIGHT = 0.45
 """Smallest height of a panel, in inches; two tick labels fit above each other."""
-SPARE_HEIGHT = 4.0
+MEASURING_EXTRA_HEIGHT = 4.0
 """Height, in inches, that is added to the figure while texts are measured, so that no panel vanishes."""
 EQUAL_SCALE_HEIGHT_FACTOR = 1.03
 """Factor on the required height of panels with equal scales. Without this factor, height and width would both
@@ -49,7 +49,7 @@ def fit_layout(figure: Figure, min_aspect: float = MIN_ASPECT) -> None:
     The width of the figure does not change. The height is increased only if the content does not fit.
     """
     width, height = figure.get_size_inches()
-    figure.set_size_inches(width, height + SPARE_HEIGHT)
+    figure.set_size_inches(width, height + MEASURING_EXTRA_HEIGHT)
     for _ in range(MAX_LAYOUT_PASSES):
         _position_panels(figure)
         changes = [_fit_legends(figure), _break_texts(figure), thin_ticks(figure)]
@@ -57,7 +57,9 @@ def fit_layout(figure: Figure, min_aspect: float = MIN_ASPECT) -> None:
             break
     # The texts fit; now remove the additional height. No text becomes longer by this.
     excess_height = _spare_height(figure, min_aspect)
-    figure.set_size_inches(width, max(height, min(height + SPARE_HEIGHT - excess_height, MAX_FIGURE_HEIGHT)))
+    figure.set_size_inches(
+        width, max(height, min(height + MEASURING_EXTRA_HEIGHT - excess_height, MAX_FIGURE_HEIGHT))
+    )
     for _ in range(MAX_LAYOUT_PASSES):
         _position_panels(figure)
         if not thin_ticks(figure):

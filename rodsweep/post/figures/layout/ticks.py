@@ -54,7 +54,7 @@ def _remove_overlapping_labels(axis: Axis, direction: int) -> bool:
         axis.set_ticks(ticks[::2], texts[::2])
         return True
     if isinstance(locator, LogLocator):
-        return _thin_decades(axis, locator)
+        return _thin_labels_within_decades(axis, locator)
     if isinstance(locator, SymmetricalLogLocator):
         return _thin_powers(axis, len(labels))
     if isinstance(locator, MaxNLocator) and len(labels) > 2:
@@ -76,7 +76,7 @@ def _thin_powers(axis: Axis, label_count: int) -> bool:
     return False
 
 
-def _thin_decades(axis: Axis, locator: LogLocator) -> bool:
+def _thin_labels_within_decades(axis: Axis, locator: LogLocator) -> bool:
     """Reduces the labelled numbers of each decade to 1 and 3, only 1, or only 2; returns whether labels were
     removed."""
     low, high = sorted(axis.get_view_interval())

@@ -106,7 +106,7 @@ def _followed_roots(view: ResultView, roots: str) -> Complex:
     return select_roots(view.by_point("growth_rate"), view.by_point("frequency"), roots)
 
 
-def _draw_all_roots(axes: Axes, x: Array, w: Complex, label: str) -> None:
+def _draw_all_roots_in_plane(axes: Axes, x: Array, w: Complex, label: str) -> None:
     """Draws all roots w, (n, modes), in the complex plane, in colours that show the parameter x, (n,)."""
     x_of_roots = np.broadcast_to(x[:, None], w.shape)
     dots = axes.scatter(w.real.ravel(), w.imag.ravel(), s=6, c=x_of_roots.ravel(), cmap="viridis_r")
@@ -118,14 +118,14 @@ def draw_line(view: ResultView, name: str, roots: str) -> Figure:
     """Figure of the roots against the parameter `name`, and in the complex plane."""
     figure = Figure(figsize=(5.2, 6.6), layout="constrained")
     top, bottom = figure.subplots(2, 1)
-    w = draw_roots(top, view, name, roots)
+    w = draw_roots_against_parameter(top, view, name, roots)
     mark_thresholds(top, view, name)
     if roots != "all":
         for i, colour in enumerate((style.BLUE, style.VERMILION)):
             bottom.plot(w[:, i].real, w[:, i].imag, ".-", color=colour, lw=0.8, ms=3)
             _draw_direction_arrow(bottom, w[:, i], colour)
     else:
-        _draw_all_roots(bottom, view.parameter_values[name], w, style.LABELS[name])
+        _draw_all_roots_in_plane(bottom, view.parameter_values[name], w, style.LABELS[name])
     bottom.axvline(0, color="0.5", lw=0.6)
     bottom.set(xlabel=r"$\mathrm{Re}\,\omega\,\tau_2$", ylabel=r"$\mathrm{Im}\,\omega\,\tau_2$")
     style.draw_legend_below(figure, top.get_legend_handles_labels()[0], 2)
@@ -133,7 +133,7 @@ def draw_line(view: ResultView, name: str, roots: str) -> Figure:
     return figure
 
 
-def draw_roots(axes: Axes, view: ResultView, name: str, roots: str) -> Complex:
+def draw_roots_against_parameter(axes: Axes, view: ResultView, name: str, roots: str) -> Complex:
     """Draws roots against the parameter `name`, and returns the roots, with NaN in gaps: followed roots, (n,
     2), or all roots, (n, modes)."""
     x = view.parameter_values[name]

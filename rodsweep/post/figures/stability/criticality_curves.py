@@ -5,7 +5,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from ....model.parameters import LINEAR_PARAMETERS
+from ....model.parameters import NON_OPTIONAL_LINEAR_PARAMETERS
 from ....results.file.view import ResultView
 from ..style import TEX_SYMBOLS
 from ..style import number_in_tex as number_text
@@ -59,7 +59,7 @@ def _draw_bautin_curves(
     curves = []
     third = next(
         parameter_name
-        for parameter_name in LINEAR_PARAMETERS
+        for parameter_name in NON_OPTIONAL_LINEAR_PARAMETERS
         if f"bautin_along_{parameter_name}" in variables
         and parameter_name not in (line_parameter, row_parameter)
     )

@@ -15,7 +15,7 @@ LABEL_FONTSIZE = 8
 OTHER_LABEL_POSITIONS = (0.5, 0.3, 0.7, 0.9)
 """Fractions of the visible length at which a symbol is placed if it would overlap another symbol at its own
 position, in order of preference."""
-LABEL_MARGIN = 1.5
+LABEL_BOX_FACTOR = 1.5
 """Factor by which the boxes of two symbols are enlarged before they are compared."""
 
 
@@ -65,6 +65,7 @@ def label_longest_curve(axes: Axes, paths: list[Array], name: str, length_fracti
 def _do_overlap(label: Annotation, other: Annotation) -> bool:
     """Whether two labels overlap, with a margin of half of their size, because panels shrink later."""
     first_box, second_box = (
-        annotation.get_window_extent().expanded(LABEL_MARGIN, LABEL_MARGIN) for annotation in (label, other)
+        annotation.get_window_extent().expanded(LABEL_BOX_FACTOR, LABEL_BOX_FACTOR)
+        for annotation in (label, other)
     )
     return bool(first_box.overlaps(second_box))

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ....arrays import Array
 from ....results.file.view import ResultView
 from ....results.layouts.branch import SPECIAL_KINDS
-from ...stability_curves import curves_bounding_stability
+from ...stability_curves import is_stability_boundary_by_curve
 from ..style import GREEN, TEX_SYMBOLS
 from .criticality_curves import draw_hopf_curves_by_criticality
 from .curve_labels import label_longest_curve, parts_at_lowest_force
@@ -32,7 +32,7 @@ CURVE_TOLERANCE = 1e-3
 number."""
 CYCLE_CURVE_STYLES = {"fold": ("folds of cycles", "#9B1B30"), "torus": ("torus points of cycles", GREEN)}
 """(legend entry, colour) of curves of special points of cycles, by kind."""
-DOUBLE_LOOK = "double eigenvalue", 1.0, ":"
+DOUBLE_EIGENVALUE_LOOK = "double eigenvalue", 1.0, ":"
 """(legend entry, width, style) of double eigenvalues in figures whose dashed curves are subcritical."""
 
 
@@ -45,7 +45,7 @@ def draw_boundary_curves(
     handles = (
         draw_hopf_curves_by_criticality(axes, view, line_parameter, row_parameter) if has_criticality else []
     )
-    curve_looks = {0: DOUBLE_LOOK} if has_criticality else CURVE_LOOKS
+    curve_looks = {0: DOUBLE_EIGENVALUE_LOOK} if has_criticality else CURVE_LOOKS
     for number, (word, width, style) in curve_looks.items():
         mask = variables["curve_kind"] == number
         if hopf_only and number == 0:
@@ -74,7 +74,7 @@ def draw_boundary_curves(
             symbol, position = CURVE_SYMBOLS[number]
             if paths:
                 label_longest_curve(
-                    axes, paths, symbol + constant_force_text(view, line_parameter, row_parameter), position
+                    axes, paths, symbol + plane_force_text(view, line_parameter, row_parameter), position
                 )
     return handles if hopf_only else handles + _mark_curve_folds(axes, view, line_parameter, row_parameter)
 
@@ -87,14 +87,14 @@ def masks_of_labelled_curves(
     variables = view.variables
     numbers = np.unique(variables["curve_number"][variables["curve_kind"] == kind])
     bounds = (
-        curves_bounding_stability(view, line_parameter, row_parameter)
+        is_stability_boundary_by_curve(view, line_parameter, row_parameter)
         if kind
         else dict.fromkeys(numbers.tolist(), True)
     )
     return [variables["curve_number"] == number for number in numbers if bounds[int(number)]]
 
 
-def constant_force_text(view: ResultView, line_parameter: str, row_parameter: str) -> str:
+def plane_force_text(view: ResultView, line_parameter: str, row_parameter: str) -> str:
     """Text " = 30" if F is 30 in the whole plane; empty if F is on an axis. line_parameter, row_parameter:
     see the module."""
     return "" if "F" in (line_parameter, row_parameter) else f" = {float(view.parameter_values['F'][0]):g}"
@@ -190,7 +190,7 @@ def _is_on_curve(
     return is_near
 
 
-def stored_crossings_text(view: ResultView) -> str:
+def unstored_crossings_text(view: ResultView) -> str:
     """Text above a figure whose curves pass only through some of the crossings of the rows, because the file
     has no room for all; else empty. Curves of crossings that are not stored are missing."""
     crossing_counts = view.variables["crossing_count"].clip(min=0)

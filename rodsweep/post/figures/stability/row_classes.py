@@ -18,7 +18,7 @@ CLASS_WORDS = {"class": STABILITY_CLASSES, "stable_states": STABLE_STATES}
 """(code, word) of the values of the variables `class` and `stable_states`, by variable."""
 ONSET_CODE = CROSSING_KINDS.index("onset")
 """Code of an onset of oscillations."""
-CHANGE_TOLERANCE = 1e-9
+MIN_DISTANCE_FROM_CHANGE = 1e-9
 """A point closer to a change of class than this relative distance is not used, because its class is
 uncertain."""
 STABLE_CLASS_ABOVE = {
@@ -100,7 +100,7 @@ def pixel_classes_of_row(
         is_in_row = rows == view.parameter_values[row_parameter][index]
         x = np.append(x, positions[is_in_row])
         classes = np.append(classes, classified[is_in_row])
-    decided = np.abs(x[:, None] - changes).min(axis=1, initial=np.inf) > CHANGE_TOLERANCE * np.abs(x)
+    decided = np.abs(x[:, None] - changes).min(axis=1, initial=np.inf) > MIN_DISTANCE_FROM_CHANGE * np.abs(x)
     pixels = (pixel_edges[1:] + pixel_edges[:-1]) / 2
     piece_of_pixels = np.searchsorted(changes, pixels)
     piece_of_points = np.searchsorted(changes, x)

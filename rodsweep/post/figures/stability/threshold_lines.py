@@ -32,9 +32,9 @@ DARKEST_SHADE = 0.0
 """Start of the used range of the colour map."""
 LIGHTEST_SHADE = 0.85
 """End of the used range of the colour map; lighter colours are invisible on white paper."""
-MIN_LINE_DISTANCE = 0.01
+MIN_DISTINCT_LINE_DISTANCE = 0.01
 """Two lines are drawn as one line if their distance, divided by the largest force, is below this number."""
-FORCE_AXIS_RATIO = 1.05
+FORCE_AXIS_MARGIN_FACTOR = 1.05
 """Upper limit of the axis of forces divided by the largest force; on a logarithmic axis also the smallest
 force divided by the lower limit."""
 
@@ -81,7 +81,7 @@ def draw_lines_of_files(views: Sequence[ResultView], x_name: str, search: str) -
     forces = np.sort(tables[np.isfinite(tables)])
     if style.is_logarithmic(forces):
         style.scale_axis(axes, "y", forces)
-        axes.set_ylim(forces[0] / FORCE_AXIS_RATIO, forces[-1] * FORCE_AXIS_RATIO)
+        axes.set_ylim(forces[0] / FORCE_AXIS_MARGIN_FACTOR, forces[-1] * FORCE_AXIS_MARGIN_FACTOR)
     axes.set_ylabel(style.CRITICAL_FORCE_LABEL)
     style.draw_legend_below(figure, handles, column_count=2)
     figure.suptitle("\n".join(filter(None, (style.constant_parameters_text(longest, x_name), search))))
@@ -120,9 +120,9 @@ def draw_selected_lines(
 
 def _draw_some_lines(panel: Axes, view: ResultView, x_name: str, second_name: str) -> int:
     """Draws thresholds against the parameter `x_name` for up to three different values of the parameter
-    `second_name`, see `_label_line_indices`; returns the number of values."""
+    `second_name`, see `_first_middle_and_last_line`; returns the number of values."""
     table = _first_force_table(view, x_name, second_name)
-    indices = _label_line_indices(table)
+    indices = _first_middle_and_last_line(table)
     groups = _groups_of_equal_lines({index: table[index] for index in indices})
     for line, group in zip(LINE_STYLES, groups, strict=False):
         _draw_threshold_lines(panel, _abscissa_values(view, x_name), table[group[0]], {"ls": line, "ms": 2})
@@ -179,7 +179,7 @@ def _label_axes(axes: Axes, view: ResultView, x_name: str, table: Array) -> None
     style.scale_axis(axes, "x", np.sort(x[np.isfinite(x)]))
     axes.set_xlabel(style.INVERSE_DRAG_LABEL if x_name == "gamma3" else style.LABELS[x_name])
     drawn_top = axes.get_ylim()[1] if axes.lines else 0.0
-    axes.set_ylim(0, max(float(np.nanmax(table, initial=0.0)) * FORCE_AXIS_RATIO, drawn_top) or 1.0)
+    axes.set_ylim(0, max(float(np.nanmax(table, initial=0.0)) * FORCE_AXIS_MARGIN_FACTOR, drawn_top) or 1.0)
 
 
 def _kind_entries(table: Array) -> list[Line2D]:
@@ -203,7 +203,7 @@ def _infinite_values_clause(view: ResultView, names: list[str]) -> str:
     return f"; {' and '.join(omissions)} has no place on an axis and is left out" if omissions else ""
 
 
-def _label_line_indices(table: Array) -> list[int]:
+def _first_middle_and_last_line(table: Array) -> list[int]:
     """Indices of the first line, of a line whose mean height is half-way, and of the last line. table:
     (lines, 3, n)."""
     last = len(table) - 1
@@ -224,7 +224,10 @@ def _groups_of_equal_lines(lines: dict[int, Array]) -> list[list[int]]:
         for group in groups:
             first = lines[group[0]]
             same_gaps = np.isnan(values) == np.isnan(first)
-            if same_gaps.all() and np.nanmax(np.abs(values - first), initial=0.0) < MIN_LINE_DISTANCE * size:
+            if (
+                same_gaps.all()
+                and np.nanmax(np.abs(values - first), initial=0.0) < MIN_DISTINCT_LINE_DISTANCE * size
+            ):
                 group.append(number)
                 break
         else:

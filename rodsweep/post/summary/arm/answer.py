@@ -13,9 +13,9 @@ from ....results.layouts.si_variables import VALIDITY_VARIABLES
 from ....results.layouts.thresholds import CROSSING_KINDS
 from ....wording import count_of_total, counted
 from .arm import errors_in_si, range_in_unit
-from .drag_range import arms_of_drags, drag_lines
+from .drag_range import arm_index_of_points, drag_lines
 from .load_lines import ANSWER_DIGITS, compression_lines, extreme_arms_text, flutter_force_line
-from .validity_sentences import plane_lines, row_motion_clause, validity_sentence
+from .validity_sentences import judged_row_motion_clause, plane_lines, validity_sentence
 
 Lines = list[str]
 """Lines of text."""
@@ -49,7 +49,7 @@ def _validity_lines(view: ResultView, computed: np.ndarray, rods: np.ndarray) ->
         return no_rods if computed.any() else []
     validity = {variable.name: view.variables[variable.name][rods] for variable in VALIDITY_VARIABLES}
     noun = "row" if "crossing_at" in view.variables else "point"
-    caveat = validity_sentence(validity, row_motion_clause(view, rods), noun)
+    caveat = validity_sentence(validity, judged_row_motion_clause(view, rods), noun)
     is_in_model = rods & (view.variables["model_applies"] != Validity.does_not_apply)
     answer_lines = ANSWER_LINES_BY_TASK[view.task]
     if not is_in_model.any():
@@ -174,7 +174,7 @@ def _cycle_lines(view: ResultView, rods: np.ndarray) -> Lines:
 def _drag_outcome_line(view: ResultView, rods: np.ndarray) -> Lines:
     """Line with the numbers of arms (with load) that beat for all, some or no drags of their range. Empty
     list if drag is not varied or an outcome is undecided."""
-    arms = arms_of_drags(view)
+    arms = arm_index_of_points(view)
     if arms is None or (rods & ~view.has_status("cycle", "straight")).any():
         return []
     is_cycle = view.has_status("cycle").ravel()

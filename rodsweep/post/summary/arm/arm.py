@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ....model.arm.drag import DRAG_NAMES
+from ....model.arm.drag import DRAG_ESTIMATE_NAMES
 from ....model.arm.quantities import ALL_QUANTITIES, ARM_SCALES, LOAD_OF_RATIO, SCALE_NAMES, UNITS
 from ....model.parameters import OPTIONAL_PARAMETERS
 from ....model.units import value_in_unit, with_si_prefix
@@ -21,13 +21,13 @@ from ....results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from ...located_thresholds import LocatedThreshold
 from ...tables.rows_and_columns import quantities_of_view
 from ..errors import absolute_errors, is_known
-from ..number_texts import RANGE_DIGITS, rounded_text, span_text
+from ..number_texts import MAX_RANGE_END_DIGITS, rounded_text, span_text
 
 SI_LINE_WIDTH = 80
 """Largest length of a line with variables in SI units, in characters."""
 FEW_ITEMS = 4
 """Up to this number of values of an array are listed one by one; more values are printed as a range."""
-TYPED_UNIT_SOURCES = {"m": ("length",), "Pa": ("pressure", "young"), "N": ("force",)}
+TYPED_UNIT_QUANTITIES = {"m": ("length",), "Pa": ("pressure", "young"), "N": ("force",)}
 """Quantities of the arm, by SI unit. All numbers with this SI unit are printed in the unit of the
 first of these quantities for which the user typed a unit."""
 PREFIXED_UNITS = ("J", "W")
@@ -58,7 +58,7 @@ def printing_unit(view: ResultView, si: str, largest: float) -> tuple[float, str
     unit = next(
         (
             view.typed_units[quantity_name]
-            for quantity_name in TYPED_UNIT_SOURCES.get(si, ())
+            for quantity_name in TYPED_UNIT_QUANTITIES.get(si, ())
             if quantity_name in view.typed_units
         ),
         si,
@@ -75,7 +75,7 @@ def range_in_unit(
     values: np.ndarray,
     si: str,
     errors: np.ndarray | float = 0.0,
-    max_digits: int = RANGE_DIGITS,
+    max_digits: int = MAX_RANGE_END_DIGITS,
 ) -> str:
     """Range of `values`, in the SI unit `si`, as text in the unit of `printing_unit`.
 
@@ -117,7 +117,7 @@ def quantity_range(view: ResultView, name: str, column: np.ndarray, mask: np.nda
     (points,). Empty for the quantity "drag" if the chosen points include all drags."""
     values = column[mask]
     if name == "drag":
-        names = [DRAG_NAMES[int(index)] for index in np.unique(values)]
+        names = [DRAG_ESTIMATE_NAMES[int(index)] for index in np.unique(values)]
         return "" if len(names) == len(np.unique(column)) else f"drag {' and '.join(names)}".replace("_", " ")
     unit = _quantity_unit(view, name)
     factor = value_in_unit(1.0, unit, ALL_QUANTITIES[name].unit) if unit else 1.0

@@ -12,7 +12,7 @@ from .arm import given_columns
 def drag_lines(view: ResultView, numbers: Mapping[str, np.ndarray]) -> list[str]:
     """Line on the variation of each of the `numbers` over the drags of an arm; an empty list if drag does not
     vary. numbers: values at all points, (points,), by name."""
-    arms = arms_of_drags(view)
+    arms = arm_index_of_points(view)
     if arms is None:
         return []
     drags = len(np.unique(given_columns(view)["drag"]))
@@ -28,7 +28,7 @@ def drag_lines(view: ResultView, numbers: Mapping[str, np.ndarray]) -> list[str]
     return [f"the results of an arm vary over the {drags} drags of its range: {', '.join(variations)}"]
 
 
-def arms_of_drags(view: ResultView) -> np.ndarray | None:
+def arm_index_of_points(view: ResultView) -> np.ndarray | None:
     """Index of the arm at each point, (points,): equal for points that differ only in drag. None if drag does
     not vary."""
     columns = given_columns(view)
@@ -43,7 +43,7 @@ def arms_of_drags(view: ResultView) -> np.ndarray | None:
 
 def _largest_spread(values: np.ndarray, arms: np.ndarray) -> float:
     """Maximum, over all arms, of the largest value of an arm divided by the smallest; NaN if no arm has two
-    positive values. arms: index of the arm at each point, as from `arms_of_drags`."""
+    positive values. arms: index of the arm at each point, as from `arm_index_of_points`."""
     ratios = [np.nan]
     for arm in np.unique(arms):
         arm_values = values[(arms == arm) & np.isfinite(values)]

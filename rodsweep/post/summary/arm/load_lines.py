@@ -11,7 +11,7 @@ from .arm import range_in_unit, region_of_arms
 
 ANSWER_DIGITS = 3
 """Largest number of significant digits in an answer; a number with a large error has fewer digits."""
-COMPRESSION_VERDICTS = {
+VERDICTS_BY_COMPRESSION = {
     DOUBTFUL_RATIO: f"is more than {DOUBTFUL_RATIO:g} times its limit, and the model is doubtful",
     1.0: "exceeds its limit, and the model does not apply",
 }
@@ -61,7 +61,7 @@ def compression_lines(view: ResultView, rods: np.ndarray) -> list[str]:
     kind = view.load_kind
     scale = np.broadcast_to(view.variables[SCALE_NAMES[kind]], rods.shape)[rods]
     lines = []
-    for max_fraction, verdict in COMPRESSION_VERDICTS.items():
+    for max_fraction, verdict in VERDICTS_BY_COMPRESSION.items():
         if max_fraction * limits.min() < view.variables["F"].max():
             loads = max_fraction * limits * scale
             text = range_in_unit(view, loads[np.isfinite(loads)], UNITS[kind][0], 0.0, ANSWER_DIGITS)

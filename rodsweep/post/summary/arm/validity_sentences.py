@@ -6,7 +6,7 @@ import numpy as np
 
 from ....model.arm.neglected import DOUBTFUL_RATIO, Validity
 from ....results.file.view import ResultView
-from ....results.layouts.si_variables import NEGLECTED_EFFECTS, VALIDITY_NOT_KNOWN, VALIDITY_VARIABLES
+from ....results.layouts.si_variables import NEGLECTED_EFFECTS, UNKNOWN_VALIDITY_NUMBER, VALIDITY_VARIABLES
 from ....results.layouts.thresholds import HOPF_CROSSING_CODES
 from ....wording import count_of_total, counted, two_digits
 
@@ -16,7 +16,7 @@ OTHER_PLANE_WARNING = (
 )
 """Warning for a rectangular section whose height exceeds its width."""
 
-MISSED_MOTION_TEXT = (
+UNKNOWN_VALIDITY_REASON = (
     "an unstable mode or a cycle may have been missed, and the neglected effects depend on the frequency of "
     "the motion"
 )
@@ -48,12 +48,14 @@ def validity_sentence(validity: Mapping[str, np.ndarray], condition: str = "", n
     largest neglected effect. validity: VALIDITY_VARIABLES by name, (n,) each. noun: "point", or "row" for
     rows of a phase diagram."""
     validities, effects, excesses = (validity[variable.name] for variable in VALIDITY_VARIABLES)
-    is_unknown = validities == VALIDITY_NOT_KNOWN
+    is_unknown = validities == UNKNOWN_VALIDITY_NUMBER
     preposition = "on" if noun == "row" else "at"
     count = len(validities)
     everywhere_text = f" {preposition} all {counted(count, noun)}" if count > 1 else ""
     if is_unknown.all():
-        return f"whether the model applies is not known{everywhere_text}{condition}: {MISSED_MOTION_TEXT}"
+        return (
+            f"whether the model applies is not known{everywhere_text}{condition}: {UNKNOWN_VALIDITY_REASON}"
+        )
     unknown_clause = f"; not known {preposition} {count_of_total(int(is_unknown.sum()), count, noun)}"
     rest_clause = unknown_clause if is_unknown.any() else ""
     worst_validity = Validity(int(validities.max()))
@@ -73,7 +75,7 @@ def validity_sentence(validity: Mapping[str, np.ndarray], condition: str = "", n
     )
 
 
-def row_motion_clause(view: ResultView, rows: np.ndarray) -> str:
+def judged_row_motion_clause(view: ResultView, rows: np.ndarray) -> str:
     """Clause on the motion by which the validity of the model on rows of a phase diagram was judged: the
     first Hopf point of each row, or rest on a row without Hopf point. Empty for other tasks, and for rows
     whose motion is not known. rows: mask of the rows, (...,).
@@ -82,7 +84,7 @@ def row_motion_clause(view: ResultView, rows: np.ndarray) -> str:
     """
     if "crossing_at" not in view.variables:  # no rows of a phase diagram
         return ""
-    rows = rows & (view.variables["model_applies"] != VALIDITY_NOT_KNOWN)
+    rows = rows & (view.variables["model_applies"] != UNKNOWN_VALIDITY_NUMBER)
     if not rows.any():
         return ""
     hopf = np.isin(view.variables["crossing_kind"][rows], HOPF_CROSSING_CODES).any(axis=-1)

@@ -145,7 +145,7 @@ def _refuse_difference(header: ResultHeader, difference: str) -> None:
         )
 
 
-def kind_of_points(points: Points) -> str:
+def points_description(points: Points) -> str:
     """Kind and parameters of points, such as "a grid of F and k1", for a message."""
     return (
         f"a grid of {enumeration(tuple(points.axes))}"
@@ -158,7 +158,7 @@ def _stored_point_map(header: ResultHeader, old: Points, plan: FilePlan) -> Stor
     """Map from the stored points `old` to the points of the plan; InputError if the plan lacks a point."""
     new_points = plan.points
     if tuple(old.axes) != tuple(new_points.axes) or old.names != new_points.names:
-        kinds_of_points = kind_of_points(old), kind_of_points(new_points)
+        kinds_of_points = points_description(old), points_description(new_points)
         _refuse_difference(header, config_difference(*kinds_of_points, "parameters"))
     if not old.axes:
         return StoredPointMap(old.shape, new_points.shape, (_positions_in_list(header, old, new_points),))

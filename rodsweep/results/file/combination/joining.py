@@ -25,7 +25,7 @@ from ..creation import FilePlan
 from ..points import points_of_file, records_at, stored_records, write_records
 from ..provenance import MAX_ATTRIBUTE_LENGTH, blas_kernels_in
 from ..validation import ResultHeader
-from .extension import ROUNDING_TOLERANCE, StoredPointMap, kind_of_points
+from .extension import ROUNDING_TOLERANCE, StoredPointMap, points_description
 from .identity import compared_settings, config_difference
 
 NOT_INHERITED_ATTRIBUTES = (
@@ -33,7 +33,7 @@ NOT_INHERITED_ATTRIBUTES = (
     SEAL_ATTRIBUTE,
 )  # fmt: skip
 """Names of the attributes that a joined file does not copy from the first source."""
-ROUNDING_FACTOR = 1e3
+MAX_DIFFERENCE_PER_ACCURACY = 1e3
 """Two results with a relative difference of at most this multiple of the requested accuracy are treated as
 equal up to rounding."""
 FilePlanMaker = Callable[[Config, Points], FilePlan]
@@ -90,16 +90,16 @@ class JoinedFile:
                     )
 
     def _is_rounding_error(self, name: str, a: Any, b: Any, sources: Sequence[ResultHeader]) -> bool:
-        """Whether two different values of the variable `name` are equal up to ROUNDING_FACTOR. Always True
-        for error estimates and values that are not floating-point; always False for `status`, and without
-        groups if one BLAS kernel computed all points. a, b: the values. sources: headers of their files."""
+        """Whether two different values of the variable `name` differ by rounding only, at most by
+        MAX_DIFFERENCE_PER_ACCURACY. True for error estimates and values that are no floats; False for
+        `status`, and without groups if one BLAS kernel computed all. a, b: values. sources: headers."""
         kernels = {kernel for source in sources for kernel in blas_kernels_in(source.attributes)}
         if (len(kernels) < 2 and not self.plan.groups) or name == "status":
             return False
         # Rounding changes the size of an error estimate, and the cost of a solve, by any factor.
         if np.asarray(a).dtype.kind != "f" or name.endswith(("error", "error_estimate")):
             return True
-        tolerance = ROUNDING_FACTOR * float(self.plan.config["accuracy"])
+        tolerance = MAX_DIFFERENCE_PER_ACCURACY * float(self.plan.config["accuracy"])
         scale = np.nanmax(np.abs([a, b]), initial=0.0)
         return bool(np.allclose(a, b, rtol=tolerance, atol=tolerance * scale, equal_nan=True))
 
@@ -123,7 +123,7 @@ def joined_file_of(sources: Sequence[ResultHeader], planner: FilePlanMaker) -> J
                 f"{header.path} was made from another config than {first.path} ({difference}); leave one of "
                 "them out"
             )
-        kinds = kind_of_points(grids[0]), kind_of_points(points)
+        kinds = points_description(grids[0]), points_description(points)
         if kinds[0] != kinds[1]:
             raise InputError(
                 f"{first.path} and {header.path} cannot be merged: one has {kinds[0]}, the other {kinds[1]}; "

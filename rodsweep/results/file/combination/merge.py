@@ -16,7 +16,7 @@ from ....sweep.points.ranges import index_count
 from ...run.journal import JOURNAL_GLOB, journal_directory
 from ..creation import FilePlan, add_variables, create_file
 from ..points import missing_ranges, points_of_file, records_to_add, write_records
-from ..provenance import KERNELS_ATTRIBUTE, kernels_sentence, merged_history, utc_time
+from ..provenance import KERNELS_ATTRIBUTE, merged_history, several_kernels_warning, utc_time
 from ..replacement import FileReplacement, disk_refusals
 from ..validation import ResultHeader, read_header
 from .joining import FilePlanMaker, JoinedFile, joined_file_of
@@ -84,7 +84,7 @@ def _finish_merge(copy: Path, plan: FilePlan, used: Sequence[ResultHeader]) -> M
     """Writes the provenance of the points into the merged file, and finishes the file if no point is missing;
     returns the outcome of the merge. used: sources of the stored points."""
     missing_indices = missing_ranges(copy)
-    finished = not missing_indices and not plan.layout.needs_all_points
+    finished = not missing_indices and not plan.layout.has_variables_of_all_points
     history = merged_history([source.attributes for source in used])
     with h5py.File(copy, "r+") as file:
         if finished and "finished" not in file.attrs:
@@ -93,7 +93,7 @@ def _finish_merge(copy: Path, plan: FilePlan, used: Sequence[ResultHeader]) -> M
         file.attrs.update(history)
         points = file["status"].size
     count = index_count(missing_indices)
-    return MergeResult(points - count, count, finished, kernels_sentence(history[KERNELS_ATTRIBUTE]))
+    return MergeResult(points - count, count, finished, several_kernels_warning(history[KERNELS_ATTRIBUTE]))
 
 
 def _read_headers(paths: Sequence[Path]) -> list[ResultHeader]:

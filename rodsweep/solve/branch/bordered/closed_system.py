@@ -6,7 +6,7 @@ from scipy.linalg.lapack import dgetrf, dgetrs
 from ....arrays import Array
 
 
-class ClosedSystem:
+class LinearSystemWithBorderRow:
     """Linear system of M equations, the last of which changes. matrix: (M, M), whose last row is not used.
     Successive systems mostly have equal borders, so that the factors of the last one are kept."""
 

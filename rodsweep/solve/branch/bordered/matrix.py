@@ -13,7 +13,7 @@ from ...orbit.matrix.linearisation import (
     closing_residual,
     parameter_derivatives,
     reduced_residuals,
-    reduced_variation_sides,
+    reduced_stage_residual_variations,
 )
 from ...orbit.matrix.multipliers import multipliers_over_period, multipliers_over_solved_part
 from ...orbit.matrix.phase import phase_residual, phase_right_side, write_phase_row
@@ -23,7 +23,7 @@ from ...orbit.matrix.substitution import substitute_stages
 from ...orbit.matrix.workspace import FactorStorage, NewtonWorkspace
 from ...orbit.newton import relative_change
 from ...orbit.orbit import Orbit
-from .closed_system import ClosedSystem
+from .closed_system import LinearSystemWithBorderRow
 from .scale import ArcLengthScale, deflection_functional
 
 
@@ -75,7 +75,7 @@ class BorderedMatrix:
         self._matrix[-2, -1] = -phase_right_side(
             orbit.start_state, derivatives.change, p.rod, p.node_matrices
         )
-        self._system = ClosedSystem(self._matrix)
+        self._system = LinearSystemWithBorderRow(self._matrix)
         self._right_sides = self._matching_and_phase_sides(orbit, self._stage_columns[:, :, 1:2], ends[1:2])
 
     @property
@@ -126,12 +126,12 @@ class BorderedMatrix:
         derivatives = parameter_derivatives(orbit.form, name or self.scale.parameter_name)
         equations = orbit.orbit_equations
         p = self.orbit.orbit_equations
-        sides: tuple[Array, Array] = reduced_variation_sides(
+        sides: tuple[Array, Array] = reduced_stage_residual_variations(
             orbit.values, equations, derivatives, variations, p, self._memory.factors
         )
         return sides
 
-    def parameter_response(self, name: str, border: Array) -> float:
+    def derivative_by_other_parameter(self, name: str, border: Array) -> float:
         """Derivative of the parameter coordinate with respect to the coordinate of another parameter `name`,
         along the cycles with equal `border` . `scale.components`, (3,).
 
@@ -200,7 +200,7 @@ class BorderedMatrix:
         (1, n).
         """
         p = self.orbit.orbit_equations
-        sides = -self._shooting_intervals.increments_of_ends(
+        sides = -self._shooting_intervals.end_increments_for_fixed_starts(
             self._memory.factors, columns, end_increments, p
         )[:, 0]
         sides[-1] += jump

@@ -9,7 +9,7 @@ from ..arc_length_step import BranchCycle, arc_length_between
 from ..bordered.condition import moved_orbit
 from ..bordered.corrected_linearisation import bordered_matrix_of
 from ..bordered.matrix import BorderedMatrix
-from ..branch_prediction import parameter_polynomial
+from ..branch_prediction import parameter_change_polynomial
 from .augmented.fold_and_torus_functions import FoldTestFunction, correct_until_converged
 from .special_point import SPECIAL_POINT_SETTINGS
 
@@ -39,7 +39,7 @@ class BranchSegment:
         """Returns (arc length, slope of `parameter_rate` there) of the fold of the polynomial through the
         cycles up to `end`; raises Unsolvable if it has not exactly one fold between `start` and `end`."""
         ends = (-self._length_along_end_tangent, 0.0)
-        rate = parameter_polynomial(self.end.tangent, self.end.earlier_cycles, ends).deriv()
+        rate = parameter_change_polynomial(self.end.tangent, self.end.earlier_cycles, ends).deriv()
         roots = rate.roots()
         folds = roots.real[(roots.imag == 0) & (roots.real > ends[0]) & (roots.real < 0)]
         if len(folds) != 1:
@@ -69,7 +69,7 @@ class BranchSegment:
         workspace = self.start.workspace
         solved = condition.solve_cycle(
             start,
-            SPECIAL_POINT_SETTINGS.cycle_tolerance,
+            SPECIAL_POINT_SETTINGS.relative_cycle_tolerance,
             workspace,
             SPECIAL_POINT_SETTINGS.max_matrix_distance,
             self._nearby_matrix(start),

@@ -69,7 +69,9 @@ class SecantSearch:
         self.has_previous_point_derivatives = not is_other_mesh
         """Whether the derivatives come from the previous point of the curve."""
         self.curvature = (
-            CURVE_SECANT_SETTINGS.curvature_factor * derivatives.relative_curvature if derivatives else inf
+            CURVE_SECANT_SETTINGS.curvature_growth_factor * derivatives.relative_curvature
+            if derivatives
+            else inf
         )
         """Second derivative of the test function divided by the first; inf if unknown."""
         self.measured_curvature = derivatives.relative_curvature if derivatives else inf

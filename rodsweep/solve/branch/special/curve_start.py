@@ -15,7 +15,7 @@ from ..bordered.matrix import BorderedMatrix
 from ..bordered.scale import ArcLengthScale, deflection_of
 from ..branch_tangent import tangent_at
 from ..start.branch_start_settings import BRANCH_START_SETTINGS
-from ..start.first_cycle import ALONG_DEFLECTION
+from ..start.first_cycle import DEFLECTION_UNIT_VECTOR
 from .cycle_family import CycleFamily
 from .solved_curve_point import ALONG_BRANCH, CURVE_SECANT_SETTINGS, SolvedPoint
 from .special_point import SpecialPoint
@@ -58,11 +58,11 @@ def first_point_of_curve(
     )
     orbit = first_point.interpolated_orbit(orbit)
     min_deflection_unit = (
-        abs(deflection_of(orbit)) * BRANCH_START_SETTINGS.min_deflection_amplitude / special.tip_y_max
+        abs(deflection_of(orbit)) * BRANCH_START_SETTINGS.min_amplitude_of_deflection_unit / special.tip_y_max
     )
     scale = ArcLengthScale.at_orbit(orbit, line_name, min_deflection_unit)
     matrix = BorderedMatrix(orbit, scale, workspace)
-    derivative = scale.directional_derivative(orbit, tangent_at(orbit, scale, ALONG_DEFLECTION, matrix))
+    derivative = scale.directional_derivative(orbit, tangent_at(orbit, scale, DEFLECTION_UNIT_VECTOR, matrix))
     row_coordinate = row_axis.coordinate(row)
     start = SolvedPoint(
         orbit=orbit,

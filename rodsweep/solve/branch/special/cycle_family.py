@@ -15,7 +15,7 @@ from ....determinant.parameter_plane import PlaneAxis
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_limit_error, mesh_of
-from ...orbit.tails import smooth_tails
+from ...orbit.tails import smooth_space_and_time_tails
 from ...unsolvable import Unsolvable
 from ..bordered.matrix import BorderedMatrix
 from ..bordered.scale import ArcLengthScale
@@ -134,7 +134,9 @@ class CycleFamily:
             )
             if error <= CURVE_SECANT_SETTINGS.accuracy * abs(fine_point.parameter):
                 errors = MeasuredCurveError(
-                    error / abs(coarser_point.parameter), smooth_tails(coarser_point.orbit), mesh
+                    error / abs(coarser_point.parameter),
+                    smooth_space_and_time_tails(coarser_point.orbit),
+                    mesh,
                 )
                 return replace(coarser_point, measured_error=errors)
             coarser_point = fine_point

@@ -109,7 +109,7 @@ class DiagramStages:
             self.first,
             first_item=last_stage.end_item,
             special_points=new_points,
-            known_special_points=known_points,
+            special_points_not_to_trace=known_points,
             starts_by_row={row: last_stage.starts_of_row(row) for row in last_stage.crossings},
         )
 
@@ -118,7 +118,7 @@ class DiagramStages:
         if neither a branch nor a curve leaves the range."""
         if self.extended_axis is None or any(isinstance(stage, FoldsBeyondRange) for stage in stages):
             return None
-        if not self.leaving_rows and not self.first.points_of_leaving_curves(results):
+        if not self.leaving_rows and not self.first.point_of_each_leaving_curve(results):
             return None
         return FoldsBeyondRange(stages[-1].end_item, self.first.row_axis.name, self.leaving_rows)
 
@@ -129,7 +129,7 @@ class DiagramStages:
         of each curve that leaves the range; None if there are none."""
         assert self.extended_axis is not None
         # Special points of rows solved again are known only with the starts of their stage.
-        points = folds_beyond.special_points(results) + self.first.points_of_leaving_curves(results)
+        points = folds_beyond.special_points(results) + self.first.point_of_each_leaving_curve(results)
         if not points:
             return None
         known_points = (*self.first.special_points, *self._special_points_of_rows(stages, results))
@@ -138,7 +138,7 @@ class DiagramStages:
             line_axis=self.extended_axis,
             first_item=folds_beyond.end_item,
             special_points=points,
-            known_special_points=tuple(point for point in known_points if point not in points),
+            special_points_not_to_trace=tuple(point for point in known_points if point not in points),
         )
 
     def _special_points_of_rows(self, stages: Sequence[Stage], results: Results) -> list[RowSpecialPoint]:

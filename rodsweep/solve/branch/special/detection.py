@@ -105,13 +105,13 @@ def lie_on_one_branch(start: BranchCycle, end: BranchCycle) -> bool:
     has_fold = start.parameter_rate * end.parameter_rate < 0
     change = _count_beyond_one(start) - _count_beyond_one(end)
     # Each fold moves one multiplier through 1, and a smooth branch has no other reason for an odd change.
-    if not any(map(_may_be_on_either_side_of_one, (start, end))):
+    if not any(map(_has_multiplier_indistinct_from_trivial, (start, end))):
         return change % 2 == int(has_fold)
     is_unchanged = not has_fold and change % 2 == 0
-    return is_unchanged or end.prediction_error <= SPECIAL_POINT_SETTINGS.max_uncertain_prediction_error
+    return is_unchanged or end.prediction_error <= SPECIAL_POINT_SETTINGS.max_prediction_error_without_fold
 
 
-def _may_be_on_either_side_of_one(point: BranchCycle) -> bool:
+def _has_multiplier_indistinct_from_trivial(point: BranchCycle) -> bool:
     """Whether a nontrivial multiplier of the cycle cannot be told from the trivial one on this mesh."""
     error = REFINEMENT_SETTINGS.multiplier_error_factor * point.cycle.trivial_multiplier_error
     return bool((np.abs(point.multipliers_over_solved_part - 1) <= error).any())

@@ -121,7 +121,7 @@ def _may_be_near(
     x = problem.line_axis.coordinate(special_point.parameter_value)
     ends = sorted(problem.line_axis.coordinate(p.parameter) for p in (a, b))
     periods = sorted(p.orbit.period for p in (a, b))
-    margin = CURVE_IDENTITY_SETTINGS.max_chord_distance_fraction
+    margin = CURVE_IDENTITY_SETTINGS.max_chord_distance_per_row_length
     # The curve may bulge beyond its chord, hence a margin in the parameter and in the period.
     is_within = ends[0] - margin <= x <= ends[1] + margin
     period_factor = 1 + CURVE_IDENTITY_SETTINGS.period_interval_extension

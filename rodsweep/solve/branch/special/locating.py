@@ -169,9 +169,9 @@ def _zero_by_secants(
     function), by the secant method on `segment`; raises Unsolvable. slope: approximate slope, for the first
     step."""
     max_step_ratio = (
-        SPECIAL_POINT_SETTINGS.max_linear_step_ratio_at_fold
+        SPECIAL_POINT_SETTINGS.max_last_secant_step_per_branch_step_at_fold
         if kind == SpecialKind.fold
-        else SPECIAL_POINT_SETTINGS.max_linear_step_ratio
+        else SPECIAL_POINT_SETTINGS.max_last_secant_step_per_branch_step
     )
     tolerance = segment.length * max_step_ratio
     length = guess
@@ -190,7 +190,7 @@ def _zero_by_secants(
             abs(step) <= tolerance
             or SPECIAL_POINT_SETTINGS.converging_step_ratio * last_step_length
             < abs(step)
-            <= SPECIAL_POINT_SETTINGS.max_stalled_step_ratio * segment.length
+            <= SPECIAL_POINT_SETTINGS.max_stalled_step_per_branch_step * segment.length
         ):
             _, orbit, tangent = segment.last_solved_cycle
             change = step * tangent

@@ -131,7 +131,7 @@ class ParameterRoles:
             axis.path_variable_per_coordinate(getattr(rod, axis.name)) for axis in self.axes_of(point)
         )
         # At a fold the parameter is stationary along the branch, so only the other one moves the fold.
-        response = matrix.parameter_response(self.axes_of(point)[1].name, point.branch_direction)
+        response = matrix.derivative_by_other_parameter(self.axes_of(point)[1].name, point.branch_direction)
         return response * other_change / branch_change
 
     def _is_flat(self, rod: Rod, line_change: float, row_change: float) -> bool:

@@ -41,14 +41,14 @@ class RowCrossing:
         """The crossing as named arrays: "crossing" (6,), then the arrays of the orbit."""
         point = self.special_point
         assert point.orbit is not None
-        keeps_omega = point.orbit.form.keeps_omega
+        is_omega_always_unknown = point.orbit.form.is_omega_always_unknown
         numbers = (
             self.row_index,
             point.kind,
             point.parameter_value,
             point.tip_y_max,
             point.error,
-            keeps_omega,
+            is_omega_always_unknown,
         )
         # One array holds all six, so counts and the flag become floats too.
         return {"crossing": array([float(number) for number in numbers])} | orbit_arrays(point.orbit)
@@ -56,8 +56,8 @@ class RowCrossing:
     @classmethod
     def from_arrays(cls, arrays: Mapping[str, Array]) -> "RowCrossing":
         """The crossing from named arrays with the shapes that `arrays` gives, as "crossing" (6,)."""
-        row_index, kind, value, tip_y_max, error, keeps_omega = map(float, arrays["crossing"])
-        orbit = orbit_from_arrays(arrays, bool(keeps_omega))
+        row_index, kind, value, tip_y_max, error, is_omega_always_unknown = map(float, arrays["crossing"])
+        orbit = orbit_from_arrays(arrays, bool(is_omega_always_unknown))
         point = SpecialPoint(
             kind=SpecialKind(int(kind)),
             parameter_value=value,

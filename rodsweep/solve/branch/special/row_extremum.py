@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 class RowExtremumSettings:
     """Settings for locating an extremum of the row parameter along a curve of folds."""
 
-    slope_tolerance: float = 1e-7
+    relative_slope_tolerance: float = 1e-7
     """Largest slope of the curve at a located extremum, divided by the change of the slope between the two
     points of the curve beside the extremum. Errors of the fold, 1e-9, change the slope by about as much."""
 
@@ -77,14 +77,14 @@ def _error_along_row(
     error = sloped_point.point.error / abs(row_axis.parameter_per_coordinate(sloped_point.point.parameter))
     # Near the extremum the slope alone would give an infinite error, so the curvature limits it.
     curvature = max(
-        abs(_slope_change(sloped_point, sloped_points[j])) for j in (i - 1, i + 1) if j in sloped_points
+        abs(_slope_change_rate(sloped_point, sloped_points[j])) for j in (i - 1, i + 1) if j in sloped_points
     )
     # The distance d along the row at which |slope| d + curvature d^2 / 2 is the error of the row coordinate.
     distance = 2 * error / (abs(sloped_point.slope) + sqrt(sloped_point.slope**2 + 2 * curvature * error))
     return distance * abs(line_axis.parameter_per_coordinate(sloped_point.point.row_parameter))
 
 
-def _slope_change(first: _SlopedPoint, second: _SlopedPoint) -> float:
+def _slope_change_rate(first: _SlopedPoint, second: _SlopedPoint) -> float:
     """Change of the slope between two points, divided by the change of the position along a row."""
     return (second.slope - first.slope) / (second.point.row_coordinate - first.point.row_coordinate)
 
@@ -96,7 +96,7 @@ def _located_extremum(
     parameters; raises Unsolvable."""
     roles = problem.roles
     slopes = first.slope, second.slope
-    tolerance = ROW_EXTREMUM_SETTINGS.slope_tolerance * abs(second.slope - first.slope)
+    tolerance = ROW_EXTREMUM_SETTINGS.relative_slope_tolerance * abs(second.slope - first.slope)
 
     def slope(point: SolvedPoint) -> float:
         return roles.axis_slope_at(point, problem.workspace)
@@ -111,7 +111,7 @@ def _located_extremum(
     slope_error = CURVE_SECANT_SETTINGS.error_factor * abs(slope(fine) - slope(point)) + tolerance
     line_axis = roles.line_axis
     # An extremum is displaced by the error of the slope over its rate of change.
-    distance = slope_error / abs(_slope_change(first, second))
+    distance = slope_error / abs(_slope_change_rate(first, second))
     # With exchanged roles `parameter` is the row parameter.
     difference = CURVE_SECANT_SETTINGS.error_factor * abs(fine.parameter - point.parameter)
     return replace(

@@ -12,7 +12,7 @@ from ....arrays import Array
 from ...cycle.cycles_along_parameter import interpolated_change
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of
-from ...orbit.tails import smooth_tails
+from ...orbit.tails import smooth_space_and_time_tails
 from ..bordered.scale import ArcLengthScale
 
 
@@ -46,7 +46,7 @@ class CurveSecantSettings:
     previous_point_slope_error: float = 0.1
     """Relative error of derivatives that were computed at the previous point of the curve; increased if the
     curvature exceeds 1."""
-    curvature_factor: float = 4.0
+    curvature_growth_factor: float = 4.0
     """Assumed curvature of the test function at a point, divided by the curvature at the previous point."""
     min_cosine_for_reuse: float = 0.9
     """Derivatives along one direction across the curve are used for another direction only if the cosine of
@@ -131,7 +131,7 @@ class MeasuredCurveError:
         """Absolute error of the parameter along a row at a neighbouring point with the same mesh: the
         measured relative error, increased by the squared growth of the tails, times the parameter."""
         # Errors are of second order in the tails.
-        growth = float((smooth_tails(point.orbit) / self.tails).max()) ** 2
+        growth = float((smooth_space_and_time_tails(point.orbit) / self.tails).max()) ** 2
         return max(growth, 1.0) * self.relative_error * abs(point.parameter)
 
     def applies_at(self, point: "SolvedPoint") -> bool:

@@ -42,7 +42,7 @@ class SpecialCurveTracer:
     special_points: Sequence[RowSpecialPoint]
     complete_rows: Mapping[int, float] = field(default_factory=dict)
     """Value of the row parameter, by index, of the rows whose branches are all known."""
-    known_special_points: Sequence[RowSpecialPoint] = ()
+    special_points_not_to_trace: Sequence[RowSpecialPoint] = ()
     """Further special points of the rows, through which no curve is traced."""
     starts_by_row: Mapping[int, tuple[SpecialPoint, ...]] = field(default_factory=dict)
     """Special points from which branches of a row are followed in addition to its branches from Hopf points,
@@ -75,7 +75,7 @@ class SpecialCurveTracer:
             for crossing in traced.crossings
         ]
 
-    def points_of_leaving_curves(self, results: Mapping[int, HalfCurveArrays]) -> list[RowSpecialPoint]:
+    def point_of_each_leaving_curve(self, results: Mapping[int, HalfCurveArrays]) -> list[RowSpecialPoint]:
         """A special point of each curve that leaves the range of the parameter along the rows; valid if
         `items_to_solve(results)` is empty."""
         return [
@@ -117,7 +117,7 @@ class SpecialCurveTracer:
         problem = SpecialCurveProblem(
             point.kind, self.line_axis, self.row_axis, workspace, -1.0 if is_backward else 1.0
         )
-        special_points = (*self.special_points, *self.known_special_points)
+        special_points = (*self.special_points, *self.special_points_not_to_trace)
         return trace_half_curve(
             problem, point, located(point.row_index), special_points, self.complete_rows
         ).arrays()
@@ -242,6 +242,9 @@ class _CurvesOfKind:
             )
             chord = x + fraction * (self.line_axis.coordinate(last_point.parameter_value) - x)
             distance = abs(chord - self.line_axis.coordinate(special_point.parameter_value))
-            if 0 <= fraction <= 1 and distance <= CURVE_IDENTITY_SETTINGS.max_last_chord_distance_fraction:
+            if (
+                0 <= fraction <= 1
+                and distance <= CURVE_IDENTITY_SETTINGS.max_last_chord_distance_per_row_length
+            ):
                 return True
         return False

@@ -24,7 +24,7 @@ class CurveIdentitySettings:
     max_row_distance_fraction: float = 1e-6
     """A special point of a row lies on a curve if its distance from the curve is at most this fraction of the
     length of a row."""
-    max_chord_distance_fraction: float = 0.1
+    max_chord_distance_per_row_length: float = 0.1
     """A special point can lie on the arc between two points of a curve only if its distance, along the row,
     from the interval of these two points is at most this fraction of the length of a row."""
     period_interval_extension: float = 0.1
@@ -35,7 +35,7 @@ class CurveIdentitySettings:
     max_end_distance: float = 1e-4
     """Two curves are identical if the coordinates of their ends differ by at most this number; each axis has
     length 1."""
-    max_last_chord_distance_fraction: float = 1e-3
+    max_last_chord_distance_per_row_length: float = 1e-3
     """Between the last cycle of a curve and the Hopf point where the cycles vanish, a special point lies on
     the curve if its distance, along the row, from the chord is at most this fraction of the length of a
     row."""

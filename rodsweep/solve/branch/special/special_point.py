@@ -19,10 +19,10 @@ class SpecialPointSettings:
     number."""
     first_mesh_accuracy_ratio: float = 0.2
     """Ratio of the accuracy for which the first mesh is chosen to the required accuracy."""
-    cycle_tolerance: float = 1e-12
+    relative_cycle_tolerance: float = 1e-12
     """Relative tolerance of the cycles solved during the search, about the smallest error that corrections
     with one matrix reach."""
-    test_function_tolerance: float = 1e-10
+    test_function_change_tolerance: float = 1e-10
     """The correction of a test function stops when its value changes by at most this number. A correction
     gains two digits, and at a fold the error of the parameter is of second order in the test function."""
     max_secant_steps: int = 12
@@ -30,21 +30,21 @@ class SpecialPointSettings:
     converging_step_ratio: float = 0.5
     """A small secant step, or a small change of a test function, of more than this number times its
     predecessor is rounding error."""
-    max_stalled_step_ratio: float = 1e-6
+    max_stalled_step_per_branch_step: float = 1e-6
     """The secant method stops if its step, divided by the step of the branch, is at most this number and more
     than `converging_step_ratio` times the previous step."""
-    max_linear_step_ratio: float = 1e-6
+    max_last_secant_step_per_branch_step: float = 1e-6
     """Longest last secant step, divided by the step of the branch. After the last step the cycle is moved
     along its tangent, not solved again. The relative error 1e-3 of the slope causes the error
-    `secant_error_ratio`.
+    `secant_error_per_branch_step`.
     """
-    max_linear_step_ratio_at_fold: float = 1e-5
+    max_last_secant_step_per_branch_step_at_fold: float = 1e-5
     """Longest last secant step at a fold, divided by the step of the branch; longer than elsewhere, because
     the parameter is quadratic in arc length."""
-    secant_error_ratio: float = 1e-9
+    secant_error_per_branch_step: float = 1e-9
     """Error of the arc length of a special point caused by the last secant step, divided by the step of the
     branch."""
-    secant_error_ratio_at_fold: float = 1e-5
+    secant_error_per_branch_step_at_fold: float = 1e-5
     """Error of the arc length of a fold caused by the last secant step, divided by the step of the branch.
     The slope may come from a coarser mesh and then has a relative error of 0.1."""
     max_matrix_distance: float = 1e-3
@@ -73,7 +73,7 @@ class SpecialPointSettings:
     measured are larger than assumed."""
     error_factor: float = 3.0
     """The error estimate is the difference between the special points on two meshes, times this factor."""
-    max_slope_ratio: float = 2.0
+    max_slope_per_chord_slope: float = 2.0
     """Largest derivative of period and tip y with respect to the parameter at a special point, divided by the
     slope of the chord between the cycles before and after the point."""
     rounding_error: float = 1e-13
@@ -81,12 +81,12 @@ class SpecialPointSettings:
     unit_multiplier_distance: float = 3e-3
     """A multiplier m with |m - 1| below this number may lie on either side of the unit circle, because of
     errors. Near a fold two multipliers are close to 1."""
-    max_uncertain_prediction_error: float = 1e-4
+    max_prediction_error_without_fold: float = 1e-4
     """If the parameter turns back between two successive cycles, and their multipliers do not show a fold
     within their errors, the cycles are taken as cycles of one branch only if the prediction error of the
     second cycle is at most this number: a fifth of the usual error, so that one halving of the step suffices.
     Between small cycles of two Hopf points close together, errors of 8e-3 were seen."""
-    max_relocation_distance: float = 1e-6
+    max_relocation_parameter_change: float = 1e-6
     """Two special points of a rod are the same point only if the relative difference of their parameters,
     less their errors, is at most this number; a point on a curve over two parameters has an error of 1e-7."""
     max_relocation_period_change: float = 1e-4
@@ -138,7 +138,7 @@ class SpecialPoint:
     amplitude_coefficient: float = nan
     """At a Hopf point the coefficient a of the branch, in L: the tip reaches y = a sqrt(|p/p_H - 1|) at
     parameter values p near the Hopf point p_H; NaN at other points."""
-    coefficient_error: float = nan
+    relative_coefficient_error: float = nan
     """Relative error of `amplitude_coefficient`."""
 
     def is_same_as(self, other: "SpecialPoint") -> bool:
@@ -174,6 +174,7 @@ def _are_near(
     excess_distance = abs(first.parameter_value - second.parameter_value) - error
     return (
         first.kind == second.kind
-        and excess_distance <= SPECIAL_POINT_SETTINGS.max_relocation_distance * abs(first.parameter_value)
+        and excess_distance
+        <= SPECIAL_POINT_SETTINGS.max_relocation_parameter_change * abs(first.parameter_value)
         and abs(first.period / second.period - 1) <= SPECIAL_POINT_SETTINGS.max_relocation_period_change
     )

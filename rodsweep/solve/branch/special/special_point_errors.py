@@ -19,13 +19,15 @@ def with_mesh_errors(
     error = SPECIAL_POINT_SETTINGS.error_factor * abs(
         point.parameter_value - coarser_point.parameter_value
     ) + SPECIAL_POINT_SETTINGS.rounding_error * abs(point.parameter_value)
-    secant_error = SPECIAL_POINT_SETTINGS.secant_error_ratio_at_fold
+    secant_error = SPECIAL_POINT_SETTINGS.secant_error_per_branch_step_at_fold
     if point.kind is not SpecialKind.fold:
         # Period and tip y of two meshes may agree by coincidence, although the parameter does not.
         name = start.scale.parameter_name
         difference = abs(getattr(start.orbit.form.rod, name) - getattr(end.orbit.form.rod, name))
-        slope_error = SPECIAL_POINT_SETTINGS.max_slope_ratio * error / difference if difference else 1.0
-        secant_error = SPECIAL_POINT_SETTINGS.secant_error_ratio + min(slope_error, 1.0)
+        slope_error = (
+            SPECIAL_POINT_SETTINGS.max_slope_per_chord_slope * error / difference if difference else 1.0
+        )
+        secant_error = SPECIAL_POINT_SETTINGS.secant_error_per_branch_step + min(slope_error, 1.0)
     start_measures = start.cycle.measures
     end_measures = end.cycle.measures
     factor = SPECIAL_POINT_SETTINGS.error_factor

@@ -29,21 +29,21 @@ from ..branch_errors import branch_newton_tolerance
 from ..branch_mesh_choice import first_measured_cycle
 from ..branch_tangent import branch_derivatives, tangent_at
 from ..symmetry_breaking import SymmetryBreaking, asymmetry, extended_to_whole_period
-from .first_cycle import ALONG_DEFLECTION
+from .first_cycle import DEFLECTION_UNIT_VECTOR
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AsymmetricStartSettings:
     """Settings for the first asymmetric cycle near a symmetry breaking."""
 
-    first_cycle_distances: tuple[float, ...] = (0.03, 0.01, 0.1)
+    first_cycle_relative_distances: tuple[float, ...] = (0.03, 0.01, 0.1)
     """Relative differences between the predicted first asymmetric cycle and the symmetric cycle, tried in
     this order."""
     max_accuracy: float = 1e-4
     """Largest relative accuracy of asymmetric cycles: a coarser mesh does not separate asymmetric cycles from
     the symmetric cycles nearby. At an accuracy of 1e-3 Newton's method converges to symmetric cycles for 4 of
     6 rods, at 3e-4 for none."""
-    rate_tolerance: float = 1e-9
+    parameter_rate_newton_tolerance: float = 1e-9
     """Tolerance of Newton's method for the cycles whose parameter rates show a fold before the first
     cycle."""
     max_accuracy_beside_fold: float = 1e-6
@@ -78,14 +78,14 @@ def first_asymmetric_cycle(
     null_vector = matrix.approximate_null_vector()
     # With this norm a multiple of the vector is the relative distance that the settings give.
     null_vector = null_vector / relative_change(full_orbit, null_vector[:-1])
-    first_distance = ASYMMETRIC_START_SETTINGS.first_cycle_distances[0]
+    first_distance = ASYMMETRIC_START_SETTINGS.first_cycle_relative_distances[0]
     # The two signs give mirror images. The cycle with the larger y is followed, so that the result does not
     # depend on the sign of the null vector.
     directions = [_AsymmetricCycles(full_orbit, matrix, sign * null_vector, accuracy) for sign in (1, -1)]
     cycles = max(
         directions, key=lambda one: CycleMotion(one.predicted_orbit(first_distance)).extrema["tip_y_max"]
     )
-    for distance in ASYMMETRIC_START_SETTINGS.first_cycle_distances:
+    for distance in ASYMMETRIC_START_SETTINGS.first_cycle_relative_distances:
         try:
             allowed_distance = cycles.distance_before_fold(distance)
             if allowed_distance < distance:
@@ -148,8 +148,10 @@ class _AsymmetricCycles:
     def _parameter_rate(self, distance: float) -> float:
         """Derivative of the scaled parameter coordinate with respect to arc length at the cycle at a relative
         distance; raises Unsolvable."""
-        solved = self._condition(distance).solve_cycle(
-            self.predicted_orbit(distance), ASYMMETRIC_START_SETTINGS.rate_tolerance, self.matrix.workspace
+        solved = self._predicted_deflection_condition(distance).solve_cycle(
+            self.predicted_orbit(distance),
+            ASYMMETRIC_START_SETTINGS.parameter_rate_newton_tolerance,
+            self.matrix.workspace,
         )
         scale = self.matrix.scale
         tangent = tangent_at(solved.orbit, scale, self._border(distance), linearisation_of(solved))
@@ -158,7 +160,7 @@ class _AsymmetricCycles:
     def first_cycle(self, distance: float) -> BranchCycle:
         """The cycle at a relative distance, as the first cycle of a branch; raises Unsolvable."""
         start = self.predicted_orbit(distance)
-        condition = self._condition(distance)
+        condition = self._predicted_deflection_condition(distance)
         solved = condition.solve_cycle(
             start, REFINEMENT_SETTINGS.nearby_orbit_tolerance, self.matrix.workspace
         )
@@ -170,20 +172,20 @@ class _AsymmetricCycles:
             mesh, solved, branch_newton_tolerance(self.accuracy), allowed_matrix_distance(self.accuracy)
         )
         scale = self.matrix.scale
-        arc_from_start = abs(self._deflection_change(distance)) / scale.deflection_unit
+        arc_from_start = abs(self._predicted_deflection_change(distance)) / scale.deflection_unit
         cycle = first_measured_cycle(first, scale, self._border(distance), arc_from_start, self.accuracy)
         # Again, because the correction on the final mesh may still fall onto the symmetric cycle.
         _require_asymmetry(cycle.orbit, start)
         return cycle
 
-    def _deflection_change(self, distance: float) -> float:
+    def _predicted_deflection_change(self, distance: float) -> float:
         """Deflection of the prediction at a relative distance minus deflection of the symmetric cycle."""
         return deflection_of(self.predicted_orbit(distance)) - deflection_of(self.symmetric)
 
     def _border(self, distance: float) -> Array:
-        return np.asarray(np.sign(self._deflection_change(distance)) * ALONG_DEFLECTION)
+        return np.asarray(np.sign(self._predicted_deflection_change(distance)) * DEFLECTION_UNIT_VECTOR)
 
-    def _condition(self, distance: float) -> BorderCondition:
+    def _predicted_deflection_condition(self, distance: float) -> BorderCondition:
         """The condition that a cycle has the deflection of the prediction at a relative distance."""
         return BorderCondition.at_arc_length(
             self.matrix.scale, self._border(distance), self.predicted_orbit(distance)

@@ -26,7 +26,7 @@ from .branch_start_settings import BRANCH_START_SETTINGS
 from .hopf_point import HopfBranchStart
 from .near_hopf_points import max_first_amplitude
 
-ALONG_DEFLECTION = np.array([1.0, 0.0, 0.0])
+DEFLECTION_UNIT_VECTOR = np.array([1.0, 0.0, 0.0])
 """Unit vector along the deflection, (3,), in components (deflection, log period, parameter)."""
 
 
@@ -70,7 +70,7 @@ def _cycle_near_hopf_point(
         (REFINEMENT_SETTINGS.min_first_mesh_accuracy, True),
     ):
         for fraction in BRANCH_START_SETTINGS.first_amplitudes:
-            amplitude = min(fraction, BRANCH_START_SETTINGS.max_amplitude_ratio * a, max_amplitude)
+            amplitude = min(fraction, BRANCH_START_SETTINGS.max_amplitude_per_coefficient * a, max_amplitude)
             try:
                 return _cycle_of_amplitude(
                     hopf, amplitude, mesh_accuracy, is_finer_start, accuracy, workspace
@@ -101,11 +101,11 @@ def _cycle_of_amplitude(
             start
         )
     min_deflection_unit = (
-        abs(deflection_of(start)) * BRANCH_START_SETTINGS.min_deflection_amplitude / amplitude
+        abs(deflection_of(start)) * BRANCH_START_SETTINGS.min_amplitude_of_deflection_unit / amplitude
     )
     scale = ArcLengthScale.at_orbit(start, hopf.parameter_name, min_deflection_unit, hopf.min_coordinate_unit)
     # With the deflection prescribed, not the parameter, the cycle cannot collapse onto the straight rod.
-    border = np.sign(deflection_of(start)) * ALONG_DEFLECTION
+    border = np.sign(deflection_of(start)) * DEFLECTION_UNIT_VECTOR
     condition = BorderCondition.at_arc_length(scale, border, start)
     rough_orbit = condition.solve_cycle(start, REFINEMENT_SETTINGS.nearby_orbit_tolerance, workspace)
     near_orbit = rough_orbit.orbit
@@ -127,7 +127,7 @@ def predicted_cycle(hopf: HopfBranchStart, amplitude: float) -> Orbit:
     """The cycle that the normal form predicts for the largest tip y `amplitude`, in L, on the normal form's
     mesh in space and a coarse mesh in time; raises Unsolvable."""
     change, frequency = hopf.parameter_change_and_frequency(amplitude)
-    form = StressForm(hopf.rod, hopf.normal_form.form.mesh, hopf.keeps_omega)
+    form = StressForm(hopf.rod, hopf.normal_form.form.mesh, hopf.is_omega_always_unknown)
     try:
         form = form.with_coordinate(hopf.parameter_name, hopf.parameter_coordinate + change)
     except (ValueError, ZeroDivisionError) as error:

@@ -33,7 +33,7 @@ class HopfBranchStart:
     """Normal form on a mesh that suffices for the prediction of the first cycle."""
     coefficients: HopfCoefficients
     """Coefficients of the normal form with error estimates, from a comparison of meshes."""
-    keeps_omega: bool = False
+    is_omega_always_unknown: bool = False
     """Whether the angular velocity Omega is an unknown for all cycles of the branch, see `StressForm`."""
     min_coordinate_unit: float = 0.0
     """Smallest unit of the parameter coordinate on the branch, see `ArcLengthScale`."""
@@ -61,7 +61,7 @@ class HopfBranchStart:
         return float(np.copysign(abs(squared_amplitude) ** 0.5, squared_amplitude))
 
     @property
-    def coefficient_error(self) -> float:
+    def relative_coefficient_error(self) -> float:
         """Relative error of the amplitude coefficient: half the sum of the relative errors of Re c, of
         Re(slope) and of the parameter at the Hopf point."""
         c = self.coefficients.landau
@@ -111,11 +111,15 @@ class HopfBranchStart:
 
 
 def hopf_branch_start(
-    path: ParameterPath, crossing: Threshold, keeps_omega: bool = False, min_coordinate_unit: float = 0.0
+    path: ParameterPath,
+    crossing: Threshold,
+    is_omega_always_unknown: bool = False,
+    min_coordinate_unit: float = 0.0,
 ) -> HopfBranchStart:
     """The Hopf point with its normal form, at a crossing of the imaginary axis along the parameter path
-    `path`; raises Unsolvable. keeps_omega: whether the angular velocity Omega is an unknown for all cycles of
-    the branch. min_coordinate_unit: smallest unit of the parameter's coordinate in arc lengths."""
+    `path`; raises Unsolvable. is_omega_always_unknown: whether the angular velocity Omega is an unknown for
+    all cycles of the branch. min_coordinate_unit: smallest unit of the parameter's coordinate in arc
+    lengths."""
     w = complex(0.0, crossing.frequency)
     rod = path.rod_at(path.coordinate(crossing.value))
     # Started at the located frequency, so the same eigenvalue is found again, now with its slope.
@@ -130,7 +134,7 @@ def hopf_branch_start(
         normal_form=normal,
         # Two meshes give these coefficients with their errors; one mesh suffices for the start of the branch.
         coefficients=hopf_coefficients(rod, crossing, HOPF_START_SETTINGS.normal_form_accuracy),
-        keeps_omega=keeps_omega,
+        is_omega_always_unknown=is_omega_always_unknown,
         min_coordinate_unit=min_coordinate_unit,
     )
 
@@ -140,9 +144,9 @@ def accuracy_near_hopf_points(hopfs: Sequence[HopfBranchStart], accuracy: float)
     smaller number if a Hopf point is close to a generalised Hopf point."""
     max_coefficient = max((abs(hopf.amplitude_coefficient) for hopf in hopfs), default=0.0)
     # Negated, so that a nan coefficient does not set the accuracy.
-    if not max_coefficient > BRANCH_START_SETTINGS.max_amplitude_coefficient:
+    if not max_coefficient > BRANCH_START_SETTINGS.max_harmless_amplitude_coefficient:
         return accuracy
-    ratio = (BRANCH_START_SETTINGS.max_amplitude_coefficient / max_coefficient) ** 2
+    ratio = (BRANCH_START_SETTINGS.max_harmless_amplitude_coefficient / max_coefficient) ** 2
     required_accuracy = BRANCH_START_SETTINGS.max_accuracy_if_degenerate * ratio
     return min(accuracy, max(required_accuracy, BRANCH_START_SETTINGS.min_accuracy_if_degenerate))
 
@@ -158,5 +162,5 @@ def hopf_as_special_point(hopf: HopfBranchStart) -> SpecialPoint:
         period_error=hopf.period_error,
         tip_y_max_error=0.0,
         amplitude_coefficient=hopf.amplitude_coefficient,
-        coefficient_error=hopf.coefficient_error,
+        relative_coefficient_error=hopf.relative_coefficient_error,
     )

@@ -21,14 +21,14 @@ def max_first_amplitude(hopf: HopfBranchStart, hopfs: Sequence[HopfBranchStart])
     fraction of half the axis of the ellipse that ends at the nearest of the Hopf points `hopfs`; inf if no
     branch of `hopfs` leads back."""
     facing = [other for other in hopfs if hopf.direction * _distance(hopf, other) > 0]
-    return BRANCH_START_SETTINGS.max_half_axis_fraction * _half_axis(hopf, facing)
+    return BRANCH_START_SETTINGS.max_first_amplitude_per_half_axis * _half_axis(hopf, facing)
 
 
 def min_last_amplitude(hopfs: Sequence[HopfBranchStart]) -> float:
     """Largest tip y, in L, below which no smaller cycle is solved before a branch ends at one of `hopfs`."""
     half_axis = min((_half_axis(hopf, hopfs) for hopf in hopfs), default=inf)
     settings = BRANCH_START_SETTINGS
-    return min(settings.min_amplitude_before_fold, settings.last_half_axis_fraction * half_axis)
+    return min(settings.min_amplitude_before_fold, settings.last_amplitude_per_half_axis * half_axis)
 
 
 def _half_axis(hopf: HopfBranchStart, hopfs: Sequence[HopfBranchStart]) -> float:

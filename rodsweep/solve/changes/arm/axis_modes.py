@@ -10,7 +10,7 @@ from ....arrays import Complex
 from ...spectrum.search import Spectrum, SpectrumRequest
 from ...spectrum.status import SpectrumStatus
 from ...unsolvable import Unsolvable
-from ..sample_interpolation import minimum_of_cubic
+from ..sample_interpolation import cubic_minimum_and_position
 from ..spectrum_samples import SPECTRUM_SAMPLE_SETTINGS
 from .path import ArmPath
 
@@ -41,7 +41,7 @@ class ArmModes:
     slopes: Complex
     unstable_count: int
 
-    def nearest_pair(self, growing: bool) -> tuple[float, float] | None:
+    def nearest_pair_distance_and_slope(self, growing: bool) -> tuple[float, float] | None:
         """Returns (distance from the imaginary axis, derivative of this distance with respect to p) of the
         pair nearest to the axis, among the growing pairs if `growing`, otherwise among the decaying pairs;
         None if no such pair is known."""
@@ -164,13 +164,13 @@ def _needed_modes(spectrum: Spectrum) -> int:
     return 2 + max(spectrum.unstable_count, growing_count)
 
 
-def next_count_position(left: ArmModes, right: ArmModes) -> float:
+def next_count_interval_fraction(left: ArmModes, right: ArmModes) -> float:
     """Position of the next count as a fraction of the interval of p from `left` to `right`; 0 if no count is
     needed, because no pair can touch the imaginary axis in the interval."""
     length = right.p - left.p
     for grows in (False, True):
-        left_pair = left.nearest_pair(grows)
-        right_pair = right.nearest_pair(grows)
+        left_pair = left.nearest_pair_distance_and_slope(grows)
+        right_pair = right.nearest_pair_distance_and_slope(grows)
         if left_pair is None and right_pair is None:
             continue
         if left_pair is None or right_pair is None:
@@ -180,7 +180,7 @@ def next_count_position(left: ArmModes, right: ArmModes) -> float:
             if may_touch_axis and distance < abs(slope) * length:
                 return 0.5
             continue
-        minimum, fraction = minimum_of_cubic(
+        minimum, fraction = cubic_minimum_and_position(
             left_pair[0], right_pair[0], length * left_pair[1], length * right_pair[1]
         )
         if minimum < SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * min(left_pair[0], right_pair[0]):

@@ -13,7 +13,7 @@ import numpy as np
 from ...unsolvable import Unsolvable
 from ..search_range import IntervalQueue, SearchEnd
 from ..threshold_kinds import Threshold, crossing_kind
-from .axis_modes import ArmModes, ModesAlongPath, next_count_position
+from .axis_modes import ArmModes, ModesAlongPath, next_count_interval_fraction
 from .path import ArmPath
 
 
@@ -21,7 +21,7 @@ from .path import ArmPath
 class ArmCrossingSettings:
     """Settings of the search for crossings along a path of arms."""
 
-    max_expected_pairs_ratio: float = 2.0
+    max_expected_pairs_per_max_crossings: float = 2.0
     """Largest number of pairs expected to grow at the right end of an interval, divided by the maximum number
     of crossings; with more pairs the interval is halved before its search."""
     min_halved_interval_fraction: float = 1e-3
@@ -29,7 +29,7 @@ class ArmCrossingSettings:
     max_pairs_at_once: int = 6
     """Where many modes grow, all crossings between two counted arms are searched at once if their counts
     differ by at most this many pairs."""
-    max_frequency_ratio: float = 4.0
+    max_frequency_per_largest_modulus: float = 4.0
     """Modes near the axis at a crossing are searched for |Im w| up to this multiple of the largest |w|."""
     max_distance_in_errors: float = 10.0
     """Two crossings may be equal if their values differ by at most this multiple of their summed errors."""
@@ -38,10 +38,10 @@ class ArmCrossingSettings:
     their frequencies is at most this number."""
     min_interval_fraction: float = 1e-6
     """Intervals shorter than this fraction of the path are not divided, but stored as gaps."""
-    min_interval_length_ratio: float = 1e-12
+    min_relative_interval_length: float = 1e-12
     """The search fails at an interval without located crossings whose length, divided by the larger modulus
     of its ends, is at most this number: some thousand rounding errors."""
-    count_distance_fraction: float = 1e-5
+    count_distance_path_fraction: float = 1e-5
     """Distance from a crossing, as a fraction of the path, at which the modes are counted on both sides."""
     max_steps: int = 20
     """Maximum number of Newton steps for one crossing."""
@@ -72,7 +72,7 @@ class CrossingSearch:
         further crossing takes longer than all earlier ones. Raises Unsolvable if the search ends at the first
         edge."""
         intervals = IntervalQueue(edges)
-        count_distance = ARM_CROSSING_SETTINGS.count_distance_fraction * intervals.length
+        count_distance = ARM_CROSSING_SETTINGS.count_distance_path_fraction * intervals.length
         self.axis_modes.outside_p_by_end = {
             edges[0]: edges[0] - count_distance,
             edges[-1]: edges[-1] + count_distance,
@@ -108,7 +108,7 @@ class CrossingSearch:
             or b - a < ARM_CROSSING_SETTINGS.min_halved_interval_fraction * length
         ):
             return False
-        max_pairs = ARM_CROSSING_SETTINGS.max_expected_pairs_ratio * 2 * max_crossings
+        max_pairs = ARM_CROSSING_SETTINGS.max_expected_pairs_per_max_crossings * 2 * max_crossings
         return self.axis_modes.has_many_modes(b) and self.problem.expected_unstable_count(b) > max_pairs
 
     def _search_interval(self, a: float, b: float, intervals: IntervalQueue) -> None:
@@ -118,7 +118,7 @@ class CrossingSearch:
         right_modes = self.axis_modes.modes_at(b)
         # Equal counts leave room for a pair that crosses and returns.
         if left_modes.unstable_count == right_modes.unstable_count:
-            fraction = next_count_position(left_modes, right_modes)
+            fraction = next_count_interval_fraction(left_modes, right_modes)
             if fraction == 0.0:
                 return
             if b - a <= ARM_CROSSING_SETTINGS.min_interval_fraction * intervals.length:
@@ -135,7 +135,7 @@ class CrossingSearch:
                 )
                 intervals.add_subintervals(*parts)
                 return
-            if b - a <= ARM_CROSSING_SETTINGS.min_interval_length_ratio * max(abs(a), abs(b)):
+            if b - a <= ARM_CROSSING_SETTINGS.min_relative_interval_length * max(abs(a), abs(b)):
                 place = self.problem.path.text_at(a)
                 raise Unsolvable(f"the crossing of the imaginary axis near {place} could not be located")
         middle = a + fraction * (b - a)
@@ -148,13 +148,13 @@ class CrossingSearch:
         after a crossing do not confirm the crossing. length: length of the path."""
         intervals: list[tuple[float, float]] = []
         start = left.p
-        max_frequency = ARM_CROSSING_SETTINGS.max_frequency_ratio * max(
+        max_frequency = ARM_CROSSING_SETTINGS.max_frequency_per_largest_modulus * max(
             left.largest_modulus, right.largest_modulus
         )
         for crossing in crossings:
             p = self.problem.path.coordinate(crossing.value)
-            p_before = max(start, p - ARM_CROSSING_SETTINGS.count_distance_fraction * length)
-            p_after = min(right.p, p + ARM_CROSSING_SETTINGS.count_distance_fraction * length)
+            p_before = max(start, p - ARM_CROSSING_SETTINGS.count_distance_path_fraction * length)
+            p_after = min(right.p, p + ARM_CROSSING_SETTINGS.count_distance_path_fraction * length)
             guesses = None
             if self.axis_modes.has_many_modes(p_before):
                 guesses = self.axis_modes.eigenvalues_near_axis(
@@ -218,7 +218,7 @@ class CrossingSearch:
             w, slope, error = self.problem.eigenvalue(guess, p)
             p_error = error / abs(slope.real) + settings.rounding_error * abs(p)
             if abs(w.real / slope.real) <= settings.converged_step_in_errors * p_error:
-                max_error = settings.count_distance_fraction * (p_ends[1] - p_ends[0])
+                max_error = settings.count_distance_path_fraction * (p_ends[1] - p_ends[0])
                 if self.axis_modes.has_many_modes(p) and not p_error <= max_error:
                     return None  # no root of D is resolved
                 return self._crossing_at(p, w, slope, p_error, grows)

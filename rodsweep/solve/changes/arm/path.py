@@ -34,11 +34,12 @@ class ArmPathSettings:
     an edge would lie on a Hopf point, where no count succeeds, if the range ends at twice its force."""
     steps_per_interval: int = 4
     """Number of steps in which eigenvalues are followed through each of `first_interval_count` intervals."""
-    followed_mode_count: int = 4
+    followed_count_beyond_unstable: int = 4
     """Number of leading eigenvalues, besides all unstable ones, that are proved complete at each step."""
     spare_mode_count: int = 2
-    """Number of modes computed in addition, if more than `followed_mode_count` modes are requested."""
-    max_growing_modes: float = 16.0
+    """Number of modes computed in addition, if more than `followed_count_beyond_unstable` modes are
+    requested."""
+    max_expected_growing_modes: float = 16.0
     """No modes are followed where the estimate `expected_unstable_count` exceeds this number: at most 13
     modes can be followed, and the estimate is 0.9 to 1.9 times the true number."""
     w_bound_ratio: float = 4.0
@@ -75,7 +76,7 @@ class ArmPath(PathProblem):
         if (
             family is None
             and self._followed_arms is not None
-            and self.expected_unstable_count(p) <= ARM_PATH_SETTINGS.max_growing_modes
+            and self.expected_unstable_count(p) <= ARM_PATH_SETTINGS.max_expected_growing_modes
         ):
             return self._followed_arms.family_at(p)
         return family
@@ -105,7 +106,9 @@ class ArmPath(PathProblem):
                 / ARM_PATH_SETTINGS.steps_per_interval
             )
             points = np.interp(step_positions, np.arange(len(edges)), edges)
-            self._followed_arms = FollowedArms(self.path, points, ARM_PATH_SETTINGS.followed_mode_count)
+            self._followed_arms = FollowedArms(
+                self.path, points, ARM_PATH_SETTINGS.followed_count_beyond_unstable
+            )
         return edges.tolist()
 
     def expected_unstable_count(self, p: float) -> float:
@@ -116,7 +119,10 @@ class ArmPath(PathProblem):
         """The `mode_count` leading eigenvalues at p, proved complete, if they can be followed to p; else
         None."""
         settings = ARM_PATH_SETTINGS
-        if self._followed_arms is None or self.expected_unstable_count(p) > settings.max_growing_modes:
+        if (
+            self._followed_arms is None
+            or self.expected_unstable_count(p) > settings.max_expected_growing_modes
+        ):
             return None
         spectrum = self._followed_arms.spectrum(p, mode_count)
         if spectrum is not None:
@@ -148,7 +154,7 @@ class ArmPath(PathProblem):
         ):
             spare = (
                 ARM_PATH_SETTINGS.spare_mode_count
-                if request.modes > ARM_PATH_SETTINGS.followed_mode_count
+                if request.modes > ARM_PATH_SETTINGS.followed_count_beyond_unstable
                 else 0
             )
             stored_spectrum = super().spectrum(p, replace(request, modes=request.modes + spare))
@@ -183,7 +189,7 @@ class ArmPath(PathProblem):
         return self._determinant_along_path.double_eigenvalue(x, p, expected_distance)
 
     def count_right_of(self, line: float, p: float) -> EigenvalueCount:
-        spectrum = self.followed_spectrum(p, ARM_PATH_SETTINGS.followed_mode_count)
+        spectrum = self.followed_spectrum(p, ARM_PATH_SETTINGS.followed_count_beyond_unstable)
         if spectrum is not None:
             w = spectrum.eigenvalues
             error = spectrum.error_estimate
@@ -191,7 +197,11 @@ class ArmPath(PathProblem):
             # The followed modes are complete down to the last of them, so counting them is a proof.
             if are_clear and w[-1].real < line <= 0:
                 return EigenvalueCount(int((w.real > line).sum()), 0)
-            if are_clear and line == 0 and spectrum.unstable_count < ARM_PATH_SETTINGS.followed_mode_count:
+            if (
+                are_clear
+                and line == 0
+                and spectrum.unstable_count < ARM_PATH_SETTINGS.followed_count_beyond_unstable
+            ):
                 return EigenvalueCount(spectrum.unstable_count, 0)
         followed_roots = self._followed_arms.followed_roots(p) if self._followed_arms is not None else None
         return ArmProblem(self.path.rod_at(p)).count(line, followed_roots)

@@ -24,7 +24,7 @@ class BoundaryAssignmentSettings:
 
     coordinate_tolerance: float = 1e-12
     """Two scaled coordinates are equal if their difference is smaller than this number."""
-    eigenvalue_tolerance: float = 1e-3
+    relative_eigenvalue_tolerance: float = 1e-3
     """A threshold lies on a curve only if its eigenvalue and the eigenvalue of the curve at the same value of
     the second parameter differ by less than this number, relatively."""
     max_secant_steps: int = 20
@@ -91,7 +91,7 @@ class _BoundaryTracingProblem:
     def distance(self, curve: BoundaryCurve, seed: int) -> float:
         """Distance of the threshold with index `seed` from `curve` along the first axis, in the scaled
         coordinate of this axis; inf if no point near the threshold has nearly its eigenvalue."""
-        return _distance_from_curve(self.plane, curve, self.seeds[seed])
+        return _distance_along_first_axis(self.plane, curve, self.seeds[seed])
 
     def are_identical(self, first: BoundaryCurve, second: BoundaryCurve) -> bool:
         """Whether two curves are identical: they have the same `eigenvalue_sign` and share an end. The test
@@ -112,7 +112,7 @@ def boundary_curves_through(plane: ParameterPlane, seeds: list[BoundarySeed]) ->
     ).traced_curves
 
 
-def _distance_from_curve(plane: ParameterPlane, curve: BoundaryCurve, seed: BoundarySeed) -> float:
+def _distance_along_first_axis(plane: ParameterPlane, curve: BoundaryCurve, seed: BoundarySeed) -> float:
     """Distance of a threshold from the curve along the first axis, at the threshold's value on the second
     axis, in the scaled coordinate of the first axis; inf if the curve has another `eigenvalue_sign`, or no
     point at this value with nearly the eigenvalue of the threshold."""
@@ -140,7 +140,7 @@ def _distance_from_curve(plane: ParameterPlane, curve: BoundaryCurve, seed: Boun
         point = _point_at_second_coordinate(StabilityBoundary(plane, curve.eigenvalue_sign), a, b, y)
         if (
             point is not None
-            and abs(point[2] - math.log(abs(seed.eigenvalue))) < settings.eigenvalue_tolerance
+            and abs(point[2] - math.log(abs(seed.eigenvalue))) < settings.relative_eigenvalue_tolerance
         ):
             distance = min(distance, float(abs(point[0] - x)))
     return distance

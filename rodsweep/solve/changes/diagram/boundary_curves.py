@@ -149,8 +149,8 @@ def _fold_between(
             component,
             end_components,
             size,
-            BOUNDARY_CURVE_SETTINGS.fold_accuracy,
-            BOUNDARY_CURVE_SETTINGS.fold_accuracy,
+            BOUNDARY_CURVE_SETTINGS.fold_location_tolerance,
+            BOUNDARY_CURVE_SETTINGS.fold_location_tolerance,
         )
         # Along the chord the tangent's component changes from end to end: its error moves the fold.
         curve_error = (

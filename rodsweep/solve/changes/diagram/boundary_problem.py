@@ -34,12 +34,12 @@ enough for a smooth drawn curve."""
 class BoundaryCurveSettings:
     """Settings for points, ends and folds of a boundary curve."""
 
-    edge_tolerance: float = 1e-9
+    max_distance_beyond_edge: float = 1e-9
     """Largest distance by which a point on one edge of the plane may lie beyond another edge."""
     max_merged_distance: float = 1e-9
     """Two neighbouring points of a curve are merged if their distance is at most this number, as at a start
     on an edge of the plane."""
-    fold_accuracy: float = 1e-13
+    fold_location_tolerance: float = 1e-13
     """Tolerance at a fold: largest component of the tangent, and smallest bracket over the step."""
     hopf_tangent_error: float = 1e-12
     """Rounding error of the unit tangent to a curve of Hopf points."""
@@ -126,7 +126,7 @@ class BoundaryCurveProblem:
         inner = previous[-1].v
         fraction = (limit - inner[axis]) / (outer.v[axis] - inner[axis])
         solution = self.boundary.point_near(inner + fraction * (outer.v - inner), np.eye(3)[axis])
-        tolerance = BOUNDARY_CURVE_SETTINGS.edge_tolerance
+        tolerance = BOUNDARY_CURVE_SETTINGS.max_distance_beyond_edge
         if solution is None or not -tolerance <= solution.v[1 - axis] <= 1 + tolerance:
             raise Unsolvable("no point of the curve was found on the edge of the diagram")
         return BoundaryPoint.oriented(solution, previous[-1].tangent)
@@ -159,7 +159,7 @@ class BoundaryCurveProblem:
         v, tangent = curve.solutions[-1]
         if (
             self.margins(curve.solutions[-1])[:CRUSHED_MARGIN_INDEX].min()
-            <= BOUNDARY_CURVE_SETTINGS.edge_tolerance
+            <= BOUNDARY_CURVE_SETTINGS.max_distance_beyond_edge
         ):
             return BoundaryEndReason.edge
         next_point = BoundaryPoint(v + 2 * BOUNDARY_STEP_CONTROL.min_length * tangent, tangent)

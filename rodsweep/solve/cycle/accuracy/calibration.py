@@ -181,7 +181,7 @@ def calibration_of(
     previous_mesh = nearby.mesh
     space_decay = nearby.space_decay
     time_order = nearby.time_order
-    if previous_mesh.order != mesh.order and previous_mesh.has_same_edges_and_ratios(mesh):
+    if previous_mesh.order != mesh.order and previous_mesh.has_same_edges_and_order_ratios(mesh):
         space_decay = _measured_space_decay(nearby.space_errors, space, mesh.order - previous_mesh.order)
     if previous_mesh.interval_count != mesh.interval_count and previous_mesh.grading == mesh.grading:
         time_order = _measured_time_order(nearby.time_errors, time, previous_mesh, mesh)
@@ -209,7 +209,7 @@ def _measured_time_order(
     each, on the meshes `previous` and `mesh` with different numbers of time intervals."""
     # Radau IIA has the order 2 stages - 1, which stiff problems may reduce to stages + 1.
     min_order = mesh.stage_count + 1
-    log_interval_ratio = np.log(mesh.full_intervals / previous.full_intervals)
+    log_interval_ratio = np.log(mesh.full_length_interval_count / previous.full_length_interval_count)
     max_order = CALIBRATION_SETTINGS.max_time_order_ratio * min_order
     order: Array = np.clip(_log_ratio(first_errors, second_errors) / log_interval_ratio, min_order, max_order)
     return order

@@ -41,7 +41,8 @@ def cheapest_mesh(calibration: Calibration, accuracy: float) -> OrbitMesh:
         calibrated.stage_count + 1,
     )
     time_errors = (
-        calibration.time_errors[:, None] * (calibrated.full_intervals / (interval_counts - 1)) ** time_order
+        calibration.time_errors[:, None]
+        * (calibrated.full_length_interval_count / (interval_counts - 1)) ** time_order
     )
     errors = errors_with_safety_factors(space_errors[:, :, None], time_errors[:, None, :], accuracy)
     period_error, y_error = errors[:2] / CALIBRATION_SETTINGS.planned_error_ratio

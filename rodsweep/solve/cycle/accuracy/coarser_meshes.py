@@ -75,7 +75,9 @@ class CoarserMeshes:
             ORBIT_MESH_SETTINGS.min_order - COARSER_MESH_SETTINGS.min_order_difference,
         )
         self._max_predicted_order = order + order_difference + COARSER_MESH_SETTINGS.max_order_excess
-        interval_count = round(mesh.full_intervals / (1 + COARSER_MESH_SETTINGS.added_interval_fraction)) + 1
+        interval_count = (
+            round(mesh.full_length_interval_count / (1 + COARSER_MESH_SETTINGS.added_interval_fraction)) + 1
+        )
         self._fine_mesh = mesh
         self.coarse_mesh = replace(mesh.with_order(order), interval_count=interval_count)
         self._min_error = COARSER_MESH_SETTINGS.min_predicted_error_ratio * accuracy
@@ -95,7 +97,7 @@ class CoarserMeshes:
         )
         return (
             is_near
-            and mesh.has_same_edges_and_ratios(self._fine_mesh)
+            and mesh.has_same_edges_and_order_ratios(self._fine_mesh)
             and mesh.stage_count == self.coarse_mesh.stage_count
         )
 
@@ -146,8 +148,8 @@ class CoarserMeshes:
         return errors
 
     def _interval_ratio(self, mesh: OrbitMesh) -> float:
-        """Ratio of `full_intervals` of `mesh` to `full_intervals` of the coarse mesh."""
-        return mesh.full_intervals / self.coarse_mesh.full_intervals
+        """The `full_length_interval_count` of `mesh`, divided by that of the coarse mesh."""
+        return mesh.full_length_interval_count / self.coarse_mesh.full_length_interval_count
 
 
 def _pessimistic_space_decay(orbit: Orbit) -> float:

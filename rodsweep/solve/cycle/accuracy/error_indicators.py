@@ -14,7 +14,7 @@ from ....arrays import Array, Complex
 from ...orbit.measures import CycleMotion
 from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
-from ...orbit.tails import smooth_tails_of_elements
+from ...orbit.tails import smooth_element_and_time_tails
 from .calibration_settings import CALIBRATION_SETTINGS
 from .cycle_errors import CYCLE_ERROR_SETTINGS
 
@@ -64,7 +64,7 @@ def _slowest_decay_over_solved_part(multipliers: Complex) -> float:
 def tails_and_size(orbit: Orbit) -> Array:
     """Relative tails of an orbit in space, of each element, and in time, not below a minimum, and size of the
     orbit, (elements + 2,)."""
-    tails = np.maximum(smooth_tails_of_elements(orbit), CALIBRATION_SETTINGS.min_tail)
+    tails = np.maximum(smooth_element_and_time_tails(orbit), CALIBRATION_SETTINGS.min_tail)
     return np.append(tails, orbit.max_energy_norm)
 
 

@@ -50,7 +50,7 @@ def finer_meshes(mesh: OrbitMesh) -> tuple[tuple[OrbitMesh, OrbitMesh], float]:
     the error in time that the mesh finer in time removes."""
     interval_count = ceil((1 + FINER_MESH_SETTINGS.added_interval_fraction) * mesh.interval_count)
     # Errors in time fall with this power of the full intervals; the last two intervals have half the length.
-    removed_fraction = 1 - (mesh.full_intervals / (interval_count - 1)) ** (mesh.stage_count + 1)
+    removed_fraction = 1 - (mesh.full_length_interval_count / (interval_count - 1)) ** (mesh.stage_count + 1)
     return (
         mesh.with_order(mesh.order + FINER_MESH_SETTINGS.order_increase),
         replace(mesh, interval_count=interval_count),

@@ -108,7 +108,7 @@ class AmplitudeEquation:
         )
         return linear_growth < 0 and (is_linear or is_small) and self._has_period_of_mode(times)
 
-    def decays_faster(self, times: Array, states: Array) -> bool:
+    def decays_no_slower_than_mode(self, times: Array, states: Array) -> bool:
         """Whether a motion decays at least 1 - max_slow_growth times as fast as the leading mode, so that no
         cycle is near. The decay of a slow mode with c > 0 may be smaller by `growth_error`. times: (k,);
         states: (k, unknowns)."""

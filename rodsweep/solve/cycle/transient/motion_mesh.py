@@ -12,7 +12,7 @@ from ....discretization.elements.resolution import (
     resolution_for,
 )
 from ....discretization.straight.arm_resolution import arm_elements, arm_mesh
-from ....model.dispersion import most_amplified_wave
+from ....model.dispersion import largest_growth_and_wave_number
 from ....model.rod import Rod
 
 
@@ -70,7 +70,9 @@ def motion_mesh(rod: Rod, accuracy: float) -> Mesh:
         finest_mesh = max(modal_mesh, mesh, key=lambda each: each.node_count)
         return mesh_with_edges(finest_mesh.edges, finest_mesh.order)
     max_wave_number = max(
-        expected_wave_number(MOTION_MESH_SETTINGS.expected_mode_count, most_amplified_wave(rod)[1]),
+        expected_wave_number(
+            MOTION_MESH_SETTINGS.expected_mode_count, largest_growth_and_wave_number(rod)[1]
+        ),
         wave_number,
     )
     resolution = resolution_for(max_wave_number, accuracy)

@@ -27,7 +27,7 @@ def no_period_text(return_count: int, limit_text: str, last_returns: Sequence[tu
     )
 
 
-def decayed_text(return_count: int, is_unstable: bool) -> str:
+def decayed_without_end_text(return_count: int, is_unstable: bool) -> str:
     """Message on a motion whose deflection has decayed without an end at the straight rod. return_count:
     number of returns of the tip. is_unstable: whether the straight rod is unstable."""
     reason = "the straight rod is unstable" if is_unstable else "the stretch of the rod has not relaxed"

@@ -33,7 +33,7 @@ class ReturnSettings:
     """A cycle is recognised if the tip returns at most this number of times per period."""
     max_steps_per_run: int = 20_000
     """Maximum number of time steps in one run."""
-    searched_last_state_count: int = 200
+    convexity_tested_state_count: int = 200
     """If a run fails, this number of its last states is searched for a cross-section whose strain energy is
     not convex. The equations are ill-posed for such a cross-section, and the integrator may fail only some
     steps later."""
@@ -83,7 +83,9 @@ def run_failure(system: ExplicitSystem, run: Trajectory, return_count: int) -> R
         h1 = system.least_stretch(run.states[-1])
         place = f"at a point of the rod after {counted(return_count, 'return')} of the tip"
         return RunFailure(True, f"the axial stretch h1 is {h1:.3g} {place}")
-    if not run.message and _loses_convexity(system, run.states[-RETURN_SETTINGS.searched_last_state_count :]):
+    if not run.message and _loses_convexity(
+        system, run.states[-RETURN_SETTINGS.convexity_tested_state_count :]
+    ):
         reason = (
             f"after {counted(return_count, 'return')} of the tip a cross-section has lost its stiffness: its "
             "strain energy is not convex, so the model ends there"

@@ -22,7 +22,7 @@ class ShapeTraceSettings:
     """Maximum number of stored shapes: 50 periods of 32 shapes."""
     max_rest_deflection: float = 2e-3
     """An arm is at rest if the tip's |y|, in L, is at most this number."""
-    min_returns: int = 3
+    min_returns_to_measure_period: int = 3
     """With fewer returns than this number, the period of the leading mode is used as the period of the
     motion."""
 
@@ -78,15 +78,15 @@ class ShapeTrace:
         at rest, at most SHAPE_TRACE_SETTINGS.max_stored_shapes.
 
         return_times: times of the last returns of the tip, in tau2. period: period of the leading mode, in
-        tau2, used in place of the time per return if there are fewer than SHAPE_TRACE_SETTINGS.min_returns
-        returns.
+        tau2, used in place of the time per return if there are fewer than
+        SHAPE_TRACE_SETTINGS.min_returns_to_measure_period returns.
         """
         from scipy.interpolate import CubicSpline  # slow import: 0.1 s, for few runs
 
         time_step = (
             # The median is not affected by a few irregular returns.
             float(np.median(np.diff(return_times)))
-            if len(return_times) >= SHAPE_TRACE_SETTINGS.min_returns
+            if len(return_times) >= SHAPE_TRACE_SETTINGS.min_returns_to_measure_period
             else period
         ) / frame_count
         shape_times = time_step * np.arange(

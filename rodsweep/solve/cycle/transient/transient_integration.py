@@ -24,10 +24,10 @@ from ..accuracy.refined_cycle import RefinedCycle
 from ..accuracy.refinement import refined_cycle
 from ..cycle_outcome import CycleRequest
 from ..status import CycleStatus
-from ..straight_rod import StraightRodStability, system_growth_rate
+from ..straight_rod import StraightRodStability, growth_rate_of_integrated_rod
 from .amplitude_equation import AmplitudeEquation
 from .motion_mesh import integrable_rod
-from .no_period import decayed_text, no_period_text
+from .no_period import decayed_without_end_text, no_period_text
 from .orbit_from_motion import orbit_from_motion, scaled_state
 from .returns import RETURN_SETTINGS, recurrence, return_limit, run_failure, section_crossings, tip_angle_row
 from .schemes import schemes_for_growth
@@ -71,7 +71,7 @@ class TransientIntegration:
             rate * period, request.transient > 0
         )
         self.max_steps = max_steps * max(request.most_periods, TRANSIENT_SETTINGS.min_returns_for_max_steps)
-        excess = rate - system_growth_rate(form.rod, self.system.rod, straight, rate)
+        excess = rate - growth_rate_of_integrated_rod(form.rod, self.system.rod, straight, rate)
         self.amplitude_equation = AmplitudeEquation(period, rate, excess, growth_error)
         self.step = period / TRANSIENT_SETTINGS.first_steps_per_period
         """First time step of the next run, in tau2."""
@@ -106,7 +106,7 @@ class TransientIntegration:
             # An unstable rod is excluded, because rounding errors exceed the growth of so small a motion.
             if self.straight.stable is not False and np.linalg.norm(z) < RETURN_SETTINGS.max_straight_norm:
                 return self._result(CycleStatus.straight, "the motion has decayed to rounding error")
-            if self.straight.stable is False and not self._bends_visibly(z):
+            if self.straight.stable is False and not self._bends_beyond_rounding(z):
                 if self.record or self.jump_count >= TRANSIENT_SETTINGS.max_jumps:
                     break
                 # The rod is unstable, but the state has no component along the growing mode beyond rounding.
@@ -125,7 +125,7 @@ class TransientIntegration:
                 if not self.record or self.record.is_full:  # a motion with a stored path has no jumps
                     z = self._state_after_jump(scaled_state(self.system, z, factor))
                 continue
-            decays = self.amplitude_equation.decays_faster(times, states)
+            decays = self.amplitude_equation.decays_no_slower_than_mode(times, states)
             cycle = None if decays else self._cycle_from_returns(run)
             if cycle is not None:
                 return self._result(*cycle.verdict(self.accuracy), cycle)
@@ -166,12 +166,12 @@ class TransientIntegration:
         """Message that explains why the motion, now at the state z, (unknowns,), has not settled."""
         if self.unsolved_message:
             return f"after {counted(self.returns, 'return')} of the tip {self.unsolved_message}"
-        if self._bends_visibly(z):
+        if self._bends_beyond_rounding(z):
             limit_text = f", at the maximum of {self.steps} time steps" * (self.steps >= self.max_steps)
             return no_period_text(self.returns, limit_text, self.past_returns)
-        return decayed_text(self.returns, self.straight.stable is False)
+        return decayed_without_end_text(self.returns, self.straight.stable is False)
 
-    def _bends_visibly(self, z: Array) -> bool:
+    def _bends_beyond_rounding(self, z: Array) -> bool:
         """Whether the bending and shear components of the state z, (unknowns,), exceed rounding errors."""
         size = np.linalg.norm(self.system.layout.transverse_unknowns(z))
         return bool(size >= RETURN_SETTINGS.max_straight_norm)

@@ -48,7 +48,7 @@ class Linearisation:
             else parameter_derivatives(orbit.form, parameter_name)
         )
         column_count = 2 if parameter_name is None else 3
-        steps, self._period_derivative = eliminate_at_orbit(
+        steps, self._period_derivative = eliminate_and_solve_at_orbit(
             orbit.values, column_count, derivatives, p, factors
         )
         self.step = steps[0]
@@ -80,7 +80,7 @@ def parameter_derivatives(form: StressForm, name: str) -> ParameterDerivatives:
 
 
 @compiled_for_vectors
-def eliminate_at_orbit(
+def eliminate_and_solve_at_orbit(
     values: Array,
     count: int,
     derivatives: ParameterDerivatives,
@@ -204,7 +204,7 @@ def reduced_residuals(
 
 
 @compiled_for_vectors
-def reduced_variation_sides(
+def reduced_stage_residual_variations(
     values: Array,
     rod: OrbitEquations,
     derivatives: ParameterDerivatives,
@@ -236,7 +236,7 @@ def newton_step_with_factors(
     values: Array, period_derivative: Array, p: OrbitEquations, factors: NewtonFactors
 ) -> Array:
     """Newton's step, (N,), at the orbit values `values`, (N,). p: equations of the orbit. factors,
-    period_derivative: from `eliminate_at_orbit` at a nearby orbit."""
+    period_derivative: from `eliminate_and_solve_at_orbit` at a nearby orbit."""
     K, s, n = period_derivative.shape
     points = values[:-1].reshape(1 + K * s, n)
     duration = values[-1] / p.period_parts

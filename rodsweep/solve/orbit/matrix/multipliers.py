@@ -116,7 +116,7 @@ def low_rank_factors(A: Array, negligible: float) -> tuple[Array, Array]:
         q[:] = columns[p] / max(size, EXPONENT_SETTINGS.min_divisor)
         for j in range(n):
             if norms[j] > least:
-                norms[j] = _subtract_projection(columns[j], q, r, j)
+                norms[j] = _subtract_component_along(columns[j], q, r, j)
         # The rest of the pivot column is rounding error: its norm is set to 0.
         r[p] = size
         norms[p] = 0.0
@@ -125,7 +125,7 @@ def low_rank_factors(A: Array, negligible: float) -> tuple[Array, Array]:
 
 
 @compiled_for_vectors
-def _subtract_projection(column: Array, q: Array, r: Array, j: int) -> float:
+def _subtract_component_along(column: Array, q: Array, r: Array, j: int) -> float:
     """Subtracts from `column`, (n,), in place, its component along the unit vector q, (n,), stores this
     component in r[j], and returns the norm of the remaining column. j: index of the column."""
     along = 0.0

@@ -27,7 +27,7 @@ class ShootingIntervalSettings:
     max_growth: float = 1e7
     """Largest norm of the map of a shooting interval; a Newton step then has nine correct digits. Stable
     cycles have norms below 1e3 and a single shooting interval."""
-    sweep_count: int = 2
+    orthogonal_iteration_sweep_count: int = 2
     """Number of sweeps of the orthogonal iteration over all shooting intervals. The first sweep orders the
     directions by their growth; the second starts with ordered directions."""
     negligible_multiplier: float = 1e-17
@@ -46,7 +46,7 @@ class ShootingIntervals:
     edges: tuple[int, ...]
     flow_maps: Array
 
-    def increments_of_ends(
+    def end_increments_for_fixed_starts(
         self, factors: NewtonFactors, columns: Array, end_increments: Array, p: OrbitEquations
     ) -> Array:
         """Increments of the states at the ends of all shooting intervals for fixed starts, (m, k, n), for k
@@ -88,7 +88,7 @@ class ShootingIntervals:
         *earlier_maps, last_map = self.flow_maps
         basis = np.eye(len(last_map))
         triangle = basis
-        for _ in range(SHOOTING_INTERVAL_SETTINGS.sweep_count):
+        for _ in range(SHOOTING_INTERVAL_SETTINGS.orthogonal_iteration_sweep_count):
             # Directions that decay to nothing over a period are dropped, to save time.
             kept_columns = np.flatnonzero(
                 np.abs(np.diag(triangle)) > SHOOTING_INTERVAL_SETTINGS.negligible_multiplier

@@ -22,7 +22,7 @@ from ....determinant.arm.family_values import write_propagators
 from ....determinant.arm.hull.region import EigenvalueHull, PathHulls, hull_at
 from ....determinant.arm.rounding import error_of_interpolated_chain
 from ....determinant.arm.value import determinant_from_propagators, path_value_from_propagators
-from ....determinant.roots.roots import roots_of_parabola, sort_descending
+from ....determinant.roots.roots import roots_of_parabola, sort_indices_descending
 from ....determinant.value import DETERMINANT_SETTINGS, second_difference
 from ....model.compiled.compilation import compiled
 from ..candidates import CANDIDATE_SETTINGS
@@ -37,14 +37,14 @@ from .following import (
 )
 from .prediction import FollowedEigenvalues, find_conjugates, predict_eigenvalues, set_two_guesses
 
-PropagatorsWithSlopes = tuple[float, Array, Array, Array]
+PropagatorsWithPathSlopes = tuple[float, Array, Array, Array]
 """(bound W of |w|, propagators valid for |w| <= W, derivatives of the propagators with respect to the path
 variable p, sizes of their entries); the first two arrays: (elements, terms, PADDED), the third as
 `ArmFamily.entry_sizes`."""
 
 
 @compiled
-def correct_eigenvalue_of_arm(w: complex, level: PropagatorsWithSlopes) -> CorrectedEigenvalue:
+def newton_step_of_arm_eigenvalue(w: complex, level: PropagatorsWithPathSlopes) -> CorrectedEigenvalue:
     """One Newton step for a root of D from w, for an arm with propagators `level`; a real w stays real. The
     error estimate contains only the rounding errors of the products of propagators; it is no bound of the
     rounding error of D, see `rounding_error_from_propagators`."""
@@ -54,7 +54,7 @@ def correct_eigenvalue_of_arm(w: complex, level: PropagatorsWithSlopes) -> Corre
 
 @compiled
 def _converged_step_and_error(
-    first: CorrectedEigenvalue, crowding: float, exact: bool, level: PropagatorsWithSlopes
+    first: CorrectedEigenvalue, crowding: float, exact: bool, level: PropagatorsWithPathSlopes
 ) -> tuple[CorrectedEigenvalue, float]:
     """(last Newton step, error) of an arm's eigenvalue, after Newton steps until `converged_error` is finite.
 
@@ -70,12 +70,14 @@ def _converged_step_and_error(
                 error_of_D = error_of_interpolated_chain(step.w, level[0], level[1], step.log_scale, level[3])
                 error = max(error, error_of_D / step.D_slope)
             return step, error
-        step = correct_eigenvalue_of_arm(step.w, level)
+        step = newton_step_of_arm_eigenvalue(step.w, level)
     return step, math.inf
 
 
 @compiled
-def taylor_parabola_roots_of_arm(middle: complex, level: PropagatorsWithSlopes) -> tuple[complex, complex]:
+def taylor_parabola_roots_of_arm(
+    middle: complex, level: PropagatorsWithPathSlopes
+) -> tuple[complex, complex]:
     """The two roots of D near a real `middle`, from the quadratic Taylor polynomial of D about `middle`."""
     D, D_w, S, _ = determinant_from_propagators(middle, level[0], level[1])
     h = DETERMINANT_SETTINGS.second_difference_step_ratio * abs(middle)
@@ -87,7 +89,7 @@ def taylor_parabola_roots_of_arm(middle: complex, level: PropagatorsWithSlopes) 
 
 @compiled
 def _refine_all_eigenvalues(
-    track: FollowedEigenvalues, i: int, guess: Complex, modes: int, level: PropagatorsWithSlopes
+    track: FollowedEigenvalues, i: int, guess: Complex, modes: int, level: PropagatorsWithPathSlopes
 ) -> bool:
     """Refines the guesses for all eigenvalues of point i and writes the eigenvalues to the track. guess:
     (m,). The `modes` leading eigenvalues converge to rounding error. level: propagators of the arm. Returns
@@ -99,14 +101,14 @@ def _refine_all_eigenvalues(
     conjugate_index = np.empty(m, np.int64)
     find_conjugates(guess, conjugate_index)
     w[:] = guess
-    sort_descending(w, order)
+    sort_indices_descending(w, order)
     for rank in range(m):
         k = order[rank]
         if guess[k].imag != 0 and conjugate_index[k] < 0:
             return False
         # Eigenvalues in the lower half plane follow by conjugation.
         if guess[k].imag >= 0:
-            first = correct_eigenvalue_of_arm(guess[k], level)
+            first = newton_step_of_arm_eigenvalue(guess[k], level)
             w[k] = first.w
             if conjugate_index[k] >= 0:
                 w[conjugate_index[k]] = w[k].conjugate()
@@ -114,13 +116,13 @@ def _refine_all_eigenvalues(
             if not store_root(track, i, k, conjugate_index[k], last):
                 return False
     # The refinement may have changed the order.
-    sort_descending(w, order)
+    sort_indices_descending(w, order)
     return are_distinct_roots(w, error) and np.abs(w).max() <= level[0]
 
 
 @compiled
 def proved_count_right_of_line(
-    track: FollowedEigenvalues, i: int, modes: int, hull: EigenvalueHull, level: PropagatorsWithSlopes
+    track: FollowedEigenvalues, i: int, modes: int, hull: EigenvalueHull, level: PropagatorsWithPathSlopes
 ) -> int:
     """Number of leading eigenvalues of point i that are proved to be all eigenvalues to the right of a line;
     0 without a proof.

@@ -9,8 +9,9 @@ class ArmFollowingSettings:
 
     further_mode_counts: tuple[int, ...] = (3, 9)
     """Numbers of modes followed in addition to the wanted modes. The second number is tried if, with the
-    first number, fewer than `min_proved_fraction` of the points are proved or too few growing modes."""
-    min_proved_fraction: float = 0.5
+    first number, fewer than `min_proved_fraction_without_more_modes` of the points are proved or too few
+    growing modes."""
+    min_proved_fraction_without_more_modes: float = 0.5
     """More modes are followed if the modes are proved complete at less than this fraction of the points, no
     counts follow, and more modes would prove a further point."""
     min_unproved_points: int = 64
@@ -21,10 +22,10 @@ class ArmFollowingSettings:
     w_bound_ratio: float = 2.0
     """The propagators of a new family are valid at least up to W = `w_bound_ratio` * (largest |w| at the
     first point)."""
-    min_reused_W_factor: float = 1.25
+    min_reused_W_over_max_w: float = 1.25
     """The family of the previous interval is used again if its W is at least this multiple of the largest |w|
     at the first point of the new interval."""
-    max_point_count_ratio: int = 2
+    max_points_over_previous_family: int = 2
     """Maximum number of points of a new family, divided by the number reached with the previous family."""
     min_points: int = 4
     """Minimum number of points for which a family of arms is made."""
@@ -32,7 +33,7 @@ class ArmFollowingSettings:
     """Relative accuracy of the eigenvalues of `FollowedArms`."""
     modes_beyond_growing: int = 2
     """Number of modes that a search for crossings requests in addition to the growing modes."""
-    steps_from_nearest: tuple[int, ...] = (1, 4)
+    step_counts_from_nearest_point: tuple[int, ...] = (1, 4)
     """Eigenvalues at a path variable p are followed from the nearest solved point in this number of equal
     steps; the numbers are tried in turn."""
     hulls_per_interval: int = 13

@@ -79,21 +79,25 @@ def follow_interval(
         if previous is not None and added_modes < previous.further_mode_count:
             continue
         if best is not None and not (
-            _follows_too_few_modes(best)
-            or (not counts_follow and _proves_middle(path, best, request, added_modes))
+            _follows_too_few_to_prove_growing(best)
+            or (not counts_follow and _proves_middle_unproved_point(path, best, request, added_modes))
         ):
             break
         interval = _follow_with_further_modes(path, p, request, added_modes, previous)
         if interval is not None and (best is None or _is_better_interval(interval, best, request.modes)):
             best = interval
-        min_proved = 0.0 if best is None else ARM_FOLLOWING_SETTINGS.min_proved_fraction * len(best.p)
+        min_proved = (
+            0.0
+            if best is None
+            else ARM_FOLLOWING_SETTINGS.min_proved_fraction_without_more_modes * len(best.p)
+        )
         is_proved = best is not None and best.proved_points(request.modes) >= min_proved
-        if best is not None and is_proved and not _follows_too_few_modes(best):
+        if best is not None and is_proved and not _follows_too_few_to_prove_growing(best):
             break
     return best
 
 
-def _follows_too_few_modes(interval: ArmInterval) -> bool:
+def _follows_too_few_to_prove_growing(interval: ArmInterval) -> bool:
     """Whether too few modes are followed to prove all growing modes complete at every point."""
     growing_count = (interval.track.w.real > 0).sum(axis=1).max()
     return bool(growing_count + ARM_FOLLOWING_SETTINGS.modes_beyond_growing > interval.track.w.shape[1])
@@ -104,10 +108,10 @@ def _is_better_interval(interval: ArmInterval, other: ArmInterval, mode_count: i
     modes."""
     proved = interval.proved_points(mode_count)
     other_proved = other.proved_points(mode_count)
-    return proved > other_proved or (proved == other_proved and _follows_too_few_modes(other))
+    return proved > other_proved or (proved == other_proved and _follows_too_few_to_prove_growing(other))
 
 
-def _proves_middle(
+def _proves_middle_unproved_point(
     path: ParameterPath, interval: ArmInterval, request: SpectrumRequest, added_mode_count: int
 ) -> bool:
     """Whether following `added_mode_count` additional modes would prove completeness at the middle point
@@ -147,13 +151,13 @@ def _follow_with_further_modes(
         inside_count = int(((p >= previous.family.p_low) & (p <= previous.family.p_high)).sum())
         if (
             inside_count >= settings.min_points
-            and settings.min_reused_W_factor * np.abs(first_w).max() <= previous.family.largest_w
+            and settings.min_reused_W_over_max_w * np.abs(first_w).max() <= previous.family.largest_w
         ):
             family_data = (previous.family, previous.hulls)
             n = inside_count
         else:
             # The last interval shows how far one family reaches.
-            n = min(n, max(settings.max_point_count_ratio * len(previous.p), settings.min_points))
+            n = min(n, max(settings.max_points_over_previous_family * len(previous.p), settings.min_points))
     while first_w is not None and family_data is None and n >= settings.min_points:
         family_data = family_and_hulls(path, p[:n], first_w, request.modes)
         # On half the interval the propagators need a lower degree.

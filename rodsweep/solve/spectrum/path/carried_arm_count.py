@@ -30,7 +30,9 @@ class ArmCountCarrier:
         self.w, self.error = leading_eigenvalues_of_track(interval.track, interval.track.w.shape[1])
         last = self.w[:, mode_count - 1]
         # Left of the axis, so that the count also tells the number of unstable modes.
-        self.lines = np.minimum(last.real, 0.0) - NO_CROSSING_SETTINGS.line_distance_ratio * np.abs(last)
+        self.lines = np.minimum(last.real, 0.0) - NO_CROSSING_SETTINGS.line_distance_over_last_w * np.abs(
+            last
+        )
 
     def carry_counts(self) -> None:
         """Fills `interval.proved_counts` wherever a count can be carried."""
@@ -48,8 +50,8 @@ class ArmCountCarrier:
                     skipped_count *= 2
                     continue
                 # A second count at the far end is needed, since the carrying rests on sampled arms.
-                if self._confirmed_line(points[-1], lines[-1]) is not None:
-                    self._store_proved_modes(points, lines)
+                if self._confirmed_line_at_or_left_of(points[-1], lines[-1]) is not None:
+                    self._store_proved_counts_between(points, lines)
                 first = points[-1] + 1
                 skipped_count = 1
 
@@ -71,10 +73,10 @@ class ArmCountCarrier:
             line = float(self.lines[index : next_index + 1].min())
             # A count right of one line says nothing about a line farther left.
             if confirmed_line is None or confirmed_line > line:
-                confirmed_line = self._confirmed_line(index, line)
+                confirmed_line = self._confirmed_line_at_or_left_of(index, line)
                 if confirmed_line is None:
                     break
-            if self._is_line_free(line, index, next_index):
+            if self._is_line_free_of_unknowns(line, index, next_index):
                 points.append(next_index)
                 lines.append(line)
                 confirmed_line = line
@@ -86,12 +88,12 @@ class ArmCountCarrier:
                 stride = (next_index - index) // 2
         return points, lines
 
-    def _confirmed_line(self, i: int, line: float) -> float | None:
+    def _confirmed_line_at_or_left_of(self, i: int, line: float) -> float | None:
         """Result of `confirmed_line` at the point with index i, with `rightmost` = `line`."""
         p = float(self.interval.p[i])
         return confirmed_line(self.path, self.interval, p, (self.w[i], self.error[i]), self.modes, line)
 
-    def _is_line_free(self, line: float, first: int, last: int) -> bool:
+    def _is_line_free_of_unknowns(self, line: float, first: int, last: int) -> bool:
         """Whether no unknown eigenvalue lies on a line, for any arm between two points of the interval."""
         interval = self.interval
         points = sampled_point_indices(first, last)
@@ -100,7 +102,7 @@ class ArmCountCarrier:
         rods = [self.path.rod_at(value) for value in p.tolist()]
         return proves_no_crossing_of_arms(line, rods, p, known_w, interval.family, interval.hulls)
 
-    def _store_proved_modes(self, points: list[int], lines: list[float]) -> None:
+    def _store_proved_counts_between(self, points: list[int], lines: list[float]) -> None:
         """Fills `interval.proved_counts` between successive `points`, where no followed eigenvalue is close
         to the line."""
         for (first, last), line in zip(pairwise(points), lines, strict=True):

@@ -88,7 +88,7 @@ def _stays_open(
 
 
 @compiled
-def _widest_open_gap(
+def _count_right_of_widest_open_gap(
     track: FollowedEigenvalues, ends: tuple[int, int], modes: int, proved_count: int, p: Array
 ) -> int:
     """Number of eigenvalues to the right of the widest gap that stays open between the points `ends`; 0 if no
@@ -135,7 +135,7 @@ def carry_count(
     stride = last
     while i < last:
         j = min(i + stride, last)
-        gap = _widest_open_gap(track, (i, j), modes, proved_counts[i], p)
+        gap = _count_right_of_widest_open_gap(track, (i, j), modes, proved_counts[i], p)
         proved = False
         if gap > 0:
             first = _interval_end(track, i, gap, p, coefficients)
@@ -178,7 +178,8 @@ def assess_points(
             w = track.w[s, k]
             error = track.error[s, k]
             if abs(w.real) <= max(
-                ROOT_SETTINGS.axis_tolerance_in_errors * error, ROOT_SETTINGS.axis_tolerance * abs(w)
+                ROOT_SETTINGS.axis_tolerance_in_errors * error,
+                ROOT_SETTINGS.axis_tolerance * abs(w),
             ):
                 is_good[s] = False
             if rank < modes and not error <= min(

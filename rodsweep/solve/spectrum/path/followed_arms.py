@@ -87,7 +87,7 @@ class FollowedArms:
         self._follow_to(p)
         for interval in self.intervals:
             if interval.p.min() <= p <= interval.p.max():
-                track, _ = self._track_from_nearest_point(interval, p, self.request.modes)
+                track, _ = self._track_and_proved_count_at(interval, p, self.request.modes)
                 if track is not None:
                     return KnownRoots(track.w[0], track.error[0])
         return None
@@ -111,7 +111,7 @@ class FollowedArms:
                 )
             ):
                 requested = needed_modes
-                track, proved_count = self._track_from_nearest_point(interval, p, requested)
+                track, proved_count = self._track_and_proved_count_at(interval, p, requested)
                 growing_count = 0 if track is None else int((track.w.real > 0).sum())
             if track is None:
                 continue
@@ -124,7 +124,7 @@ class FollowedArms:
             if proved_count >= mode_count:
                 return
 
-    def _track_from_nearest_point(
+    def _track_and_proved_count_at(
         self, interval: ArmInterval, p: float, mode_count: int
     ) -> tuple[FollowedEigenvalues | None, int]:
         """Returns (track with the eigenvalues at p only, number of modes proved complete), followed from the
@@ -136,7 +136,7 @@ class FollowedArms:
         if p == start and mode_count <= self.request.modes:
             return slice_track(interval.track, i, i + 1), int(interval.proved_counts[i])
         # One step mostly suffices; shorter steps follow where eigenvalues meet in between.
-        for steps in ARM_FOLLOWING_SETTINGS.steps_from_nearest:
+        for steps in ARM_FOLLOWING_SETTINGS.step_counts_from_nearest_point:
             # At the point itself the eigenvalues are refined once more, with a proof for more modes.
             grid = np.array([start]) if p == start else start + (p - start) * np.arange(steps + 1) / steps
             track = new_track(interval.track.w[i], len(grid))

@@ -47,7 +47,7 @@ def follow_leading_eigenvalue(rod: Rod, guesses: Complex, accuracy: float) -> Le
         return _follow_leader_of_uniform(rod, complex(guesses[0]), accuracy)
     if rod.is_uniform:
         # The eigenvalues of the nonlinear rod are `rate` times the eigenvalues of an equivalent linear rod.
-        linear_rod, rate = rod.equivalent_linear_rod
+        linear_rod, rate = rod.equivalent_linear_rod_and_rate
         leading_w = follow_leading_eigenvalue(linear_rod, guesses / rate, accuracy)
         if leading_w is None:
             return None
@@ -63,7 +63,7 @@ def _follow_leader_of_uniform(rod: Rod, guess: complex, accuracy: float) -> Lead
     eigenvalue of the neighbouring rod. accuracy: largest relative error."""
     w = refine_eigenvalue(guess, rod.coefficients)
     error, _, _ = root_error_and_scales(w, rod.coefficients)
-    if not _matches_neighbour(w, error, guess, accuracy):
+    if not _is_accurate_and_real_like_neighbour(w, error, guess, accuracy):
         return None
     mode_count = 2 if w.imag else 1  # a pair, or one real eigenvalue
     is_leading = any(count_right_of(line, rod).number == mode_count for line in _lines_for_count(w))
@@ -89,9 +89,9 @@ def _follow_leader_of_arm(rod: Rod, guesses: Complex, accuracy: float) -> Leadin
     w = w[order]
     error = error[order]
     leading_w = complex(w[0])
-    if not _matches_neighbour(leading_w, float(error[0]), guess, accuracy) or not are_distinct_roots(
-        w, error
-    ):
+    if not _is_accurate_and_real_like_neighbour(
+        leading_w, float(error[0]), guess, accuracy
+    ) or not are_distinct_roots(w, error):
         return None
     known_roots = _with_conjugates(w, error)
     is_complete, _ = prove_complete(
@@ -132,7 +132,7 @@ def _refined(guesses: Complex, determinant: ArmDeterminant) -> tuple[Complex, Ar
     return np.array([root for root, _ in roots]), np.array([error for _, error in roots])
 
 
-def proves_leader(rod: Rod, w: Complex, error: Array) -> bool:
+def is_arm_leader_proved_without_count(rod: Rod, w: Complex, error: Array) -> bool:
     """Whether eigenvalues of a nonuniform arm prove without a count which of them leads. w, error:
     eigenvalues with Im w >= 0 and their absolute errors, (n,) each, the leading eigenvalue first."""
     line = line_for_proof(complex(w[0]), float(error[0]))
@@ -148,7 +148,9 @@ def _with_conjugates(w: Complex, error: Array) -> KnownRoots:
     return KnownRoots(np.append(w, w[pairs].conj()), np.append(error, error[pairs]))
 
 
-def _matches_neighbour(w: complex, error: float, neighbour_w: complex, accuracy: float) -> bool:
+def _is_accurate_and_real_like_neighbour(
+    w: complex, error: float, neighbour_w: complex, accuracy: float
+) -> bool:
     """Whether w has a relative error of at most `accuracy`, and is real or complex like the eigenvalue
     `neighbour_w` of the neighbouring rod."""
     return error <= accuracy * abs(w) and w.imag >= 0 and (w.imag == 0) == (neighbour_w.imag == 0)

@@ -14,7 +14,7 @@ import numpy as np
 from ....arrays import Array, Complex
 from ....determinant.exponents import MACHINE_EPSILON
 from ....determinant.parameter_path import PathDeterminantValue, determinant_along_path
-from ....determinant.roots.roots import sort_descending, taylor_parabola_roots
+from ....determinant.roots.roots import sort_indices_descending, taylor_parabola_roots
 from ....determinant.roots.settings import ROOT_NEWTON_SETTINGS, ROOT_SETTINGS
 from ....determinant.rounding_at_root import rounding_error_at_root
 from ....determinant.value import DETERMINANT_SETTINGS
@@ -55,7 +55,7 @@ class CorrectedEigenvalue(NamedTuple):
 
 
 @compiled
-def correct_eigenvalue(
+def newton_step_of_uniform_eigenvalue(
     w: complex, coefficients: Coefficients, direction: Coefficients
 ) -> CorrectedEigenvalue:
     """One Newton step for a root of D from w; a real w stays real. direction: d(F, nu, c2, gamma3)/dp."""
@@ -148,9 +148,9 @@ def _iterate_to_convergence(
             if exact and step.rounding_error > ROOT_SETTINGS.ill_conditioned_ratio * abs(step.w):
                 error = min(crowding * step.step_length * step.step_length, step.step_length)
                 error_of_D = rounding_error_at_root(step.w, rod, step.log_scale)
-                error = max(error, ROOT_SETTINGS.rounding_fraction_at_root * error_of_D / step.D_slope)
+                error = max(error, ROOT_SETTINGS.rounding_bound_fraction_at_root * error_of_D / step.D_slope)
             return step, error
-        step = correct_eigenvalue(step.w, rod, direction)
+        step = newton_step_of_uniform_eigenvalue(step.w, rod, direction)
     return step, math.inf
 
 
@@ -191,11 +191,11 @@ def _refine_all_eigenvalues(
             return False
         # Eigenvalues in the lower half plane follow by conjugation.
         if guess[k].imag >= 0:
-            first[k] = correct_eigenvalue(guess[k], rod, direction)
+            first[k] = newton_step_of_uniform_eigenvalue(guess[k], rod, direction)
             w[k] = first[k].w
             if conjugate[k] >= 0:
                 w[conjugate[k]] = w[k].conjugate()
-    sort_descending(w, order)
+    sort_indices_descending(w, order)
     for rank in range(m):
         k = order[rank]
         if guess[k].imag >= 0:
@@ -205,7 +205,7 @@ def _refine_all_eigenvalues(
             if not store_root(track, i, k, conjugate[k], last):
                 return False
     # The further steps may have changed the order.
-    sort_descending(w, order)
+    sort_indices_descending(w, order)
     return are_distinct_roots(w, error)
 
 

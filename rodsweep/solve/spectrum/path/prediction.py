@@ -26,7 +26,7 @@ class EigenvaluePredictionSettings(KernelConstants):
     max_steps_to_meeting: float = 4.0
     """Two real eigenvalues are extrapolated as a pair if, by their slopes, they meet within this many steps
     of the path, ahead or behind."""
-    undecided_fraction: float = 0.25
+    undecided_squared_difference_ratio: float = 0.25
     """If the predicted squared half difference is below this fraction of its value at the last point, the
     determinant D is evaluated to find whether the two eigenvalues are real or complex."""
 
@@ -122,7 +122,9 @@ def extrapolate_hermite(
 
 
 @compiled
-def _pair_sum_and_difference(w: Complex, slope: Complex, k: int, j: int) -> tuple[float, float, float, float]:
+def _half_sum_and_squared_half_difference(
+    w: Complex, slope: Complex, k: int, j: int
+) -> tuple[float, float, float, float]:
     """Returns (half the sum of w[k] and w[j], squared half difference, slope of the half sum, slope of the
     squared half difference). w, slope: eigenvalues and dw/dp, (m,)."""
     half = (w[k] - w[j]) / 2
@@ -146,18 +148,20 @@ def _predict_pair(
     k, j = pair
     # Where two real eigenvalues meet and become a pair, each has a square root in p; middle and squared half
     # difference are smooth.
-    middle, square, m1, s1 = _pair_sum_and_difference(track.w[i - 1], track.slope[i - 1], k, j)
+    middle, square, m1, s1 = _half_sum_and_squared_half_difference(track.w[i - 1], track.slope[i - 1], k, j)
     previous_square = square
     if i >= 2:
-        middle_0, square_0, m0, s0 = _pair_sum_and_difference(track.w[i - 2], track.slope[i - 2], k, j)
+        middle_0, square_0, m0, s0 = _half_sum_and_squared_half_difference(
+            track.w[i - 2], track.slope[i - 2], k, j
+        )
         middle = extrapolate_hermite((middle_0, middle), (m0, m1), steps)
         square = extrapolate_hermite((square_0, square), (s0, s1), steps)
     else:
         middle = middle + m1 * steps[1]
         square = square + s1 * steps[1]
-    if square * previous_square <= 0 or abs(square) < EIGENVALUE_PREDICTION_SETTINGS.undecided_fraction * abs(
-        previous_square
-    ):
+    if square * previous_square <= 0 or abs(
+        square
+    ) < EIGENVALUE_PREDICTION_SETTINGS.undecided_squared_difference_ratio * abs(previous_square):
         return complex(middle, 0.0), complex(middle, 0.0), True
     root = cmath.sqrt(complex(square, 0.0))
     return middle + root, middle - root, False

@@ -14,7 +14,7 @@ from .....errors import InputError
 from .....results.file.view import ResultView
 from .....results.layouts.limit_cycle import CYCLE_STATUSES
 from ... import style
-from ...grid_slices import left_out_clause
+from ...grid_slices import infinite_values_clause
 from ..selection import shared_and_own_of_arms, shared_and_own_texts
 from ..units_and_labels import units_of_files
 from .amplitude_series import AmplitudeSeries, abscissa_parameter, amplitude_series
@@ -68,7 +68,7 @@ def draw_amplitude(views: Sequence[ResultView], is_narrow: bool = False) -> tupl
     if legend := [handle for handle in handles if handle.get_label()]:
         style.draw_legend_below(figure, legend, column_count=min(2, len(legend)))
     figure.suptitle(style.heading_text(first_view, common_text))
-    omissions = [left_out_clause(view.point_columns, [name]) for view in views]
+    omissions = [infinite_values_clause(view.point_columns, [name]) for view in views]
     return figure, f"amplitudes of the tip, period and power against {name}{max(omissions, key=len)}"
 
 

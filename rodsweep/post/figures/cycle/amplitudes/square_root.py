@@ -18,7 +18,7 @@ MAX_FITTED_DISTANCE = 0.1
 matter."""
 MAX_LAW_DEVIATION = 0.2
 """A law is drawn over the range in which it differs from the amplitudes by at most this relative amount."""
-ERROR_SAFETY_FACTOR = 2.0
+COEFFICIENT_ERROR_FACTOR = 2.0
 """The error estimate of a coefficient is this factor times the change of the coefficient by one more
 cycle."""
 MIN_ERRORS_AWAY = 100
@@ -39,8 +39,8 @@ class SquareRootLaw:
     end: float
     """Force F farthest from F** up to which the amplitudes follow the law, see MAX_LAW_DEVIATION."""
     error: float
-    """Error estimate of a, in L: ERROR_SAFETY_FACTOR times the change of a if a third cycle is used; if only
-    two cycles exist, times the change of a by the extrapolation to F**."""
+    """Error estimate of a, in L: COEFFICIENT_ERROR_FACTOR times the change of a if a third cycle is used; if
+    only two cycles exist, times the change of a by the extrapolation to F**."""
 
     def curve(self, point_count: int = 100) -> tuple[Array, Array]:
         """Returns (F, amplitude) on the law from F** to `end`, (points,) each, dense near F**."""
@@ -94,7 +94,7 @@ def _law_on_side(F: Array, amplitude: Array, point: LocatedThreshold, side: int)
         if len(three_quotients) > 2 and distance[2] <= MAX_FITTED_DISTANCE
         else square_over_distance[0]
     )
-    error = ERROR_SAFETY_FACTOR * abs(sqrt(max(extrapolated_square, 0.0)) - sqrt(coefficient_square))
+    error = COEFFICIENT_ERROR_FACTOR * abs(sqrt(max(extrapolated_square, 0.0)) - sqrt(coefficient_square))
     return SquareRootLaw(point.position, sqrt(coefficient_square), side > 0, law_end_position, error)
 
 

@@ -163,7 +163,7 @@ def correct_until_converged(function: FoldTestFunction | TorusTestFunction, orbi
         previous_value = value
         value = function.value(orbit)
         change = abs(value - previous_value)
-        if change <= SPECIAL_POINT_SETTINGS.test_function_tolerance or (
+        if change <= SPECIAL_POINT_SETTINGS.test_function_change_tolerance or (
             change > SPECIAL_POINT_SETTINGS.converging_step_ratio * previous_change
             and change <= MINIMALLY_AUGMENTED_SETTINGS.max_rounding_correction
         ):

@@ -12,21 +12,21 @@ from ...determinant.stability_changes import CoefficientsAlongForce, StabilityCh
 from ...discretization.elements.resolution import expected_wave_number, resolution_for
 from ...discretization.straight.dense_eigenproblem import dense_eigenproblem
 from ...discretization.straight.transverse_mesh import pencil_on
-from ...model.dispersion import most_amplified_wave
+from ...model.dispersion import largest_growth_and_wave_number
 from ...model.rod import Rod
-from ...solve.modes.propagator import shifted_inverse
+from ...solve.modes.propagator import symmetrised_shifted_inverse
 
 MAX_HALVINGS = 8
 """Maximum number of halvings of the interval. Without an onset in the interval, because a complex pair
 overtakes the leading real eigenvalue, no number of halvings is sufficient."""
-LEADING_EIGENVALUE_TOLERANCE = 0.01
+LEADING_DOUBLE_EIGENVALUE_TOLERANCE = 0.01
 """A double eigenvalue is the leading eigenvalue if its relative distance from the mean of the two leading
 eigenvalues on the mesh is at most this number."""
 MESH_ACCURACY = 1e-6
 """Relative accuracy of eigenvalues on a mesh: sufficient to tell real eigenvalues from a complex pair."""
 
 
-def locate_onset(
+def locate_oscillation_onset(
     rods: CoefficientsAlongForce,
     rod: Rod,
     end_forces: tuple[float, float],
@@ -44,7 +44,7 @@ def locate_onset(
     for _ in range(1 + MAX_HALVINGS):
         if not lower_eigenvalues[:2].imag.any():
             change = onset_between(rods, (low, high), lower_eigenvalues, upper_eigenvalues)
-            if change is not None and _is_leading(rod, change):
+            if change is not None and _is_double_eigenvalue_leading(rod, change):
                 return change
         middle = (low + high) / 2
         eigenvalues = leading_pair_on_mesh(rod.with_coordinate("F", middle))
@@ -55,20 +55,22 @@ def locate_onset(
     return None
 
 
-def _is_leading(rod: Rod, change: StabilityChange) -> bool:
+def _is_double_eigenvalue_leading(rod: Rod, change: StabilityChange) -> bool:
     """Whether the double eigenvalue `change` is the leading eigenvalue of the rod at this force. Between two
     forces far from each other, other eigenvalues can merge too."""
     pair = leading_pair_on_mesh(rod.with_coordinate("F", change.F))
     return bool(
-        abs(pair.mean() - change.growth_rate) <= LEADING_EIGENVALUE_TOLERANCE * abs(change.growth_rate)
+        abs(pair.mean() - change.growth_rate) <= LEADING_DOUBLE_EIGENVALUE_TOLERANCE * abs(change.growth_rate)
     )
 
 
 def leading_pair_on_mesh(rod: Rod) -> Complex:
     """The two leading eigenvalues of a uniform rod, in 1/tau2, (2,), on a mesh of the relative accuracy
     MESH_ACCURACY."""
-    wave_number = expected_wave_number(2, most_amplified_wave(rod)[1])
+    wave_number = expected_wave_number(2, largest_growth_and_wave_number(rod)[1])
     eigenproblem = dense_eigenproblem(rod, pencil_on(resolution_for(wave_number, MESH_ACCURACY)))
-    inverses = np.linalg.eigvals(shifted_inverse(eigenproblem.A, eigenproblem.B, 0.0)).astype(complex)
+    inverses = np.linalg.eigvals(symmetrised_shifted_inverse(eigenproblem.A, eigenproblem.B, 0.0)).astype(
+        complex
+    )
     eigenvalues = 1 / inverses[inverses != 0]
     return eigenvalues[np.lexsort((-eigenvalues.imag, -eigenvalues.real))[:2]]

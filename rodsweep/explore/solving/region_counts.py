@@ -12,7 +12,7 @@ Dataset = Any
 """An xarray.Dataset, or one of its arrays."""
 
 
-def region_bounds(data: Dataset, row_parameter: str) -> dict[str, Any]:
+def region_counts(data: Dataset, row_parameter: str) -> dict[str, Any]:
     """Variables between_x, between_y, between_count and crushing_load of `diagram_answer`, from a result of
     the task `phase_diagram` over F and the parameter `row_parameter`. Raises ValueError for a config that
     this version of rodsweep does not accept."""
