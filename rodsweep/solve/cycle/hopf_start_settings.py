@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from ...model.rod import Rod
+from ..orbit.matrix.workspace import require_enough_stages
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,6 +62,9 @@ class HopfStartSettings:
     """Number of collocation stages per interval of the coarse mesh."""
     intermediate_orbit_tolerance: float = 3e-3
     """Relative tolerance of Newton's method for the intermediate orbits on the branch."""
+
+    def __post_init__(self) -> None:
+        require_enough_stages(self.coarse_stage_count)
 
 
 HOPF_START_SETTINGS = HopfStartSettings()

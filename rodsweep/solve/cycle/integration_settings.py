@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from ..orbit.matrix.workspace import require_enough_stages
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class IntegrationSettings:
@@ -48,6 +50,9 @@ class IntegrationSettings:
     measurement_interval_ratio: int = 2
     """Factor by which this number grows from a cycle to the next, finer one, so that the difference of the
     two contains the error of the measurement."""
+
+    def __post_init__(self) -> None:
+        require_enough_stages(self.measurement_stage_count)
 
 
 INTEGRATION_SETTINGS = IntegrationSettings()

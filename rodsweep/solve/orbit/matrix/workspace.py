@@ -71,7 +71,9 @@ def stage_block(i: int, j: int, s: int) -> int:
 
 
 def factors_size(interval_count: int, stage_count: int, unknown_count: int) -> int:
-    """Size of the factors of a Newton matrix, in double-precision numbers."""
+    """Size of the factors of a Newton matrix, in double-precision numbers. Raises ValueError for too few
+    stages, for which compiled code would write beyond the factors."""
+    require_enough_stages(stage_count)
     return interval_count * block_count(stage_count) * unknown_count**2
 
 
