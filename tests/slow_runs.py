@@ -20,7 +20,7 @@ import time
 from rodsweep.results.run.journal import Journal
 from rodsweep.sweep.stop import StopRequest
 
-note = StopRequest._record_signal
+note = StopRequest._record_signal_name
 kept, heard = [], []
 
 def then_wait(append):
@@ -38,7 +38,7 @@ def note_and_go_on(self, number, frame):
     note(self, number, frame)
 
 Journal.append, Journal.append_all = then_wait(Journal.append), then_wait(Journal.append_all)
-StopRequest._record_signal = note_and_go_on
+StopRequest._record_signal_name = note_and_go_on
 """
 
 
