@@ -15,7 +15,7 @@ from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings
 from rodsweep.solve.cycle.accuracy.calibration_settings import CALIBRATION_SETTINGS
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 
-RUBBER = Rod(
+RUBBER_ROD = Rod(
     F=53.06592728921504,
     k1=2446.396,
     k2=23.69954,
@@ -23,7 +23,7 @@ RUBBER = Rod(
     gamma1=1.0,
     material=RodMaterial("neo_hookean", "fixed"),
 )
-LINEAR_CONSTITUTIVE_LAW = Rod(
+LINEAR_ROD = Rod(
     F=69.30506864353256,
     k1=704.9938809234176,
     k2=99.4380472401329,
@@ -44,9 +44,9 @@ def followed_down(rod, end, top, accuracy):
     "rod, top, end, place",
     [
         # Two real multipliers, 11167 and 10180, after a complex pair: an error of 64 with 36 stated.
-        pytest.param(RUBBER, 1.1, 0.6, 0.7410906371, id="near-coincidence"),
+        pytest.param(RUBBER_ROD, 1.1, 0.6, 0.7410906371, id="near-coincidence"),
         # A multiplier of 6.5e4 had the errors of cycles with multipliers of 1.3e4: 53 with 38 stated.
-        pytest.param(LINEAR_CONSTITUTIVE_LAW, 1.6, 0.6, 0.6847960, id="large"),
+        pytest.param(LINEAR_ROD, 1.6, 0.6, 0.6847960, id="large"),
     ],
 )
 def test_interpolated_errors_of_large_multipliers_cover_the_errors(rod, top, end, place):
