@@ -115,7 +115,7 @@ def start_file(orbit: Orbit, pieces: int) -> bytes:
     """
     system, _ = state_on_cycle(orbit)
     turns = np.arange(pieces + 1) / pieces * orbit.symmetry.period_parts
-    states = orbit.states_at(np.where(turns > 1, turns - 1, turns))
+    states = orbit.states_at_time_fractions(np.where(turns > 1, turns - 1, turns))
     states[turns > 1] = orbit.symmetry.apply(states[turns > 1], orbit.form.layout)
     z = states * system.sqrt_compliance[:, :-1].ravel()
     return b"".join(part.tobytes() for part in (np.int32(pieces), np.array([system.rod.F, orbit.period]), z))

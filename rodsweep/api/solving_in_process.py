@@ -20,7 +20,7 @@ from ..sweep.points.groups import PointGroups, SolveGroup
 from ..sweep.progress import ProgressReporter, SilentProgress, can_show_notebook_bar
 from ..sweep.stop import RankListener, SingleRankCommunication, StopRequest
 from ..tasks.protocol import NamedArrays, Solver, SweepWideResult, SweepWideSolver
-from ..tasks.running.failures import FailureReasons, parameters_text, reasons_of_changed_points
+from ..tasks.running.failures import FailureReasons, failure_reasons_of_changed_points, parameters_text
 from ..tasks.running.in_memory import blas_pool, view_in_memory
 from ..tasks.running.job import Job, plan_in_memory
 from ..tasks.running.unforeseen_exceptions import PointExceptionNote, guarded_solver
@@ -64,7 +64,7 @@ def solve_in_process(
                 view = view_in_memory(job, plan, values)
                 sweep_wide = _sweep_wide_result(solver.sweep_wide_solver, view, display)
                 _change_points(sweep_wide, job, plan, values, messages)
-                reasons += reasons_of_changed_points(sweep_wide, solver.statuses, _point_text_of(job))
+                reasons += failure_reasons_of_changed_points(sweep_wide, solver.statuses, _point_text_of(job))
         except BaseException:  # a solve was interrupted, by Ctrl-C too: cached solvers may be half changed
             destroy_pooled_solvers()
             raise

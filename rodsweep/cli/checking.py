@@ -15,12 +15,12 @@ from ..model.arm.neglected import wall_flattening_effect
 from ..post.summary import print_lines
 from ..post.summary.arm.validity_sentences import plane_lines, validity_sentence
 from ..post.summary.number_texts import span_text
-from ..sweep.cost_estimate import MAX_SAMPLED_POINTS, with_loading_time
+from ..sweep.cost_estimate import MAX_SAMPLED_POINTS, with_arm_code_loading_time
 from ..sweep.points.points import Points
 from ..tasks.arm.point_solver import OutsideModelStatus, rod_numbers
 from ..tasks.arm.validity import ArmValidity
 from ..tasks.running.job import Job
-from ..verdict.checks import tube_wall_check
+from ..verdict.checks import tube_flattening_check
 from ..wording import count_of_total, counted
 
 
@@ -38,7 +38,7 @@ def print_job_check(job: Job) -> None:
     console.print(table)
     cost = job.task.cost()
     if not job.config.is_uniform_and_linear:
-        cost = with_loading_time(cost)
+        cost = with_arm_code_loading_time(cost)
     if cost.unknowns is not None:
         low, high = cost.unknowns
         console.print(f"expected unknowns of the mesh per point: {low} to {high}, for the requested accuracy")
@@ -108,7 +108,7 @@ def _thin_wall_warnings(arm: ArmConfig) -> list[str]:
     tubes = inner_radius < radius
     effect = wall_flattening_effect(length[tubes], radius[tubes], inner_radius[tubes], poisson[tubes])
     worst_index = int(np.argmax(effect.value))
-    warning = tube_wall_check(replace(effect, value=effect.value[worst_index])).text
+    warning = tube_flattening_check(replace(effect, value=effect.value[worst_index])).text
     affected_count = int((effect.validity > 0).sum())
     return [f"{warning} Of {counted(effect.value.size, 'tube')} this is the worst."] if affected_count else []
 

@@ -7,7 +7,7 @@ import numpy as np
 from ..arrays import Array
 from ..model.material.laws import LINEAR_CONSTITUTIVE_LAW
 from ..model.material.rod_material import RodMaterial
-from .cost_estimate import CostEstimate, sampled_points
+from .cost_estimate import CostEstimate, sampled_points_with_rod
 from .points.points import Points
 
 COSTLIER_IF_LARGER = frozenset({"k1", "F"})
@@ -24,10 +24,10 @@ BRANCH_ACCURACY_EXPONENT = -0.17
 """Exponent of the accuracy in the formula of BRANCH_SECONDS_PER_FORCE."""
 BRANCH_FORCE_OVER_BENDING_EXPONENT = 1.5
 """Exponent of 1 + F/(k2 t) in the formula of BRANCH_SECONDS_PER_FORCE."""
-MEASURED_TAPERS = (0.5, 1.5)
+MEASURED_TAPER_RANGE = (0.5, 1.5)
 """Smallest and largest taper of the cones in the measurement of BRANCH_SECONDS_PER_FORCE. A cone of taper
 0.19 takes some hundred times as long as the formula says, swelling rubber thirty times."""
-MAX_MEASURED_LOAD = 0.9
+MAX_MEASURED_FORCE_TO_CRUSHING = 0.9
 """Largest force, divided by the crushing force, for which the formula of BRANCH_SECONDS_PER_FORCE holds."""
 
 
@@ -41,7 +41,7 @@ def branches_cost(
     of rods whose times were not measured the estimate has `underestimated_rods`. The estimate is 0 s if no
     sampled point has a rod.
     """
-    indices = sampled_points(points)
+    indices = sampled_points_with_rod(points)
     values: dict[str, Array | float] = points.values_of(indices) | {
         # The costly end of the range stands for the whole branch, on which the steps there dominate.
         parameter_name: limits[parameter_name in COSTLIER_IF_LARGER]
@@ -71,7 +71,7 @@ def _underestimated_rods_text(
 ) -> str:
     """Kind of rods among the sampled rods whose branches may take many times as long as estimated, or empty.
     materials: material of every rod. values: parameters, numbers or (rods,). taper: a number or (rods,)."""
-    min_taper, max_taper = MEASURED_TAPERS
+    min_taper, max_taper = MEASURED_TAPER_RANGE
     if any(material.constitutive_law is not LINEAR_CONSTITUTIVE_LAW for material in materials):
         return "branches of rubber"
     if any(material.profile is not None for material in materials):
@@ -79,4 +79,8 @@ def _underestimated_rods_text(
     if bool(((taper < min_taper) | (taper > max_taper)).any()):
         return f"branches of cones with a taper outside {min_taper:g} to {max_taper:g}"
     relative_load = np.asarray(values["F"] / (values["k1"] * np.minimum(taper, 1.0) ** 2))
-    return "branches near the crushing force" if bool((relative_load > MAX_MEASURED_LOAD).any()) else ""
+    return (
+        "branches near the crushing force"
+        if bool((relative_load > MAX_MEASURED_FORCE_TO_CRUSHING).any())
+        else ""
+    )

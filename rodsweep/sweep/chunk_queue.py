@@ -20,11 +20,11 @@ CHUNK_SECONDS = 0.1
 CHUNK_SECONDS_PER_RANK = 1e-3
 """Planned time of a chunk in a run with many ranks, in s per rank. The first rank answers a request in 50
 microseconds and so spends a twentieth of its time on answers."""
-MAX_CHUNK_TIME_RATIO = 3.0
+MAX_CHUNK_TIME_TO_PLANNED = 3.0
 """Time after which a rank returns the unsolved items of a chunk to the queue, over the planned time."""
 MAX_CHUNK_ITEMS = 1 << 16
 """Maximum number of items in a chunk."""
-MIN_ITEMS_AHEAD = 4
+MIN_QUEUED_PER_RANK_FOR_ADVANCE = 4
 """A rank gets its next chunk in advance only if the queue has at least this number of items per rank."""
 NO_WORK_LEFT: IndexRange = (0, 0)
 """Empty range of items: the answer to a request for a chunk if no item is left to solve."""
@@ -107,7 +107,7 @@ class ChunkQueue:
         """The next chunk for a rank that still works on a chunk; None if few items are left in the queue."""
         with self.change:
             # Near the end a chunk handed out early would wait on a busy rank while another rank is idle.
-            if self.unsolved and self.items_left >= MIN_ITEMS_AHEAD * self.rank_count:
+            if self.unsolved and self.items_left >= MIN_QUEUED_PER_RANK_FOR_ADVANCE * self.rank_count:
                 return self._pop_chunk(rank)
             return None
 

@@ -33,14 +33,14 @@ more from the solve on that rank."""
 POLL_SECONDS_IF_ANSWERED = 5e-3
 """Seconds between two polls for messages by the thread of the first rank, if the first rank has recently
 answered requests between two points."""
-FIRST_CHUNK_POLL_SECONDS = 1e-4
+SHORTEST_CHUNK_POLL_SECONDS = 1e-4
 """First pause, in seconds, between two polls of a rank that waits for a chunk."""
 LONGEST_CHUNK_POLL_SECONDS = 1e-2
 """Longest pause, in seconds, between two polls of a rank that waits for a chunk: an idle rank must not take
 processor time from solving ranks."""
 CHUNK_POLL_GROWTH = 1.1
 """Ratio of two successive pauses of a waiting rank. Near 1, it hardly prolongs a wait of a millisecond."""
-QUEUE_WAIT_SECONDS = 0.05
+IDLE_FIRST_RANK_WAIT_SECONDS = 0.05
 """Seconds for which an idle first rank waits for the queue to change before it polls for MPI messages."""
 
 
@@ -84,7 +84,7 @@ class ChunkServer:
         self.poll_messages()
         while (chunk := self.queue.next_chunk(0)) is None:
             with self.queue.change:
-                self.queue.change.wait(QUEUE_WAIT_SECONDS)
+                self.queue.change.wait(IDLE_FIRST_RANK_WAIT_SECONDS)
             self.poll_messages()
             for position in list(self.positions.values())[:1]:
                 self.show_position(position.text, self._sum_of_fractions())
@@ -115,7 +115,7 @@ class ChunkServer:
         holds Python's global interpreter lock, and the thread might rarely get the lock.
         """
         if self.thread is not None:
-            self._serve()
+            self._handle_waiting_messages()
             self.last_served = time.monotonic()
         else:
             self._pass_on_stop()
@@ -128,7 +128,7 @@ class ChunkServer:
             for rank in self.working_ranks:
                 self.ranks.comm.send(self.stop.name, dest=rank, tag=STOP_TAG)
 
-    def _serve(self) -> None:
+    def _handle_waiting_messages(self) -> None:
         """Handles all waiting messages: stop requests, progress, and requests for chunks."""
         comm = self.ranks.comm
         MPI = self.ranks.MPI
@@ -178,7 +178,7 @@ class ChunkServer:
         """Body of the thread: answers messages of the other ranks until all of them have finished."""
         with self.ranks.abort_all_ranks_on_error():
             while self.working_ranks:
-                self._serve()
+                self._handle_waiting_messages()
                 # While this rank answers messages itself, the thread leaves it the processor.
                 is_polled = time.monotonic() - self.last_served < POLL_SECONDS_IF_ANSWERED
                 time.sleep(POLL_SECONDS_IF_ANSWERED if is_polled else POLL_SECONDS)
@@ -197,7 +197,7 @@ class ChunkClient:
         for the answer of the first rank, and requests the following chunk in advance."""
         self.comm.send(report, dest=0, tag=REQUEST_TAG)
         # A blocking receive would spin and take the processor from the ranks that compute.
-        wait_seconds = FIRST_CHUNK_POLL_SECONDS
+        wait_seconds = SHORTEST_CHUNK_POLL_SECONDS
         while not self.comm.Iprobe(source=0, tag=ANSWER_TAG):
             self.poll_messages()
             time.sleep(wait_seconds)

@@ -30,16 +30,16 @@ SPARSE_MS_PER_UNKNOWN = 8e-3
 """Time of the solve of a spectrum with a sparse factorisation, in ms per unknown."""
 CERTIFICATE_MS = 0.15
 """Time to certify one spectrum by winding numbers, in ms."""
-ARM_SPECTRUM_MS = 4.0
+CERTIFIED_ARM_SPECTRUM_MS = 4.0
 """Time to evaluate D and certify one spectrum of an arm that is not uniform, in ms: median of 40 arms."""
-MS_PER_SQUARED_UNSTABLE_MODE = 0.08
+ARM_MS_PER_SQUARED_UNSTABLE_MODE = 0.08
 """Time to find all unstable modes of an arm that is not uniform, divided by the squared number of these
 modes, in ms: within a factor of two for 25 arms with up to 62 unstable modes; 82 and 110 modes took 1.3 and
 2.8 times as long."""
-ARM_LOADING_SECONDS = 0.35
+ARM_CODE_LOADING_SECONDS = 0.35
 """Time in which a rank loads the compiled code of arms that are not uniform, with its first point, in s: 0.24
 to 0.43 for the first solve of six tasks beyond the time of the second."""
-MAX_EXTRA_UNSTABLE_MODES = 9
+MAX_EXTRA_MODES_OF_FOLLOWED_ARM = 9
 """Eigenvalues of an arm are followed only if its number of unstable modes exceeds the number of requested
 modes by at most this number."""
 FIRST_POINT_COST = 2.0
@@ -48,22 +48,22 @@ FOLLOWED_POINT_MS = 0.006
 """Time per point of a group, in which eigenvalues are continued from a neighbouring point, in ms."""
 FOLLOWED_ARM_POINT_MS = 0.15
 """Time per point, including the first point, of a group of arms that are not uniform, in ms: median of 30."""
-MS_PER_SQUARED_UNSTABLE_MODE_OF_ROD = 0.02
+ROD_MS_PER_SQUARED_UNSTABLE_MODE = 0.02
 """Time of a spectrum of a uniform rod with N unstable modes, divided by N^2 (1 + (N/
-MODES_OF_SLOW_SPECTRUM)^2), in ms: 0.014 to 0.025 for eight soft rods with 64 to 1000 unstable modes, up to
+QUARTIC_TIME_MODES)^2), in ms: 0.014 to 0.025 for eight soft rods with 64 to 1000 unstable modes, up to
 0.1 for rods with ten."""
-MODES_OF_SLOW_SPECTRUM = 500.0
+QUARTIC_TIME_MODES = 500.0
 """Number of unstable modes at which the time of a spectrum begins to grow with their fourth power."""
-PULLED_MS_PER_WAVE_NUMBER = 0.4
+PULLED_MS_PER_LAYER_WAVE_NUMBER = 0.4
 """Time of a spectrum of a pulled rod, divided by the wave number of the layers at its ends, in ms L: 0.2 to
 0.8 for nine rods under pulls of 1e3 to 1e6, some unresolved; 0.02 for a rod without compliances under 1e3."""
 MIN_WAVE_NUMBER_OF_LAYERS = 25.0
 """Wave number, in 1/L, below which the first mesh of a pulled rod resolves the layers at its ends."""
 MAX_SQUARED_WAVE_NUMBER = 1e8
 """Squared wave number, in 1/L^2, above which a spectrum takes no longer: no allowed mesh resolves it."""
-COST_OF_TWO_MESHES = 8.0
+TWO_MESHES_TO_ROOTS_TIME = 8.0
 """Time of a spectrum by Krylov-Schur on two meshes, divided by the time by roots of D: mean over 800 rods."""
-UNCOUNTED_SHARE = 0.05
+TWO_MESHES_TO_ROOTS_EXTRA_TIME = 0.05
 """Additional time of soft or pulled rods by Krylov-Schur on two meshes, which finds only the requested modes,
 divided by the additional time by roots of D; three rods."""
 FINER_MESH_RATIO = 4 / 3
@@ -73,7 +73,7 @@ MODES_MS = 0.4
 rods with 4, 8 and 12 modes each. The time is quadratic because the mesh grows with the number of modes."""
 GROWTH_MS = 55.0
 """Time of the transient growth of one rod, in ms: mean over the 24 rods, 52 to 75 ms with 2 to 12 modes."""
-CYCLE_SECONDS = 0.1
+CYCLE_FROM_MODE_SECONDS = 0.1
 """Time of a limit cycle computed from the leading mode, in s, similar to the benchmark."""
 MIN_PULL_OF_SLOW_MOTION = 500.0
 """Pull, in k3/L^2, from which on the motion of a rod returns to the straight state so slowly that it is
@@ -81,9 +81,9 @@ followed to its end: at 100 it takes 0.1 s, at 1000 7 s."""
 PULLED_MOTION_SECONDS = 8.0
 """Time of the motion of a rod under such a pull, in s: 6.5 to 9 s for pulls of 1e3 to 1e4."""
 MAX_FORCE_OF_MEASURED_CYCLES = 350.0
-"""Largest force, in k3/L^2, at which CYCLE_SECONDS holds: eight random rods under 60 to 300 took 0.04 to 0.17
-s. A rod under 400 took 2 s, one under 1500 25 s, because their motion does not repeat."""
-DOUBTFUL_FORCES_TEXT = "rods far above flutter, whose motion may not repeat,"
+"""Largest force, in k3/L^2, at which CYCLE_FROM_MODE_SECONDS holds: eight random rods under 60 to 300 took
+0.04 to 0.17 s. A rod under 400 took 2 s, one under 1500 25 s, because their motion does not repeat."""
+UNDERESTIMATED_CYCLES_TEXT = "rods far above flutter, whose motion may not repeat,"
 """Kind of rods whose cycles may take many times as long as estimated."""
 CHAINED_CYCLE_SECONDS = 0.01
 """Time of a limit cycle computed from the cycle of a neighbouring point, in s, similar to the benchmark."""
@@ -120,9 +120,9 @@ class CostEstimate:
     contains all work."""
 
 
-def with_loading_time(cost: CostEstimate) -> CostEstimate:
+def with_arm_code_loading_time(cost: CostEstimate) -> CostEstimate:
     """The cost with the time in which a rank loads the compiled code of arms that are not uniform."""
-    return replace(cost, seconds=cost.seconds + ARM_LOADING_SECONDS)
+    return replace(cost, seconds=cost.seconds + ARM_CODE_LOADING_SECONDS)
 
 
 def modes_cost(
@@ -140,14 +140,16 @@ def followed_spectra_cost(
     """Estimated cost of the spectra of `points` followed along groups. alone: cost of solving every
     point alone. mode_count: number of eigenvalues."""
     ratio = FIRST_POINT_COST * groups.count / points.count
-    rods = [points.rod(int(index)) for index in sampled_points(points)]
+    rods = [points.rod(int(index)) for index in sampled_points_with_rod(points)]
     point_ms = (
         FOLLOWED_ARM_POINT_MS if any(not rod.is_uniform_and_linear for rod in rods) else FOLLOWED_POINT_MS
     )
     unstable = np.array([0.0 if rod.is_uniform_and_linear else expected_unstable_count(rod) for rod in rods])
     # Such arms are not followed, so each of their points is solved alone.
     extra_ms = np.where(
-        unstable > mode_count + MAX_EXTRA_UNSTABLE_MODES, MS_PER_SQUARED_UNSTABLE_MODE * unstable**2, 0.0
+        unstable > mode_count + MAX_EXTRA_MODES_OF_FOLLOWED_ARM,
+        ARM_MS_PER_SQUARED_UNSTABLE_MODE * unstable**2,
+        0.0,
     )
     point_ms += float(extra_ms.mean()) if rods else 0.0
     # Groups shorter than the cost of their first point would make following look dearer than it can be.
@@ -158,10 +160,10 @@ def two_meshes_cost(points: Points, mode_count: int, accuracy: float) -> CostEst
     """Estimated cost of the spectra of `points` by Krylov-Schur on two meshes. mode_count: number of
     eigenvalues. accuracy: relative accuracy."""
     one_mesh = spectra_cost(points, mode_count, accuracy, certify=False)
-    rods = [points.rod(int(index)) for index in sampled_points(points)]
+    rods = [points.rod(int(index)) for index in sampled_points_with_rod(points)]
     extra = points.count * 1e-3 * float(np.mean([_soft_or_pulled_rod_ms(rod) for rod in rods] or [0.0]))
     # The part for soft and pulled rods is taken out of the factor, as it has a factor of its own.
-    seconds = COST_OF_TWO_MESHES * (one_mesh.seconds - extra) + UNCOUNTED_SHARE * extra
+    seconds = TWO_MESHES_TO_ROOTS_TIME * (one_mesh.seconds - extra) + TWO_MESHES_TO_ROOTS_EXTRA_TIME * extra
     unknowns = one_mesh.unknowns and (
         one_mesh.unknowns[0],
         math.ceil(FINER_MESH_RATIO * one_mesh.unknowns[1]),
@@ -173,7 +175,7 @@ def spectra_cost(points: Points, mode_count: int, accuracy: float, certify: bool
     """Estimated cost of the spectra of `points`, extrapolated from evenly spaced points of the sweep; 0 if
     none of these points has a rod. mode_count: number of eigenvalues. accuracy: relative accuracy. certify:
     whether spectra are certified."""
-    rods = [points.rod(int(index)) for index in sampled_points(points)]
+    rods = [points.rod(int(index)) for index in sampled_points_with_rod(points)]
     counts = [_unknown_count(rod, mode_count, accuracy) for rod in rods]
     if not counts:  # no rod covers any point of the sample
         return CostEstimate(0.0)
@@ -185,7 +187,7 @@ def spectra_cost(points: Points, mode_count: int, accuracy: float, certify: bool
         CERTIFICATE_MS if certify else 0
     )
     unstable = np.array([0.0 if rod.is_uniform_and_linear else expected_unstable_count(rod) for rod in rods])
-    point_ms += arm_fraction * ARM_SPECTRUM_MS + MS_PER_SQUARED_UNSTABLE_MODE * unstable**2
+    point_ms += arm_fraction * CERTIFIED_ARM_SPECTRUM_MS + ARM_MS_PER_SQUARED_UNSTABLE_MODE * unstable**2
     point_ms += np.array([_soft_or_pulled_rod_ms(rod) for rod in rods])
     memory = BASE_MEMORY + int(n.max()) * MEMORY_PER_UNKNOWN
     # Counted before the limit is applied, so that the user learns of rods that will not be solved.
@@ -208,8 +210,8 @@ def _soft_or_pulled_rod_ms(rod: Rod) -> float:
     wave_number = math.sqrt(min(abs(squared_wave_number), MAX_SQUARED_WAVE_NUMBER))
     if squared_wave_number > 0:
         count = wave_number / math.pi
-        return MS_PER_SQUARED_UNSTABLE_MODE_OF_ROD * count**2 * (1 + (count / MODES_OF_SLOW_SPECTRUM) ** 2)
-    return PULLED_MS_PER_WAVE_NUMBER * wave_number * (wave_number > MIN_WAVE_NUMBER_OF_LAYERS)
+        return ROD_MS_PER_SQUARED_UNSTABLE_MODE * count**2 * (1 + (count / QUARTIC_TIME_MODES) ** 2)
+    return PULLED_MS_PER_LAYER_WAVE_NUMBER * wave_number * (wave_number > MIN_WAVE_NUMBER_OF_LAYERS)
 
 
 def _unknown_count(rod: Rod, mode_count: int, accuracy: float) -> int:
@@ -221,7 +223,7 @@ def _unknown_count(rod: Rod, mode_count: int, accuracy: float) -> int:
     return resolution_for(expected_wave_number(mode_count, wave), accuracy).unknown_count
 
 
-def sampled_points(points: Points, max_count: int = MAX_SAMPLED_POINTS) -> NDArray[np.int64]:
+def sampled_points_with_rod(points: Points, max_count: int = MAX_SAMPLED_POINTS) -> NDArray[np.int64]:
     """Flat indices, (n,), of at most `max_count` evenly spaced points of a sweep, without points to which the
     rod model does not apply."""
     # Rounding gives the same index twice if there are few points.
@@ -232,12 +234,12 @@ def sampled_points(points: Points, max_count: int = MAX_SAMPLED_POINTS) -> NDArr
 def cycles_cost(points: Points, first_count: int) -> CostEstimate:
     """Estimated cost of the limit cycles of `points`. first_count: number of cycles computed from the leading
     mode; all other cycles are computed from a neighbour's cycle."""
-    indices = sampled_points(points)
+    indices = sampled_points_with_rod(points)
     # Without any rod in the model nothing is pulled, as for F = 0.
     F = np.asarray(points.values_of(indices)["F"]) if indices.size else np.zeros(1)
     pulled_count = points.count * float(np.mean(-MIN_PULL_OF_SLOW_MOTION >= F))
-    seconds = first_count * CYCLE_SECONDS + (points.count - first_count) * CHAINED_CYCLE_SECONDS
-    doubt = DOUBTFUL_FORCES_TEXT if bool((F > MAX_FORCE_OF_MEASURED_CYCLES).any()) else ""
+    seconds = first_count * CYCLE_FROM_MODE_SECONDS + (points.count - first_count) * CHAINED_CYCLE_SECONDS
+    doubt = UNDERESTIMATED_CYCLES_TEXT if bool((F > MAX_FORCE_OF_MEASURED_CYCLES).any()) else ""
     return CostEstimate(seconds + pulled_count * PULLED_MOTION_SECONDS, underestimated_rods=doubt)
 
 

@@ -13,7 +13,7 @@ from ..discretization.straight.arm_resolution import arm_mesh
 from ..model.dispersion import largest_growth_and_wave_number
 from ..model.rod import Crushed, Rod
 from ..solve.changes.search_range import end_below_crushing
-from .cost_estimate import sampled_points
+from .cost_estimate import sampled_points_with_rod
 from .points.points import Points
 
 
@@ -37,7 +37,7 @@ def largest_first_mesh(
     rod is searched, by name of the parameter; meshes are compared at these values.
     """
     # The finest meshes belong to extreme parameter values, which evenly spaced points may miss.
-    indices = {*sampled_points(points).tolist(), *_corners(points)}
+    indices = {*sampled_points_with_rod(points).tolist(), *_corners(points)}
     rods = (
         rod
         for point_rod in _uncrushed_rods(points, sorted(indices))

@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..solve_progress import SolveStopped, reporting_to
-from .chunk_queue import MAX_CHUNK_TIME_RATIO, NO_WORK_LEFT, ChunkQueue, RankReport, chunk_seconds
+from .chunk_queue import MAX_CHUNK_TIME_TO_PLANNED, NO_WORK_LEFT, ChunkQueue, RankReport, chunk_seconds
 from .chunk_requests import ChunkClient, ChunkServer
 from .points.ranges import IndexRange
 from .ranks import Ranks
 from .stop import RankListener, StopRequest
 
-ItemIndices = int | NDArray[np.int64]
+PointIndexOrIndices = int | NDArray[np.int64]
 """Flat index of one point, or flat indices, (n,), of points that are stored together."""
 
 
@@ -25,7 +25,7 @@ class ItemSolver(Protocol):
     """Function that solves a work item, that is, a point, a chain or a group of points. Yields (flat index,
     result) of a point, or (flat indices, results) of points of a group that were solved together."""
 
-    def __call__(self, item: int, /) -> Iterable[tuple[ItemIndices, Any]]: ...
+    def __call__(self, item: int, /) -> Iterable[tuple[PointIndexOrIndices, Any]]: ...
 
 
 class ProgressSink(Protocol):
@@ -57,7 +57,7 @@ class SweepCallbacks:
 
     solve: ItemSolver
     """Solves the points of an item."""
-    store: Callable[[ItemIndices, Any], None]
+    store: Callable[[PointIndexOrIndices, Any], None]
     """Stores the result of a point durably, on the rank that solved it, before the next point begins."""
     prepare: Callable[[], object] = lambda: None
     """Called once, before the first item."""
@@ -114,7 +114,7 @@ class _RankLoop:
         while chunk != NO_WORK_LEFT:
             chunk_start = time.monotonic()
             points_before = self.solved_points
-            next_item = self._solve_chunk(chunk)
+            next_item = self._solve_to_first_unsolved(chunk)
             chunk_seconds = time.monotonic() - chunk_start
             # Measured before the next request, so that waiting counts as idle.
             busy_seconds += chunk_seconds
@@ -134,10 +134,10 @@ class _RankLoop:
             self.solved_points, busy_seconds, time.monotonic() - start - busy_seconds, self.was_interrupted
         )
 
-    def _solve_chunk(self, chunk: IndexRange) -> int:
+    def _solve_to_first_unsolved(self, chunk: IndexRange) -> int:
         """Solves the items of a chunk in order; returns the number of the first unsolved item. Later items
         stay unsolved after a stop request, or if the chunk takes too long."""
-        deadline = time.monotonic() + MAX_CHUNK_TIME_RATIO * chunk_seconds(self.ranks.size)
+        deadline = time.monotonic() + MAX_CHUNK_TIME_TO_PLANNED * chunk_seconds(self.ranks.size)
         item = chunk[0]
         points_before = self.solved_points
         while item < chunk[1] and not self.stop:
@@ -145,7 +145,7 @@ class _RankLoop:
                 with reporting_to(
                     RankListener(self.requests, self.stop, partial(self.callbacks.item_label, item))
                 ):
-                    self._solve(item, points_before)
+                    self._solve_and_store_item(item, points_before)
             except SolveStopped:
                 self.was_interrupted = True
             if self.stop:  # the item may be unfinished, so it does not count as solved
@@ -155,7 +155,7 @@ class _RankLoop:
                 break
         return item
 
-    def _solve(self, item: int, points_before: int) -> None:
+    def _solve_and_store_item(self, item: int, points_before: int) -> None:
         """Solves an item and stores its points. points_before: number of points stored before the chunk."""
         for index, result in self.callbacks.solve(item):
             self.callbacks.store(index, result)

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from .cost_estimate import CostEstimate, sampled_points
+from .cost_estimate import CostEstimate, sampled_points_with_rod
 from .points.points import Points
 
 THRESHOLD_SEARCH_MS = 24.0
@@ -48,7 +48,7 @@ def searches_cost(search_count: int, certify: bool, is_varying: bool) -> CostEst
 def soft_searches_seconds(points: Points, F_max: float, is_varying: bool) -> float:
     """Time of all searches along F in `points` beyond the time of stiff rods, in s: exchanges and crossings
     become many where F^2/k2 is large. F_max: largest force. is_varying: whether any arm is not uniform."""
-    indices = sampled_points(points)
+    indices = sampled_points_with_rod(points)
     if not indices.size:
         return 0.0
     values = points.values_of(indices)

@@ -39,7 +39,7 @@ class CertifiedTask(Task):
     def parameter_values(self) -> dict[str, np.ndarray]:
         """All values of each parameter at points, in searches and on lines, by name of the parameter, in
         arrays of any shape."""
-        return self.points.rod_values | self.searched_range_ends() | self.coordinates()
+        return self.points.parameter_values_of_rods | self.searched_range_ends() | self.coordinates()
 
     def arms_line(self) -> str:
         return arms_line(self.config, self.parameter_values, self.first_mesh)

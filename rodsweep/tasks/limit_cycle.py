@@ -62,8 +62,12 @@ class LimitCycleTask(Task):
     def __post_init__(self) -> None:
         if self.config.limit_cycle.time == "tau1":
             reason = ", because tau1 = gamma3/k2 is the unit of time that limit_cycle.time asks for"
-            require_in_range(K2_VALUES_WITH_TAU1, "k2", self.points.rod_values["k2"], "", reason)
-            require_in_range(GAMMA3_VALUES_WITH_TAU1, "gamma3", self.points.rod_values["gamma3"], "", reason)
+            require_in_range(
+                K2_VALUES_WITH_TAU1, "k2", self.points.parameter_values_of_rods["k2"], "", reason
+            )
+            require_in_range(
+                GAMMA3_VALUES_WITH_TAU1, "gamma3", self.points.parameter_values_of_rods["gamma3"], "", reason
+            )
 
     @property
     def chains(self) -> Chains | None:
@@ -72,7 +76,7 @@ class LimitCycleTask(Task):
         options = self.config.limit_cycle
         if options.start != "neighbour":
             return None
-        axis = self.points.varying_parameters.index(self.config.chain_parameter)
+        axis = self.points.varied_parameter_by_axis.index(self.config.chain_parameter)
         return Chains(self.points.shape, axis, options.direction == "up")
 
     def coordinates(self) -> dict[str, np.ndarray]:
@@ -110,7 +114,7 @@ class LimitCycleTask(Task):
         )
 
     def arms_line(self) -> str:
-        return arms_line(self.config, self.points.rod_values, self._finest_initial_mesh)
+        return arms_line(self.config, self.points.parameter_values_of_rods, self._finest_initial_mesh)
 
     def _finest_initial_mesh(self) -> Elements | None:
         """The finest of the initial meshes of all points: meshes of motions in time or, with start: hopf, of
@@ -132,15 +136,15 @@ class LimitCycleTask(Task):
     def check_rows(self) -> list[CheckRow]:
         """Rows of the table of modelled and neglected effects, and of stored variables."""
         options = self.config.limit_cycle
-        gamma1 = np.unique(self.points.rod_values["gamma1"])[:5]
+        gamma1 = np.unique(self.points.parameter_values_of_rods["gamma1"])[:5]
         is_integrated = options.method == "integration"
         transient_row = "tip from the start to the cycle", False, f"limit_cycle.method: {options.method}"
         if not is_integrated:
             transient_row = self._stored_values_row(transient_row[0], "transient", TRANSIENT_VARIABLES)
         tip_variables = TIP_VARIABLES + ENERGY_VARIABLES
         return [
-            *stretch_shear_and_drag_rows(self.points.rod_values),
-            *varying_arm_and_law_rows(self.config, self.points.rod_values),
+            *stretch_shear_and_drag_rows(self.points.parameter_values_of_rods),
+            *varying_arm_and_law_rows(self.config, self.points.parameter_values_of_rods),
             ("axial drag", True, f"gamma1 = {', '.join(f'{value:g}' for value in gamma1)}"),
             ("nonlinear motion", True, "task: limit_cycle; in the plane, geometrically exact"),
             ("energy budget", True, "means and fluctuations over a cycle"),

@@ -10,7 +10,7 @@ from ..config.task.phase_diagram import PhaseDiagramConfig
 from ..model.rod import Crushed, Rod
 from ..results.layouts.phase_diagram import MAX_CYCLE_SPECIAL_POINTS
 from ..sweep.branch_cost import branches_cost
-from ..sweep.cost_estimate import CostEstimate, sampled_points
+from ..sweep.cost_estimate import CostEstimate, sampled_points_with_rod
 from ..sweep.pulled_row_cost import MAX_SAMPLED_ROWS, pulled_rows_seconds
 from ..sweep.search_cost import diagram_cost, soft_searches_seconds
 from .base_classes import CertifiedTask
@@ -126,7 +126,7 @@ class PhaseDiagramTask(CertifiedTask):
     def _with_soft_and_pulled_rows(self, rows_cost: CostEstimate, is_varying: bool) -> CostEstimate:
         """The cost `rows_cost` of rows along F with the further time of soft and of pulled rows."""
         soft = soft_searches_seconds(self.points, float(self.line_values[-1]), is_varying)
-        sampled_rows = sampled_points(self.points, MAX_SAMPLED_ROWS)
+        sampled_rows = sampled_points_with_rod(self.points, MAX_SAMPLED_ROWS)
         rods = [rod for row in sampled_rows if (rod := self.rod_of_row(int(row)))]
         pulled, doubt = pulled_rows_seconds(rods, self.line_values, self.points.count)
         return replace(rows_cost, seconds=rows_cost.seconds + soft + pulled, underestimated_rods=doubt)

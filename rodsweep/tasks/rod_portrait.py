@@ -31,9 +31,9 @@ LEADING_MODE_THRESHOLD_KINDS = ("onset", "hopf")
 """Kinds of thresholds; the leading mode is solved at the first threshold of each kind."""
 BRANCH_ACCURACY = 1e-5
 """Relative accuracy of the cycles on the branches of a portrait without a requested accuracy, far below a
-line width of the picture. Special points are located to 1e-9 at every accuracy, as far as BRANCH_WORK
-allows."""
-BRANCH_WORK = 300.0
+line width of the picture. Special points are located to 1e-9 at every accuracy, as far as
+MAX_PORTRAIT_BRANCH_WORK allows."""
+MAX_PORTRAIT_BRANCH_WORK = 300.0
 """Limit `work` of the branches of a portrait: 15 to 30 s, and at most 1 GB for a matrix. A cone of taper 0.19
 needs 300 up to F = 15, three times its Hopf point, and ever more at larger forces."""
 SolveJob = Callable[[Job], ResultView]
@@ -55,7 +55,7 @@ class PortraitRequest:
     @property
     def branch_options(self) -> dict[str, Any]:
         """Options of the task branch for the branches of the portrait."""
-        return {"start": 0.0, "stop": self.F_max, "work": BRANCH_WORK}
+        return {"start": 0.0, "stop": self.F_max, "work": MAX_PORTRAIT_BRANCH_WORK}
 
     def job_of_task(
         self,
@@ -109,7 +109,11 @@ def solve_rod_results(request: PortraitRequest, solve: SolveJob = solved_view) -
         if (view := solved("modes", {}, F)) is not None
     }
     ranges = RodBranches(views["branch"]).stable_cycle_ranges if "branch" in views else []
-    cycles = [(F, view) for F in cycle_forces(ranges) if (view := _cycle_at_force(solved, F)) is not None]
+    cycles = [
+        (F, view)
+        for F in three_forces_with_stable_cycle(ranges)
+        if (view := _cycle_at_force(solved, F)) is not None
+    ]
     if not modes:
         missing.setdefault("modes", f"no threshold is known up to F = {request.F_max:g}")
     if not cycles:
@@ -147,7 +151,7 @@ def first_threshold_forces(thresholds: ResultView) -> dict[str, float]:
     return first_forces
 
 
-def cycle_forces(ranges: Sequence[ParameterRange]) -> list[float]:
+def three_forces_with_stable_cycle(ranges: Sequence[ParameterRange]) -> list[float]:
     """Forces of the three cycles, increasing: at CYCLE_FORCE_FRACTIONS of the ranges of F with a stable
     cycle.
 

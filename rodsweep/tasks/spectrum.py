@@ -61,7 +61,7 @@ class SpectrumTask(CertifiedTask):
         """Groups of points along which eigenvalues are followed; None if eigenvalues are not followed."""
         if not self.config.follows_eigenvalues:
             return None
-        return groups_along_longest_axis(self.points.shape, self.points.varying_parameters)
+        return groups_along_longest_axis(self.points.shape, self.points.varied_parameter_by_axis)
 
     def coordinates(self) -> dict[str, np.ndarray]:
         """Material coordinates u of the nodes of eigenvectors, (nodes,), by name of the dimension; empty if
@@ -75,7 +75,7 @@ class SpectrumTask(CertifiedTask):
         gamma1 = self.config.parameters.constant_parameters.get("gamma1")
         if gamma1 is None:
             return ()
-        dimensions, points_shape, columns = self._longitudinal_points()
+        dimensions, points_shape, columns = self._points_with_distinct_longitudinal_rates()
         mode_count = self.config.spectrum.modes
         is_closed_form = self.config.is_uniform_and_linear
         variables = longitudinal_variables(gamma1, *dimensions, is_closed_form=is_closed_form)
@@ -85,13 +85,18 @@ class SpectrumTask(CertifiedTask):
         values = zip(*(column.tolist() for column in columns.values()), strict=True)
         rods = [dict(zip(columns, rod_values, strict=True)) | {"gamma1": gamma1} for rod_values in values]
         table = np.array(
-            in_order(rods, lambda rod: longitudinal_rates_of_arm(rod, self.config.rod_material, mode_count))
+            in_order(
+                rods,
+                lambda rod: longitudinal_rates_and_errors_of_arm(rod, self.config.rod_material, mode_count),
+            )
         )
         return tuple(
             (variable, table[:, i].reshape(*points_shape, mode_count)) for i, variable in enumerate(variables)
         )
 
-    def _longitudinal_points(self) -> tuple[tuple[str, ...], tuple[int, ...], dict[str, np.ndarray]]:
+    def _points_with_distinct_longitudinal_rates(
+        self,
+    ) -> tuple[tuple[str, ...], tuple[int, ...], dict[str, np.ndarray]]:
         """Returns (dimensions, shape, columns) of the points at which longitudinal rates differ. dimensions:
         names of the dimensions of these points. shape: their lengths. columns: values of the parameters on
         which the rates depend, by name, flattened to (points,)."""
@@ -180,14 +185,16 @@ class SpectrumTask(CertifiedTask):
 
         groups = self.groups
         assert groups is not None
-        followed_parameter = self.points.varying_parameters[groups.axis]
+        followed_parameter = self.points.varied_parameter_by_axis[groups.axis]
         path = ParameterPath(self.points.rod(int(indices[0])), followed_parameter)
         rods = NeighbouringRods(path, self.points.values_of(indices)[followed_parameter])
         followed = follow_spectra(rods, request)
         return GroupResult(spectrum_values(followed.spectra), followed.is_solved)
 
 
-def longitudinal_rates_of_arm(values: dict[str, float], material: RodMaterial, mode_count: int) -> np.ndarray:
+def longitudinal_rates_and_errors_of_arm(
+    values: dict[str, float], material: RodMaterial, mode_count: int
+) -> np.ndarray:
     """(longitudinal growth rates in 1/tau2, relative errors) of an arm, (2, modes); NaN for a crushed arm."""
     try:
         rod = Rod(**{"F": 0.0, "k2": np.inf, "gamma3": 0.0} | values, material=material)

@@ -19,7 +19,11 @@ if TYPE_CHECKING:
     from ..solve.changes.thresholds import Thresholds
     from ..solve.hopf.criticality import Criticality
 
-FIRST_CROSSINGS = {"onset": "growth_rate", "hopf": "frequency", "restabilization": "frequency"}
+RATE_NAME_BY_FIRST_CROSSING_KIND = {
+    "onset": "growth_rate",
+    "hopf": "frequency",
+    "restabilization": "frequency",
+}
 """Kinds of crossings whose first crossing is stored as a threshold; the value is the quantity stored in
 addition to F."""
 
@@ -71,7 +75,7 @@ class ThresholdsTask(CertifiedTask):
 def threshold_values(result: "Thresholds", max_crossings: int) -> dict[str, Any]:
     """Variables of the file for the thresholds of a rod; max_crossings: length of the list of crossings."""
     values = {"F_end": result.end, "unstable_at_end": result.search_result.unstable_at_end}
-    for kind, rate_name in FIRST_CROSSINGS.items():
+    for kind, rate_name in RATE_NAME_BY_FIRST_CROSSING_KIND.items():
         kind_index = CROSSING_KINDS.index(kind)
         first_crossing = next(
             (crossing for crossing in result.thresholds if crossing.kind == kind_index), None

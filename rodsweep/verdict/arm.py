@@ -16,7 +16,7 @@ from .sentences import verdict_sentences
 
 BRACKETS_NOTE = "In brackets: the range over drag, which is known only up to a factor."
 """Sentence below the table of numbers, which explains the values in brackets."""
-VALUE_COLUMN = 18
+NAME_COLUMN_WIDTH = 18
 """Width of the table's first column (names of the numbers), in characters."""
 LINE_WIDTH = 80
 """Width of a wrapped line, in characters."""
@@ -50,8 +50,8 @@ class ArmReport:
             yield _wrapped(sentence), "" if number else "headline"
         yield "", ""
         for name, value, formula, source in self.rows:
-            indent = " " * VALUE_COLUMN
-            yield f"{name:{VALUE_COLUMN}}{value}", ""
+            indent = " " * NAME_COLUMN_WIDTH
+            yield f"{name:{NAME_COLUMN_WIDTH}}{value}", ""
             yield _wrapped(f"{formula}; {source}", indent, indent + "  "), ""
         yield BRACKETS_NOTE, ""
         yield "", ""

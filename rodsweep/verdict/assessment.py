@@ -24,14 +24,14 @@ from .flutter import ThresholdsOverDrags, thresholds_with_drag
 REMEDY_DIGITS = 2
 """Significant digits of the factors in remedies, which are rounded to the safe side."""
 MAX_THINNING_ITERATIONS = 20
-"""Maximum number of iterations of `thickness_factor`. Ten iterations suffice if the inertia of the arm and of
-the fluid are comparable."""
-VISCOSITY_TARGET = 0.995
-"""Target of the iterations of `thickness_factor` for the ratio of required to actual viscosity. The target is
-below 1, so that inertia ends within its limit."""
-MIN_VISCOSITY_RATIO = 0.99
-"""`thickness_factor` stops iterating when the ratio of required to actual viscosity is between this number
-and 1. The thickness then has two correct digits."""
+"""Maximum number of iterations of `thickness_factor_for_small_inertia`. Ten iterations suffice if the inertia
+of the arm and of the fluid are comparable."""
+TARGET_REQUIRED_VISCOSITY_FACTOR = 0.995
+"""Target of the iterations of `thickness_factor_for_small_inertia` for the ratio of required to actual
+viscosity. The target is below 1, so that inertia ends within its limit."""
+MIN_REQUIRED_VISCOSITY_FACTOR = 0.99
+"""`thickness_factor_for_small_inertia` stops iterating when the ratio of required to actual viscosity is
+between this number and 1. The thickness then has two correct digits."""
 
 
 @dataclass(frozen=True)
@@ -56,10 +56,10 @@ class Assessment:
         return (compression_effect(self.arm, equivalent_base_force(self.arm, self.arm.F)),)
 
     @property
-    def force_at_flutter(self) -> float | None:
+    def dimensionless_flutter_force(self) -> float | None:
         """Smallest flutter force, in k3/L^2, for the most likely drag for which the arm flutters; None if the
         arm flutters for no drag."""
-        threshold = first_hopf_point(self.thresholds)
+        threshold = first_hopf_point_for_likeliest_drag(self.thresholds)
         return None if threshold is None else threshold.value
 
     @property
@@ -84,7 +84,7 @@ class Assessment:
         return sorted(effects, key=lambda effect: -float(effect.value_over_limit))
 
 
-def first_hopf_point(thresholds: ThresholdsOverDrags) -> Threshold | None:
+def first_hopf_point_for_likeliest_drag(thresholds: ThresholdsOverDrags) -> Threshold | None:
     """First Hopf point for the most likely drag for which the arm flutters; None if it does not flutter."""
     return next(
         (
@@ -100,7 +100,7 @@ def effects_at_flutter(arm: SlenderArm, thresholds: ThresholdsOverDrags) -> tupl
     """Neglected effects at the first flutter in `thresholds`, for the most likely drag for which the arm
     flutters; the rate of motion is the largest over all drags. Inertia, compression and Reynolds number are
     NaN if the arm does not flutter."""
-    threshold = first_hopf_point(thresholds)
+    threshold = first_hopf_point_for_likeliest_drag(thresholds)
     # Without flutter only the effects of the load and of the section are known; the others become nan.
     if threshold is None:
         return neglected_effects(arm, nan, nan)
@@ -118,7 +118,7 @@ def viscosity_factor(effects: tuple[Effect, ...]) -> float:
 
 
 @exclusive_solve
-def thickness_factor(arm: SlenderArm) -> float:
+def thickness_factor_for_small_inertia(arm: SlenderArm) -> float:
     """Largest factor on the thickness of an arm with which inertia, in the same fluid, is within its limit.
 
     The factor multiplies all sides of the section; the thresholds of the thinner arms are solved. NaN if an
@@ -131,21 +131,21 @@ def thickness_factor(arm: SlenderArm) -> float:
         return nan
     factor = 1.0
     for _ in range(MAX_THINNING_ITERATIONS):
-        scaled_arm = _with_scaled_section(arm, factor)
+        scaled_arm = _unloaded_arm_with_scaled_section(arm, factor)
         # The flutter force changes with the thickness, through shear and drag, so each arm is solved anew.
         thresholds = ThresholdsOverDrags((thresholds_with_drag(scaled_arm, scaled_arm.drags[0]),))
         effects = effects_at_flutter(scaled_arm, thresholds)
         required_viscosity_factor = viscosity_factor(effects)
-        if MIN_VISCOSITY_RATIO < required_viscosity_factor <= 1.0:
+        if MIN_REQUIRED_VISCOSITY_FACTOR < required_viscosity_factor <= 1.0:
             # A thinner arm may still be crushed or bent too much, and is then no remedy.
             is_valid = worst_validity(effects, of_cycles=False) < Validity.does_not_apply
             return factor if is_valid else nan
         # Mass times rate over drag scales as thickness^6/viscosity^2, hence thickness as viscosity^(1/3).
-        factor *= (required_viscosity_factor / VISCOSITY_TARGET) ** (-1 / 3)
+        factor *= (required_viscosity_factor / TARGET_REQUIRED_VISCOSITY_FACTOR) ** (-1 / 3)
     return nan
 
 
-def _with_scaled_section(arm: SlenderArm, thickness_ratio: float) -> SlenderArm:
+def _unloaded_arm_with_scaled_section(arm: SlenderArm, thickness_ratio: float) -> SlenderArm:
     """The uniform arm `arm` without its load, with all sides of the section multiplied by
     `thickness_ratio`."""
     omitted_names = {*LOADS, *chain(*SECTION_SIZE_NAMES)}

@@ -14,14 +14,14 @@ if TYPE_CHECKING:
 
 MIN_ACCURATE_SLENDERNESS = 20.0
 """Smallest ratio of length to radius at which slender-body theory is accurate to about ten percent."""
-THRESHOLD_DECREASE_BY_INERTIA = 0.64
+THRESHOLD_DECREASE_PER_INERTIA_PHASE = 0.64
 """Estimated relative decrease of the flutter threshold by inertia, per radian of phase between drag and
 velocity caused by inertia."""
 SAG_AT_SELF_BUCKLING = SELF_BUCKLING_WEIGHT / 8
 """Sag over length, w L^3/(8 E I), of a horizontal arm whose weight w L just buckles an upright arm."""
 MAX_STATED_SAG = 0.25
 """A check states the ratio of sag to length only below this: beyond, the linear formula is inaccurate."""
-USUAL_POISSON = (0.3, 0.5)
+USUAL_POISSON_RANGE = (0.3, 0.5)
 """Range of Poisson's ratio of rubbers and gels; a check warns of a Poisson's ratio outside this range."""
 NO_COMPRESSION_CHECK_SENTENCE = "no load is given and no flutter was found, so compression is not checked"
 """Result of the check of compression for an arm without load and without flutter."""
@@ -58,7 +58,7 @@ def checks_of(assessment: "Assessment") -> list[Check]:
         compression_check(assessment, effects["compression"]),
         *inertia_checks(effects["inertia of the arm"], effects["inertia of the fluid"]),
         *reynolds_checks(effects["Reynolds number"]),
-        *wall_checks(effects.get("flattening of the wall")),
+        *tube_flattening_checks(effects.get("flattening of the wall")),
         weight_check(effects.get("weight"), arm),
         poisson_check(arm),
     ]
@@ -91,7 +91,7 @@ def compression_check(assessment: "Assessment", at_flutter: Effect) -> Check:
     validity = max(map(_validity_of_effect, effects))
     strain = max(float(effect.value) for effect in effects if not isnan(effect.value)) if texts else 0.0
     noun, change = ("extension", "softer") if is_pulled else ("compression", "stiffer")
-    stiffening = abs(rubber_stiffening(-strain if is_pulled else strain))
+    stiffening = abs(relative_rubber_stiffening(-strain if is_pulled else strain))
     remark = (
         "a linear law of the material is accurate",
         f"rubber is some {_one_digit_text(100 * stiffening)} % {change} at this {noun}",
@@ -109,7 +109,7 @@ def _rubber_compression_check(assessment: "Assessment") -> Check:
     valid for large strains."""
     arm = assessment.arm
     texts = []
-    flutter = assessment.force_at_flutter
+    flutter = assessment.dimensionless_flutter_force
     if arm.load is not None:
         texts.append(_strain_text("the load", "the arm", _weakest_section_shortening(arm, arm.F)))
     if flutter is not None:
@@ -136,7 +136,7 @@ def _weakest_section_shortening(arm: SlenderArm, F: float) -> float:
     return float(arm.material.constitutive_law.shortening(F / (arm.k1 * smallest_stiffness / base_stiffness)))
 
 
-def rubber_stiffening(strain: float) -> float:
+def relative_rubber_stiffening(strain: float) -> float:
     """Relative increase of the tangent modulus E (1 + 2/h^3)/3 of neo-Hookean rubber over E, at the stretch
     ratio h = 1 - `strain`."""
     return float(2 * ((1 - strain) ** -3 - 1) / 3)
@@ -154,7 +154,7 @@ def inertia_checks(arm_inertia: Effect, fluid_inertia: Effect) -> list[Check]:
         return []
     validity = max(map(_validity_of_effect, (arm_inertia, fluid_inertia)))
     # To first order the two phase lags add, so one factor serves both.
-    percent = 100 * THRESHOLD_DECREASE_BY_INERTIA * float(arm_inertia.value + fluid_inertia.value)
+    percent = 100 * THRESHOLD_DECREASE_PER_INERTIA_PHASE * float(arm_inertia.value + fluid_inertia.value)
     remark = (
         "neither matters",
         f"they lower the threshold of flutter by some {_one_digit_text(percent)} %",
@@ -183,13 +183,13 @@ def reynolds_checks(reynolds_number: Effect) -> list[Check]:
     return [Check(validity, f"Reynolds number: {value} if the tip moves by half the length; {remark}.")]
 
 
-def wall_checks(effect: Effect | None) -> list[Check]:
+def tube_flattening_checks(effect: Effect | None) -> list[Check]:
     """Check of the flattening of a tube's section in beating of large amplitude; an empty list if the section
     is not a tube (`effect` is None)."""
-    return [] if effect is None else [tube_wall_check(effect)]
+    return [] if effect is None else [tube_flattening_check(effect)]
 
 
-def tube_wall_check(effect: Effect) -> Check:
+def tube_flattening_check(effect: Effect) -> Check:
     """Check of a tube's wall. effect: relative loss of bending stiffness by flattening of the section, if the
     tip moves by L/2."""
     loss = float(effect.value)
@@ -234,8 +234,8 @@ def weight_check(effect: Effect | None, arm: SlenderArm) -> Check:
 
 
 def poisson_check(arm: SlenderArm) -> Check:
-    """Check of Poisson's ratio against USUAL_POISSON."""
-    usual = USUAL_POISSON[0] <= arm.poisson <= USUAL_POISSON[1]
+    """Check of Poisson's ratio against USUAL_POISSON_RANGE."""
+    usual = USUAL_POISSON_RANGE[0] <= arm.poisson <= USUAL_POISSON_RANGE[1]
     reason = "usual for soft materials" if usual else "unusual: rubbers and gels are near 0.5"
     return Check(
         _doubtful_if(not usual), f"Poisson's ratio: {arm.poisson:g}, {reason}; it enters through shear only."

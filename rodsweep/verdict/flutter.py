@@ -13,7 +13,7 @@ from .relative_load import SEARCH_END, SEARCH_ENDS_OF_VARYING_ARM, rod_with_drag
 
 SEARCH_REQUEST = ThresholdsRequest(F_max=SEARCH_END, accuracy=1e-6, certify=True, max_thresholds=1000)
 """Request for all thresholds of an arm, with relative accuracy 1e-6 and a proof that none is missing."""
-MIN_SEARCH_RATIO = 2.0
+MIN_SEARCH_END_RATIO = 2.0
 """The search for an arm that is not uniform or not of linear material is extended until its largest force is
 at least this number times the first flutter force and this number times the load."""
 KINDS_USED_BY_VERDICT = (
@@ -177,12 +177,12 @@ def _first_search(arm: SlenderArm, drag: Drag) -> tuple[float, ThresholdsWithDra
     """Returns (end, thresholds): the largest force requested, and the thresholds up to this force. `end` is
     SEARCH_END for an arm that does not vary. For other arms, `end` is the first number of
     SEARCH_ENDS_OF_VARYING_ARM that exceeds the first flutter force and a known load by at least the factor
-    MIN_SEARCH_RATIO, or before which the search ended; without such a number, the last number."""
+    MIN_SEARCH_END_RATIO, or before which the search ended; without such a number, the last number."""
     has_known_load = arm.load is not None and arm.share_of_flutter is None
     for end in SEARCH_ENDS_OF_VARYING_ARM if arm.shape.varies else (SEARCH_END,):
         thresholds = thresholds_with_drag(arm, drag, end)
         flutter = thresholds.first_force(ThresholdKind.hopf)
         min_end = max(inf if flutter is None else flutter, arm.F if has_known_load else 0.0)
-        if MIN_SEARCH_RATIO * min_end <= end or thresholds.thresholds.end < end:
+        if MIN_SEARCH_END_RATIO * min_end <= end or thresholds.thresholds.end < end:
             break
     return end, thresholds

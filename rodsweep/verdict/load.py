@@ -8,7 +8,7 @@ from .rounded_numbers import three_digit_range_text, three_digit_text_rounded_do
 
 TYPICAL_FLUTTER_FORCE = 36.0
 """Typical flutter force, in k3/L^2. Without a load, its SI prefix (Pa, kPa) is chosen for this force."""
-MAX_TYPED_LENGTH = 6
+MAX_TYPED_NUMBER_LENGTH = 6
 """A number of at most this many characters is reported as typed; a longer one is rounded to four digits."""
 
 
@@ -52,6 +52,6 @@ def _shortened_load(load: object, value: float, si_unit: str) -> str:
         return f"{value:.4g} {si_unit}"
     # A number as typed is recognised by the reader; only computed loads have many digits.
     number_text = load.split()[0]
-    if len(number_text) <= MAX_TYPED_LENGTH:
+    if len(number_text) <= MAX_TYPED_NUMBER_LENGTH:
         return load.strip()
     return f"{split_quantity(load)[0]:.4g} {split_quantity(load)[1]}"

@@ -11,7 +11,7 @@ from ..model.units import with_si_prefix
 from .planes import PlaneOfMotion
 from .rounded_numbers import three_digit_range_text
 
-LAW_FORMULA = "stress E (h - 1/h^2)/3 at the stretch h, incompressible"
+RUBBER_STRESS_FORMULA = "stress E (h - 1/h^2)/3 at the stretch h, incompressible"
 """Formula of the stress in neo-Hookean rubber, for the table."""
 
 
@@ -29,7 +29,7 @@ def number_rows(plane: PlaneOfMotion) -> list[NumberRow]:
     arm = plane.arm
     return [
         *plane_row(plane),
-        *shape_rows(arm),
+        *taper_segments_and_law_rows(arm),
         *dimensional_rows(arm),
         *flutter_force_row(plane),
         *drag_rows(arm),
@@ -46,7 +46,7 @@ def plane_row(plane: PlaneOfMotion) -> list[NumberRow]:
     return [NumberRow("motion", f"in {plane.name}", sizes, "where the arm flutters first")]
 
 
-def shape_rows(arm: SlenderArm) -> list[NumberRow]:
+def taper_segments_and_law_rows(arm: SlenderArm) -> list[NumberRow]:
     """Rows with the taper or the segments, and with the constitutive law if it is not linear; an empty list
     for a uniform arm of linear material."""
     rows = []
@@ -58,12 +58,19 @@ def shape_rows(arm: SlenderArm) -> list[NumberRow]:
         for number, station in enumerate(arm.shape.stations, 1):
             interval_text = f"u = {start:.4g} to {station.end:.4g}"
             source = "all other rows are for segment 1" if number == 1 else "drag by its own radius"
-            rows.append(NumberRow(f"segment {number}", interval_text, station_phrase(station), source))
+            rows.append(
+                NumberRow(
+                    f"segment {number}", interval_text, station_radii_and_modulus_phrase(station), source
+                )
+            )
             start = station.end
     if arm.law != LINEAR_CONSTITUTIVE_LAW.law_name:
         rows.append(
             NumberRow(
-                "law", f"neo-Hookean, {arm.section} section", LAW_FORMULA, "E is the modulus at small strain"
+                "law",
+                f"neo-Hookean, {arm.section} section",
+                RUBBER_STRESS_FORMULA,
+                "E is the modulus at small strain",
             )
         )
     return rows
@@ -168,7 +175,7 @@ def dimensionless_rows(arm: SlenderArm) -> list[NumberRow]:
     ]
 
 
-def station_phrase(station: Station) -> str:
+def station_radii_and_modulus_phrase(station: Station) -> str:
     """Phrase for the radius, the inner radius (of a tube) and Young's modulus of a segment: "radius 6 mm,
     inner radius 3 mm, 80 kPa"."""
     sizes = {"radius": station.section.drag_radius}

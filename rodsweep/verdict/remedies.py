@@ -7,7 +7,13 @@ from ..model.arm.neglected import Effect, Validity
 from ..model.arm.quantities import UNITS
 from ..model.units import unit_of, value_in_unit
 from ..wording import two_digits
-from .assessment import Assessment, rounded_down, rounded_up, thickness_factor, viscosity_factor
+from .assessment import (
+    Assessment,
+    rounded_down,
+    rounded_up,
+    thickness_factor_for_small_inertia,
+    viscosity_factor,
+)
 from .load import LoadFormatter
 
 MAX_FOUR_DIGIT_RATIO = 1.1
@@ -24,12 +30,15 @@ def not_applicable_sentences(arm: SlenderArm, assessment: Assessment) -> list[st
     # At flutter itself the model applies then, so the sentence must say that the load is the reason.
     load_clause = f" at {LoadFormatter(arm).typed_text}" if is_valid else ""
     is_pulled = any(first is effect for effect in assessment.compression_under_load) and arm.F < 0
-    excess = f"{'extension' if is_pulled else first.name} is {excess_text(first)} what the model allows"
+    excess = (
+        f"{'extension' if is_pulled else first.name} is {ratio_to_limit_text(first)} what the model allows"
+    )
     sentences = [f"The model does not apply{load_clause}: {excess}; {remedy}."]
     for effect in reversed(others):
         name = effect.name.capitalize()
         sentences.append(
-            f"{name} is {excess_text(effect)} what the model allows, too; {_remedy(effect, arm, assessment)}."
+            f"{name} is {ratio_to_limit_text(effect)} what the model allows, too; "
+            f"{_remedy(effect, arm, assessment)}."
         )
     return sentences
 
@@ -40,7 +49,7 @@ def effect_kind(effect: Effect) -> str:
     return effect.name.split()[0]
 
 
-def excess_text(effect: Effect) -> str:
+def ratio_to_limit_text(effect: Effect) -> str:
     """Ratio of an effect to its limit: "2.5 times", with two digits, or four below MAX_FOUR_DIGIT_RATIO."""
     ratio = float(effect.value_over_limit)
     return f"{two_digits(ratio)} times" if ratio >= MAX_FOUR_DIGIT_RATIO else f"{ratio:.4g} times"
@@ -73,7 +82,7 @@ def _thicker_fluid_or_thinner_arm(arm: SlenderArm, assessment: Assessment) -> st
         f"{rounded_up(value_in_unit(arm.si.viscosity * factor, unit, si_unit)):g} {unit.replace('*', ' ')}"
     )
     clause = f"the model needs a fluid at least {rounded_up(factor):g} times as viscous ({viscosity})"
-    thickness = thickness_factor(arm)
+    thickness = thickness_factor_for_small_inertia(arm)
     if isnan(thickness):
         return clause
     return f"{clause}, or an arm at most {rounded_down(thickness):g} times as thick"

@@ -27,7 +27,7 @@ def verdict_sentences(planes: PlanesOfMotion, assessment: Assessment) -> list[st
         return [
             "For some drags the thresholds could not be found: " + "; ".join(plane.thresholds.failures) + "."
         ]
-    headline, *others = _sentences_on_flutter(planes, assessment)
+    headline, *others = _sentences_without_failed_search(planes, assessment)
     return [headline, *_doubt_sentences(planes), *others]
 
 
@@ -38,7 +38,7 @@ def _doubt_sentences(planes: PlanesOfMotion) -> list[str]:
     return [f"For some drags this is not certain: {'; '.join(reasons)}."] if reasons else []
 
 
-def _sentences_on_flutter(planes: PlanesOfMotion, assessment: Assessment) -> list[str]:
+def _sentences_without_failed_search(planes: PlanesOfMotion, assessment: Assessment) -> list[str]:
     """Sentences of the verdict if no search in the first plane failed: see `verdict_sentences`."""
     plane = planes.first
     invalid_effects = assessment.effects_with(Validity.does_not_apply)
@@ -96,7 +96,7 @@ def _valid_arm_sentences(plane: PlaneOfMotion) -> list[str]:
         )
     else:
         sentences.append(f"The straight arm does not become stable again {_search_end_clause(plane, load)}.")
-    return sentences + _oscillation_sentences(thresholds, load)
+    return sentences + _oscillation_onset_sentences(thresholds, load)
 
 
 def _second_flutter_clause(thresholds: ThresholdsOverDrags, load: LoadFormatter) -> str:
@@ -206,7 +206,7 @@ def _search_end_clause(plane: PlaneOfMotion, load: LoadFormatter) -> str:
     return f"up to {end}, where the search ends"
 
 
-def _oscillation_sentences(thresholds: ThresholdsOverDrags, load: LoadFormatter) -> list[str]:
+def _oscillation_onset_sentences(thresholds: ThresholdsOverDrags, load: LoadFormatter) -> list[str]:
     """Sentence on the load above which a decaying disturbance oscillates; empty if no such load was found."""
     onset = thresholds.first_forces(ThresholdKind.onset)
     if onset is None:

@@ -14,7 +14,7 @@ from rodsweep.post.rod_portrait.paragraph import paragraph
 from rodsweep.post.rod_portrait.picture import portrait_figure
 from rodsweep.results.layouts.si_variables import NEGLECTED_EFFECTS, VALIDITY_VARIABLES
 from rodsweep.tasks import rod_portrait
-from rodsweep.tasks.rod_portrait import cycle_forces
+from rodsweep.tasks.rod_portrait import three_forces_with_stable_cycle
 
 FOLDED = rs.Rod(k1=200, k2=1e4, gamma3=1e-4)
 """Its branch of cycles passes a fold, beyond which straight rod and cycle are both stable."""
@@ -265,14 +265,14 @@ def test_bad_choices_are_refused():
 
 
 def test_three_forces_are_spread_over_all_ranges():
-    assert cycle_forces([(10.0, 20.0), (50.0, 80.0)]) == [14.0, 60.0, 76.0]
-    assert cycle_forces([]) == []
-    for force in cycle_forces([(42.7219713, 42.7219719)]):
+    assert three_forces_with_stable_cycle([(10.0, 20.0), (50.0, 80.0)]) == [14.0, 60.0, 76.0]
+    assert three_forces_with_stable_cycle([]) == []
+    for force in three_forces_with_stable_cycle([(42.7219713, 42.7219719)]):
         assert 42.7219713 < force < 42.7219719
 
 
 def test_branches_that_use_up_the_work_of_a_portrait_are_named(monkeypatch):
-    monkeypatch.setattr(rod_portrait, "BRANCH_WORK", 0.2)
+    monkeypatch.setattr(rod_portrait, "MAX_PORTRAIT_BRANCH_WORK", 0.2)
     found = rs.Rod(k1=1e4, k2=1e4, gamma3=1e-3).portrait(F_max=60)
     end = found.branch.special_points.iloc[-1]
     assert end["special_reason"] == "list_full"

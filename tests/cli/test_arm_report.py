@@ -20,7 +20,7 @@ from rodsweep.solve.changes.status import ThresholdStatus
 from rodsweep.solve.changes.threshold_kinds import ThresholdKind
 from rodsweep.solve.changes.thresholds import empty_thresholds
 from rodsweep.verdict.arm import arm_report
-from rodsweep.verdict.checks import THRESHOLD_DECREASE_BY_INERTIA, rubber_stiffening
+from rodsweep.verdict.checks import THRESHOLD_DECREASE_PER_INERTIA_PHASE, relative_rubber_stiffening
 from rodsweep.verdict.flutter import ThresholdsOverDrags, ThresholdsWithDrag
 from rodsweep.verdict.load import LoadFormatter
 from rodsweep.verdict.planes import PlaneOfMotion, PlanesOfMotion, with_absolute_load
@@ -105,14 +105,14 @@ def test_warnings_state_by_how_much_inertia_lowers_flutter(rod):
     phases = (-data.growth_rate / abs(data.frequency)).values.ravel()
     for phase in (0.02, 0.1, 0.2):
         lowered = 1 - np.interp(phase, phases[::-1], F[::-1]) / flutter
-        assert lowered == pytest.approx(THRESHOLD_DECREASE_BY_INERTIA * phase, rel=0.15)
+        assert lowered == pytest.approx(THRESHOLD_DECREASE_PER_INERTIA_PHASE * phase, rel=0.15)
 
 
 def test_rubber_is_stiffer_under_compression_as_stated():
     """Neo-Hookean: engineering stress E (x - 1/x^2)/3 at the stretch x."""
     x, step = 0.9, 1e-6
     slope = ((x + step - 1 / (x + step) ** 2) - (x - step - 1 / (x - step) ** 2)) / (2 * step) / 3
-    assert 1 + rubber_stiffening(0.1) == pytest.approx(slope, rel=1e-6)
+    assert 1 + relative_rubber_stiffening(0.1) == pytest.approx(slope, rel=1e-6)
 
 
 def test_a_load_that_crushes_the_material_is_beyond_the_model_while_flutter_is_not():

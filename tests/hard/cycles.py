@@ -17,7 +17,11 @@ from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
 from rodsweep.solve.cycle.neighbour import CycleStart, cycle_from_neighbour
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CycleMotion
-from rodsweep.solve.orbit.newton import multipliers_and_trivial_error, newton, with_matrix_within_distance
+from rodsweep.solve.orbit.newton import (
+    newton,
+    newton_step_if_matrix_distant,
+    nontrivial_multipliers_and_error,
+)
 from rodsweep.solve.orbit.orbit_mesh import mesh_of
 from rodsweep.solve.unsolvable import Unsolvable
 
@@ -98,7 +102,7 @@ def finer(orbit):
     here = mesh_of(orbit)
     grid = mesh_with_edges(here.edges, here.order + ceil(FINER_ORDER / here.element_count))
     intervals = max(LEAST_INTERVALS, ceil(FINER_SHARE * here.interval_count))
-    return with_matrix_within_distance(
+    return newton_step_if_matrix_distant(
         newton(orbit.on_mesh(grid, intervals, FINER_STAGES), 1e-13, NewtonWorkspace()), 0.0
     )
 
@@ -109,7 +113,7 @@ def broken_promises(found, accuracy):
     extrema, measures, errors = CycleMotion(exact.orbit).extrema, found.measures, found.errors
     period = abs(measures.period / exact.orbit.period - 1)
     off = {name: abs(getattr(measures, name) - extrema[name]) / extrema["tip_y_max"] for name in EXTREMA}
-    multipliers, rounding = multipliers_and_trivial_error(exact)
+    multipliers, rounding = nontrivial_multipliers_and_error(exact)
     multiplier = abs(found.largest_multiplier - abs(multipliers[0])) - MULTIPLIERS_ROUNDING * rounding
     promised = {
         "period": (period, errors.period_error),

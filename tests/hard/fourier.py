@@ -28,7 +28,7 @@ def half_period_derivatives(m):
 def guess_at(orbit, m):
     """X at m equidistant phases over half the period of a symmetric orbit, (m, unknowns)."""
     form, V = orbit.form, np.empty((m, 3, orbit.form.mesh.node_count + 1))
-    states, reaction = orbit.states_at(np.arange(m) / m), np.empty(V.shape[1:])
+    states, reaction = orbit.states_at_time_fractions(np.arange(m) / m), np.empty(V.shape[1:])
     for x, velocities in zip(states, V, strict=True):
         write_balance(x, velocities, reaction, form.nodal_rod, form.mesh.matrices)
     mixed = MixedForm(form.rod, form.mesh)

@@ -26,7 +26,7 @@ from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
 from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CycleMotion
-from rodsweep.solve.orbit.newton import multipliers_and_trivial_error, newton, newton_step
+from rodsweep.solve.orbit.newton import newton, newton_step, nontrivial_multipliers_and_error
 from rodsweep.solve.orbit.orbit_mesh import mesh_of
 from rodsweep.solve.unsolvable import Unsolvable
 
@@ -120,7 +120,7 @@ def broken_promises(case: Case) -> list[str]:
         )
         exact = newton_step(newton(fine.interpolated_orbit(point.orbit), 1e-11, NewtonWorkspace()))
         extrema, slope = CycleMotion(exact.orbit).extrema, point.calibration.sensitivity
-        y, multipliers = extrema["tip_y_max"], multipliers_and_trivial_error(exact)[0]
+        y, multipliers = extrema["tip_y_max"], nontrivial_multipliers_and_error(exact)[0]
         others = max(abs(getattr(stored.measures, name) - value) for name, value in extrema.items())
         errors = stored.errors
         off = {

@@ -356,7 +356,7 @@ def test_a_curve_of_one_point_has_the_reasons_of_both_ends():
         (None, None),
     )
     filled = fold_and_torus_curve_values(
-        TracedCurves((curve,), max_seed_curve_distance=0.0, untraced_count=0), ("F", "k1")
+        TracedCurves((curve,), max_seed_distance_in_rows=0.0, untraced_count=0), ("F", "k1")
     )
     view = SimpleNamespace(variables={variable.name: values for variable, values in filled})
     (line,) = cycle_curve_lines(view, "F", "k1")
@@ -384,7 +384,7 @@ def test_an_extremum_of_the_row_parameter_along_a_curve_of_folds_is_stored_and_s
     )
     curves = [SpecialPointCurve(SpecialKind.fold, points[2:], (CurveEndReason.edge,) * 2, (None, None))]
     curves.append(replace(curves[0], points=points))
-    traced = TracedCurves(tuple(curves), max_seed_curve_distance=0.0, untraced_count=0)
+    traced = TracedCurves(tuple(curves), max_seed_distance_in_rows=0.0, untraced_count=0)
     filled = fold_curve_extremum_values(traced, ("F", "k1"))
     view = SimpleNamespace(variables={variable.name: values for variable, values in filled})
     assert {name: values.tolist() for name, values in view.variables.items()} == {
@@ -415,7 +415,7 @@ def test_a_row_that_a_curve_of_folds_meets_without_a_fold_of_its_own_is_named():
     )
     curve = SpecialPointCurve(SpecialKind.fold, points, (CurveEndReason.edge,) * 2, (None, None))
     filled = fold_and_torus_curve_values(
-        TracedCurves((curve,), max_seed_curve_distance=0.0, untraced_count=0), ("F", "k1")
+        TracedCurves((curve,), max_seed_distance_in_rows=0.0, untraced_count=0), ("F", "k1")
     )
     nan = float("nan")
     rows = {

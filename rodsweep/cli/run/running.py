@@ -18,7 +18,7 @@ from ...sweep.points.ranges import IndexRange, index_count
 from ...sweep.ranks import Ranks
 from ...sweep.stop import StopRequest
 from ...tasks.protocol import SweepWideResult
-from ...tasks.running.failures import parameters_text, reasons_of_changed_points
+from ...tasks.running.failures import failure_reasons_of_changed_points, parameters_text
 from ...tasks.running.job import Job, job_of_config, plan_of
 from ...tasks.running.unforeseen_exceptions import TracebackLog, guarded_solver
 from ...wording import counted
@@ -177,7 +177,7 @@ class _RankRun:
             self.store.add_journals({"stopped": self.stop.name})
             return True
         attributes = {"finished": provenance.utc_time(), "stopped": self.stop.name}
-        reasons = reasons_of_changed_points(result, self.solver.statuses, self._point_text)
+        reasons = failure_reasons_of_changed_points(result, self.solver.statuses, self._point_text)
         self.store.finish(attributes, FinalVariables(result.variables, result.changed_points, reasons))
         if self.sweep_wide:
             self.sweep_wide.item_results.remove_all()

@@ -15,7 +15,7 @@ from ...results.file.creation import FilePlan
 from ...results.run.checkpoints import Checkpoints
 from ...results.run.journal import Journal, journal_directory, kept_points_clause
 from ...sweep.chunk_queue import ChunkQueue
-from ...sweep.loop import ItemIndices, SweepCallbacks, sweep
+from ...sweep.loop import PointIndexOrIndices, SweepCallbacks, sweep
 from ...sweep.points.chains import ChainSolver
 from ...sweep.points.groups import GroupResult, GroupSolver
 from ...sweep.points.ranges import IndexRange, IndexSet, Shard, index_count
@@ -84,7 +84,7 @@ class ShardSolver:
         solver = self.solver
         plan = self.plan
 
-        def keep(index: ItemIndices, result: Any) -> None:
+        def keep(index: PointIndexOrIndices, result: Any) -> None:
             is_new = reasons.add(index, result)
             if isinstance(result, GroupResult):
                 journal.append_all(np.asarray(index), result.values, is_new)
@@ -112,7 +112,7 @@ class ShardSolver:
 
     def _solve_item(
         self, missing: IndexSet, directory: Path
-    ) -> Callable[[int], Iterable[tuple[ItemIndices, Any]]]:
+    ) -> Callable[[int], Iterable[tuple[PointIndexOrIndices, Any]]]:
         """Function from the number of a work item (a point, a chain or a group) to its results."""
         solver = self.solver
         if solver.grouped:

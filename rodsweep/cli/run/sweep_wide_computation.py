@@ -12,12 +12,12 @@ from ...results.run.journal import journal_directory
 from ...solve.backend.solver_pools import destroy_pooled_solvers
 from ...solve_progress import SolveStopped, reporting_to
 from ...sweep.chunk_queue import ChunkQueue, DependentItemQueue
-from ...sweep.loop import ItemIndices, RankStatistics, SweepCallbacks, sweep
+from ...sweep.loop import PointIndexOrIndices, RankStatistics, SweepCallbacks, sweep
 from ...sweep.progress import ProgressReporter, SilentProgress
 from ...sweep.ranks import Ranks
 from ...sweep.stop import RankListener, SingleRankCommunication, StopRequest
 from ...tasks.protocol import NamedArrays, SweepWideResult, SweepWideSolver, WorkItems
-from ...tasks.running.unforeseen_exceptions import RUN_ENDING_EXCEPTIONS, ItemExceptionNote
+from ...tasks.running.unforeseen_exceptions import RUN_ENDING_EXCEPTIONS, SweepWideExceptionNote
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +40,7 @@ class SweepWideComputation:
         solver: SweepWideSolver,
         output: Path,
         fingerprint: str,
-        note: ItemExceptionNote,
+        note: SweepWideExceptionNote,
         stop: StopRequest,
     ):
         """solver: computes the variables. note: function called with every unforeseen exception; the result
@@ -76,7 +76,7 @@ class SweepWideComputation:
         rank. title: text of the progress display; None for no display."""
         results: dict[int, NamedArrays] = {}
 
-        def keep(item: ItemIndices, result: NamedArrays) -> None:
+        def keep(item: PointIndexOrIndices, result: NamedArrays) -> None:
             self.item_results.write(int(item), result)
             results[int(item)] = result
 

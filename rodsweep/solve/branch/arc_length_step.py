@@ -19,7 +19,7 @@ from ..cycle.accuracy.refinement import (
     cycle_with_calibrated_errors,
 )
 from ..orbit.matrix.workspace import NewtonWorkspace
-from ..orbit.newton import ConvergedOrbit, largest_multiplier_difference, relative_change
+from ..orbit.newton import ConvergedOrbit, error_of_largest_multiplier, relative_change
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import OrbitMesh
 from .bordered.condition import BorderCondition, moved_orbit
@@ -204,7 +204,7 @@ def branch_cycle_with_calibrated_errors(
     cycle = cycle_with_calibrated_errors(start.calibration.at_equal_parameter, solved, accuracy)
     derivatives = branch_derivatives(solved, start.scale, tangent)
     curvature = (derivatives.parameter_rate - start.parameter_rate) / length
-    rate = largest_multiplier_difference(cycle.multipliers, start.cycle.multipliers) / length
+    rate = error_of_largest_multiplier(cycle.multipliers, start.cycle.multipliers) / length
     return BranchCycle(
         cycle=cycle,
         derivatives=replace(derivatives, parameter_second_derivative=curvature, multiplier_rate=rate),

@@ -12,7 +12,7 @@ from ..cycle.accuracy.cycle_errors import MULTIPLIER_ERROR_INDEX
 from ..cycle.accuracy.finer_meshes import FINER_MESH_SETTINGS, finer_meshes
 from ..cycle.cycles_along_parameter import interpolated_change
 from ..orbit.measures import CycleMotion
-from ..orbit.newton import ConvergedOrbit, largest_multiplier_difference, multipliers_and_trivial_error
+from ..orbit.newton import ConvergedOrbit, error_of_largest_multiplier, nontrivial_multipliers_and_error
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import mesh_of
 from ..orbit.path_differences import path_differences
@@ -44,7 +44,7 @@ def measured_branch_calibration(
     border = _border_of_comparison(orbit, derivatives)
     condition = BorderCondition.at_arc_length(derivatives.scale, border, orbit)
     rough = CycleMotion(orbit)
-    multipliers = multipliers_and_trivial_error(solved)[0]
+    multipliers = nontrivial_multipliers_and_error(solved)[0]
     differences = np.empty((2, MULTIPLIER_ERROR_INDEX + 2))
     for difference, target in zip(differences, target_meshes, strict=True):
         fine_orbit = condition.solve_on_mesh(
@@ -98,8 +98,8 @@ def _differences_between_meshes(
     tangent = np.append(interpolated_change(orbit, derivatives.tangent[:-1], target), derivatives.tangent[-1])
     # The fine cycle is moved along the branch to the parameter value of the rough cycle.
     moved_fine = moved_orbit(fine.orbit, scale.parameter_name, length * tangent)
-    multiplier_difference = largest_multiplier_difference(
-        multipliers, multipliers_and_trivial_error(fine)[0]
+    multiplier_difference = error_of_largest_multiplier(
+        multipliers, nontrivial_multipliers_and_error(fine)[0]
     ) + abs(length * derivatives.multiplier_rate)
     deflection_rate = abs(derivatives.unit_tangent[0])
     parameter_rate = abs(derivatives.parameter_rate)

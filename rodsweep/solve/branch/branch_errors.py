@@ -131,7 +131,7 @@ class BranchCalibration:
         the relative accuracy and at least the rounding error."""
         return max(
             CALIBRATION_SETTINGS.safety_factor * float(self.parameter_errors.sum()),
-            CYCLE_ERROR_SETTINGS.min_error_ratio * accuracy,
+            CYCLE_ERROR_SETTINGS.min_error_over_accuracy * accuracy,
             CYCLE_ERROR_SETTINGS.rounding_error,
         )
 
@@ -200,7 +200,7 @@ class BranchCalibration:
         first, second = self.at_equal_parameter, other.at_equal_parameter
         parameter_errors = _log_interpolated_errors(self.parameter_errors, other.parameter_errors, fraction)
         # The interpolated errors contain their growth since the last measurement.
-        start = replace(first, error_growth=np.ones(2))
+        start = replace(first, space_time_error_growth=np.ones(2))
         interpolated = BranchCalibration(start, parameter_errors, sensitivity, multiplier_sensitivity)
         sensitivities = self._sensitivities, other._sensitivities
         parts = [

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...arrays import Array
 from ..cycle.accuracy.error_indicators import error_growth_factors, tails_and_size
-from ..orbit.mesh_choice import finer_orbit_mesh, regraded
+from ..orbit.mesh_choice import finer_orbit_mesh, regraded_coarser
 from ..orbit.orbit_mesh import OrbitMesh, mesh_of
 from .arc_length_step import BranchCycle
 from .branch_errors import BRANCH_ERROR_SETTINGS
@@ -52,9 +52,9 @@ def mesh_ahead(end: BranchCycle, growth: Array, accuracy: float) -> OrbitMesh | 
     expected = end.calibration.grown(growth)
     cheapest = expected.cheapest_mesh(BRANCH_MESH_SETTINGS.planned_error_ratio * accuracy)
     if expected.largest_weighted_error(accuracy) > accuracy:
-        target = regraded(finer_orbit_mesh(mesh, cheapest), end.orbit)
+        target = regraded_coarser(finer_orbit_mesh(mesh, cheapest), end.orbit)
         return target if target.is_allowed else None
     # A sufficient mesh is replaced only by a much cheaper mesh, which is likely to suffice for many cycles.
     cheaper = expected.cheapest_mesh(BRANCH_MESH_SETTINGS.planned_error_ratio_of_cheaper_mesh * accuracy)
-    target = regraded(cheaper, end.orbit)
+    target = regraded_coarser(cheaper, end.orbit)
     return target if target.cost <= BRANCH_MESH_SETTINGS.max_cheaper_cost_ratio * mesh.cost else None

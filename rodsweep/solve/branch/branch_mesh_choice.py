@@ -13,8 +13,8 @@ from ..cycle.accuracy.refinement import (
     allowed_matrix_distance,
     cycle_with_calibrated_errors,
 )
-from ..orbit.mesh_choice import finer_orbit_mesh, regraded
-from ..orbit.newton import ConvergedOrbit, multipliers_and_trivial_error
+from ..orbit.mesh_choice import finer_orbit_mesh, regraded_coarser
+from ..orbit.newton import ConvergedOrbit, nontrivial_multipliers_and_error
 from ..orbit.orbit_mesh import OrbitMesh, mesh_limit_error, mesh_of
 from ..unsolvable import MeshLimitReached
 from .arc_length_step import ARC_STEP_CONTROL, BranchCycle
@@ -42,7 +42,7 @@ def first_measured_cycle(
     derivatives = branch_derivatives(
         solved, scale, tangent_at(solved.orbit, scale, side, linearisation_of(solved))
     )
-    multipliers = multipliers_and_trivial_error(solved)[0]
+    multipliers = nontrivial_multipliers_and_error(solved)[0]
     trivial_error = abs(multipliers[0] - 1) if len(multipliers) else 0.0
     # At the Hopf point the derivative of the parameter is 0 and a second multiplier is 1. Near the Hopf point
     # this derivative is linear, and the multiplier is quadratic, in the deflection.
@@ -68,7 +68,9 @@ def is_measurement_due(point: BranchCycle, accuracy: float) -> bool:
     """Whether the errors of a cycle of the relative accuracy `accuracy` must be measured: the last measured
     cycle is too many steps away, or the errors have grown too much since that cycle."""
     settings = BRANCH_MESH_SETTINGS
-    growth = float(point.calibration.at_equal_parameter.scaled_on_branch(point.orbit).error_growth.max())
+    growth = float(
+        point.calibration.at_equal_parameter.scaled_on_branch(point.orbit).space_time_error_growth.max()
+    )
     # Small errors stay within the accuracy, even if they grow by the largest allowed factor.
     has_small_errors = (
         point.calibration.largest_weighted_error(accuracy) * settings.max_growth_since_measurement <= accuracy
@@ -117,7 +119,7 @@ def solve_on_sufficient_mesh(
         if calibration.largest_weighted_error(accuracy) <= accuracy:
             return point
         cheapest = calibration.cheapest_mesh(BRANCH_MESH_SETTINGS.planned_error_ratio * accuracy)
-        target = finer_orbit_mesh(calibration.mesh, regraded(cheapest, point.orbit))
+        target = finer_orbit_mesh(calibration.mesh, regraded_coarser(cheapest, point.orbit))
         if not target.is_allowed:
             raise mesh_limit_error()
         point = solved_on_mesh(point, target, condition, accuracy)
@@ -215,7 +217,7 @@ def _with_interpolated_errors(
         fraction = 1.0
     growth = np.min(
         [
-            measured.calibration.at_equal_parameter.scaled_on_branch(point.orbit).error_growth
+            measured.calibration.at_equal_parameter.scaled_on_branch(point.orbit).space_time_error_growth
             for measured in (start, end)
         ],
         axis=0,

@@ -14,7 +14,7 @@ from numpy.polynomial import Polynomial
 
 from ...arrays import Array
 from ..cycle.cycles_along_parameter import interpolated_change
-from ..orbit.normalised_orbit import polynomial_weights
+from ..orbit.normalised_orbit import extrapolated_change_weights
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import mesh_of
 from .bordered.scale import ArcLengthScale
@@ -95,7 +95,7 @@ def predicted_change(tangent: Array, data: Sequence[HermiteNode], length: float)
     tangent: tangent with unit arc length at the last cycle, (N + 1,). data: earlier cycles."""
     positions = [0.0, *(datum.position for datum in data for _ in range(2))]
     is_slope = [1.0, *(order for _ in data for order in (0.0, 1.0))]
-    weights = polynomial_weights(np.array(positions), np.array(is_slope), length)
+    weights = extrapolated_change_weights(np.array(positions), np.array(is_slope), length)
     changes = [tangent, *(change for datum in data for change in (datum.difference, datum.slope))]
     result: Array = weights @ np.array(changes)
     return result

@@ -51,7 +51,7 @@ def extended_to_whole_period(orbit: Orbit) -> Orbit:
     # In units of half a period, which the symmetric orbit covers.
     times = 2 * node_times(interval_count, orbit.stage_count, grading)
     is_second_half = times > 1
-    points = orbit.states_at(np.where(is_second_half, times - 1, times))
+    points = orbit.states_at_time_fractions(np.where(is_second_half, times - 1, times))
     # The second half of the period is the mirror image of the first.
     points[is_second_half] = orbit.symmetry.apply(points[is_second_half], orbit.form.layout)
     values = np.append(points.ravel(), orbit.period)
@@ -62,7 +62,7 @@ def asymmetry(orbit: Orbit) -> Array:
     """Asymmetry of an orbit: bending moments at t = 0 plus bending moments half a period later, (nodes,); 0
     for a symmetric orbit."""
     return _bending_moments(orbit.start_state, orbit) + _bending_moments(
-        orbit.states_at(np.array([0.5]))[0], orbit
+        orbit.states_at_time_fractions(np.array([0.5]))[0], orbit
     )
 
 

@@ -124,7 +124,7 @@ def find_thresholds(
         oscillates = search.sample_at(path.coordinate(ends[0])).oscillates
         ordered = sorted(exchanges + crossings.crossings, key=lambda c: c.value)
         thresholds, end_count = counter.crossings_with_counts(ordered, ends, start_count)
-        missed_p = _crossings_without_leading_pair(path, thresholds, oscillates, start_count)
+        missed_p = _crossings_contradicting_exchanges(path, thresholds, oscillates, start_count)
         if not missed_p:
             break
         sample_p = [
@@ -214,7 +214,7 @@ def _crossings_by_covering(path: ParameterPath, low: float, high: float) -> Path
     return PathCrossings(path, crossings, _undecided_intervals(path, undecided), SearchEnd(high), box_count)
 
 
-def _crossings_without_leading_pair(
+def _crossings_contradicting_exchanges(
     path: ParameterPath, crossings: tuple[Threshold, ...], oscillates: bool, unstable_count: int
 ) -> list[float]:
     """Path variables of the crossings whose pair must lead, but does not lead according to the exchanges.

@@ -20,7 +20,7 @@ class UnstableModeCountSettings:
     count_positions: tuple[float, ...] = (0.5, 0.3, 0.7)
     """Positions between two crossings, as fractions of the interval, at which the unstable modes are counted,
     in this order, until a count is decided."""
-    min_crossing_distance: float = 1e-3
+    min_relative_crossing_distance: float = 1e-3
     """Modes are not counted between two crossings at path variables a < b if (b - a)/|b| is at most this
     number, because a pair is then too close to the imaginary axis."""
 
@@ -108,7 +108,7 @@ class UnstableModeCounter:
         elif not self.certify:
             return unstable_count
         # So close to two crossings their pairs are almost on the axis, and the count would be undecided.
-        if b - a <= UNSTABLE_MODE_COUNT_SETTINGS.min_crossing_distance * abs(b):
+        if b - a <= UNSTABLE_MODE_COUNT_SETTINGS.min_relative_crossing_distance * abs(b):
             return -1 if gaps_between else unstable_count
         count = self.count_between(a, b)
         if gaps_between or unstable_count < 0:

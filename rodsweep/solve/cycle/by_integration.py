@@ -104,7 +104,7 @@ class _IntegrationUntilSettled:
                 if errors.largest_weighted_error <= tolerance:
                     break
             if is_nearby_rod:
-                errors = self._errors_in_limit(settled, motion, errors)
+                errors = self._errors_with_limiting_rod_error(settled, motion, errors)
         except NoCycleFound as end:
             return replace(straight, status=end.status, message=end.message, periods=self.return_count)
         return self._with_measures(straight, motion, errors)
@@ -219,7 +219,7 @@ class _IntegrationUntilSettled:
             )
         )
 
-    def _errors_in_limit(
+    def _errors_with_limiting_rod_error(
         self, settled: SettledMotion, cycle: CycleMotion, errors: CycleErrors
     ) -> CycleErrors:
         """`errors` plus the error of integrating a nearby rod instead of a limiting rod; raises

@@ -155,8 +155,8 @@ def with_measures(
         order=mesh.order,
         measures=replace(measures, harmonic_amplitude=amplitudes),
         errors=errors,
-        tip=motion.tip_from_mean_crossing(request.samples) if request.samples else None,
-        energy=motion.energy_and_powers(request.samples) if request.samples else None,
+        tip=motion.tip_x_y_theta_from_mean_crossing(request.samples) if request.samples else None,
+        energy=motion.energy_and_powers_from_mean_crossing(request.samples) if request.samples else None,
         shape=motion.shapes_from_mean_crossing(request.shapes, request.nodes) if request.shapes else None,
     )
 

@@ -15,11 +15,11 @@ from ...arrays import Array
 from ...discretization.stress.form import StressForm
 from ..continuation.curve import StepControl, StepResult, advance
 from ..orbit.matrix.workspace import NewtonWorkspace
-from ..orbit.newton import ConvergedOrbit, newton, relative_change, with_matrix_within_distance
+from ..orbit.newton import ConvergedOrbit, newton, newton_step_if_matrix_distant, relative_change
 from ..orbit.normalised_orbit import (
+    extrapolated_change_weights,
     normalised_orbit_values,
     normalised_tangent,
-    polynomial_weights,
     predicted_normalised_values,
     reflection_arrays,
     values_from_normalised,
@@ -93,8 +93,8 @@ class CyclePredictor:
 
     def weights(self, step: float) -> Array:
         """Weights, (m,), of the rows of `values_and_derivatives` in the predicted change over a step of the
-        parameter coordinate; see `polynomial_weights`."""
-        weights: Array = polynomial_weights(self.parameter_offsets, self.derivative_orders, step)
+        parameter coordinate; see `extrapolated_change_weights`."""
+        weights: Array = extrapolated_change_weights(self.parameter_offsets, self.derivative_orders, step)
         return weights
 
     def predicted_orbit(self, form: StressForm, name: str) -> Orbit:
@@ -233,7 +233,7 @@ def orbit_in_steps(
         if fraction >= 1.0:
             return solved_orbit.solution
         predictor = predictor_from(
-            with_matrix_within_distance(
+            newton_step_if_matrix_distant(
                 solved_orbit.solution, CYCLE_PREDICTION_SETTINGS.max_matrix_distance, name
             ),
             predictor,

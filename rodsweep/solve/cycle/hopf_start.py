@@ -21,7 +21,7 @@ from ..changes.arm.path import path_problem
 from ..changes.path_problem import PathProblem
 from ..hopf.normal_form import NormalForm, normal_form_by_mesh_rule
 from ..orbit.matrix.workspace import NewtonWorkspace
-from ..orbit.newton import ConvergedOrbit, newton, with_matrix_within_distance
+from ..orbit.newton import ConvergedOrbit, newton, newton_step_if_matrix_distant
 from ..orbit.orbit import Orbit, node_times
 from ..orbit.symmetry import REFLECTION
 from ..spectrum.candidates import CANDIDATE_SETTINGS
@@ -208,7 +208,7 @@ def _orbit_in_stages(
         F = min(form.rod.F, normal.F * (1 + distance))
         end_form = replace(form, rod=replace(form.rod, F=F))
         end = orbit_in_steps(predictor_from(solved_orbit, None, "F"), end_form, "F", tolerance, workspace)
-        solved_orbit = with_matrix_within_distance(end, tolerance, "F")
+        solved_orbit = newton_step_if_matrix_distant(end, tolerance, "F")
     return solved_orbit.orbit
 
 
@@ -219,7 +219,7 @@ def _orbit_near_normal_form(
     Unsolvable."""
     start = orbit_by_normal_form(normal, replace(form, rod=replace(form.rod, F=F)))
     tolerance = HOPF_START_SETTINGS.intermediate_orbit_tolerance
-    solved_orbit = with_matrix_within_distance(newton(start, tolerance, workspace, "F"), tolerance, "F")
+    solved_orbit = newton_step_if_matrix_distant(newton(start, tolerance, workspace, "F"), tolerance, "F")
     orbit = solved_orbit.orbit
     tip_y = orbit.form.tip_coordinates(orbit.start_state)[1]
     min_ratio, max_ratio = HOPF_START_SETTINGS.squared_amplitude_ratios

@@ -18,8 +18,8 @@ from ...arrays import Array, Complex
 from ...discretization.stress.form import StressForm
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.measures import CycleMotion
-from ..orbit.mesh_choice import regraded
-from ..orbit.newton import ConvergedOrbit, newton, with_matrix_within_distance
+from ..orbit.mesh_choice import regraded_coarser
+from ..orbit.newton import ConvergedOrbit, newton, newton_step_if_matrix_distant
 from ..orbit.orbit_mesh import OrbitMesh, mesh_of
 from ..orbit.stored_orbit import orbit_arrays, orbit_from_arrays
 from ..unsolvable import Unsolvable
@@ -138,7 +138,9 @@ def _next_mesh_and_calibration(
             calibration if calibration.keeps_space_errors else calibration.with_outdated_errors,
         )
     max_cost = inf if not is_accurate else _max_cost_ratio(refined, previous, name)
-    target_mesh = regraded(cheapest_mesh(calibration, accuracy), refined.orbit) if max_cost else current_mesh
+    target_mesh = (
+        regraded_coarser(cheapest_mesh(calibration, accuracy), refined.orbit) if max_cost else current_mesh
+    )
     if max_cost and target_mesh.cost <= max_cost * current_mesh.cost:
         return target_mesh, calibration.with_outdated_errors
     return current_mesh, calibration
@@ -152,11 +154,13 @@ def _max_cost_ratio(refined: RefinedCycle, previous: "CycleStart | None", name: 
         return NEXT_MESH_SETTINGS.max_new_mesh_cost_ratio
     if refined.calibration.is_measured_at_orbit:
         return NEXT_MESH_SETTINGS.max_new_mesh_cost_ratio_if_measured
-    parameter_change = relative_parameter_difference(previous.predictor.orbit.form, refined.orbit.form, name)
+    relative_parameter_change = relative_parameter_difference(
+        previous.predictor.orbit.form, refined.orbit.form, name
+    )
     # If the errors must be measured again anyway, another mesh needs no additional measurement.
     return (
         0.0
-        if refined.calibration.is_valid_after(parameter_change)
+        if refined.calibration.is_valid_after(relative_parameter_change)
         else NEXT_MESH_SETTINGS.max_new_mesh_cost_ratio
     )
 
@@ -178,9 +182,9 @@ def cycle_from_neighbour(
         )
     solved = _cycle_on_next_mesh(neighbour, form, name, accuracy, workspace)
     motion = CycleMotion(solved.orbit)
-    parameter_change = relative_parameter_difference(neighbour.predictor.orbit.form, form, name)
+    relative_parameter_change = relative_parameter_difference(neighbour.predictor.orbit.form, form, name)
     calibration = neighbour.calibration.scaled_on_chain(
-        solved.orbit, parameter_change, error_indicators(solved, motion)
+        solved.orbit, relative_parameter_change, error_indicators(solved, motion)
     )
     if calibration.is_valid:
         cycle = cycle_with_calibrated_errors(calibration, solved, accuracy, motion)
@@ -205,4 +209,4 @@ def _cycle_on_next_mesh(
         # The steps are made on a coarser mesh; only the last correction is made on `next_mesh`.
         start = orbit_in_steps(neighbour.predictor.on_mesh(target.coarser), form, name, tolerance, workspace)
         solved = newton(target.interpolated_orbit(start.orbit), tolerance, workspace, name)
-    return with_matrix_within_distance(solved, allowed_matrix_distance(accuracy), name)
+    return newton_step_if_matrix_distant(solved, allowed_matrix_distance(accuracy), name)

@@ -66,9 +66,9 @@ class CycleMotion:
     def __init__(self, orbit: Orbit) -> None:
         self.orbit = orbit
         mesh = orbit.form.mesh
-        self._equidistant_states = np.ascontiguousarray(orbit.equidistant_states)
+        self._equidistant_states = np.ascontiguousarray(orbit.states_equidistant_in_mesh_time)
         matrices = tip_matrices(mesh)
-        self._time_scales = orbit.period * orbit.equidistant_time_rates
+        self._time_scales = orbit.period * orbit.time_slopes_by_mesh_time
         self._path = tip_path(self._equidistant_states, self._time_scales, orbit.orbit_equations, matrices)
         self.last_tip_coefficients = self._path.tip_coefficients
         self.tip_samples = (
@@ -81,7 +81,7 @@ class CycleMotion:
     def _parts(self) -> int:
         return self.orbit.symmetry.period_parts
 
-    def _in_time(self, c: Complex) -> Complex:
+    def _time_from_mesh_time_coefficients(self, c: Complex) -> Complex:
         """Fourier coefficients in time from Fourier coefficients c in mesh time, (count, ...)."""
         return coefficients_in_time(c, self.orbit.grading, self._parts)
 
@@ -99,7 +99,7 @@ class CycleMotion:
         K, size = self._path.strains_and_rates.shape[2:]
         values, slopes = self._path.strains_and_rates.swapaxes(1, 2).reshape(2, K, 3 * size)
         signs = np.repeat(REFLECTION_SIGNS if self.orbit.is_symmetric else np.zeros(3), size)
-        c = self._in_time(hermite_coefficients_of_columns(values, slopes, signs))
+        c = self._time_from_mesh_time_coefficients(hermite_coefficients_of_columns(values, slopes, signs))
         return c.reshape(len(c), 3, size)
 
     @property
@@ -114,11 +114,11 @@ class CycleMotion:
         squared moduli over the nodes of all elements."""
         values, slopes = self._path.strains_and_rates[:, 2]
         signs = np.full(values.shape[1], REFLECTION_SIGNS[2] * self.orbit.is_symmetric)
-        c = self._in_time(hermite_coefficients_of_columns(values, slopes, signs))
+        c = self._time_from_mesh_time_coefficients(hermite_coefficients_of_columns(values, slopes, signs))
         sizes: Array = np.linalg.norm(c[1:], axis=1)
         return sizes
 
-    def resampled_tip(self, sample_count: int) -> Array:
+    def tip_x_y_theta_from_orbit_start(self, sample_count: int) -> Array:
         """(x, y, theta) of the tip at `sample_count` equidistant times of a period from the start of the
         orbit, (count, 3)."""
         return series_samples(self.tip_coefficients, sample_count)
@@ -160,18 +160,18 @@ class CycleMotion:
         periods."""
         return time_of_rise_through_mean(self.tip_samples[:, 1])
 
-    def tip_from_mean_crossing(self, sample_count: int) -> Array:
+    def tip_x_y_theta_from_mean_crossing(self, sample_count: int) -> Array:
         """(x, y, theta) of the tip at `sample_count` equidistant times of a period from `mean_crossing_time`,
         (3, samples)."""
         return self._series_from_mean_crossing(self.tip_coefficients, sample_count).T
 
-    def energy_and_powers(self, sample_count: int) -> Array:
+    def energy_and_powers_from_mean_crossing(self, sample_count: int) -> Array:
         """(elastic energy U, injected power, dissipated power) at `sample_count` equidistant times of a
         period from `mean_crossing_time`, (3, samples)."""
         period = self.orbit.period
         # Factors of the time derivative of Fourier coefficients.
         derivative_factors = 2j * np.pi / period * np.arange(len(self.tip_coefficients))
-        theta = self.tip_from_mean_crossing(sample_count)[2]
+        theta = self.tip_x_y_theta_from_mean_crossing(sample_count)[2]
         dx, dy, _ = self._series_from_mean_crossing(
             derivative_factors[:, None] * self.tip_coefficients, sample_count
         ).T
@@ -185,7 +185,7 @@ class CycleMotion:
             # Energy and power are even under the reflection, so they repeat after half a period.
             U = np.tile(U, 2)
             energy_rates = np.tile(energy_rates, 2)
-        c = self._in_time(hermite_coefficients(U, energy_rates))
+        c = self._time_from_mesh_time_coefficients(hermite_coefficients(U, energy_rates))
         U, energy_rate = self._series_from_mean_crossing(
             np.stack([c, derivative_factors[: len(c)] * c], axis=1), sample_count
         ).T

@@ -30,10 +30,10 @@ def mesh_from_tails(orbit: Orbit, accuracy: float, stage_count: int) -> OrbitMes
     tails = tails_of(orbit)
     # The errors are quadratic in the tails, hence the square roots.
     max_space_tail = (
-        ORBIT_MESH_SETTINGS.accuracy_fraction * accuracy / ORBIT_MESH_SETTINGS.space_error_factor
+        ORBIT_MESH_SETTINGS.accuracy_fraction * accuracy / ORBIT_MESH_SETTINGS.space_error_per_squared_tail
     ) ** 0.5
     max_time_tail = (
-        ORBIT_MESH_SETTINGS.accuracy_fraction * accuracy / ORBIT_MESH_SETTINGS.time_error_factor
+        ORBIT_MESH_SETTINGS.accuracy_fraction * accuracy / ORBIT_MESH_SETTINGS.time_error_per_squared_tail
     ) ** 0.5
     # Below `min_tail` a tail is rounding error.
     order = current_mesh.order + ceil(
@@ -80,7 +80,7 @@ def grading_and_interval_ratio(orbit: Orbit, max_tail: float, stage_count: int) 
     return best, interval_ratio_of_grading[best]
 
 
-def regraded(mesh: OrbitMesh, orbit: Orbit) -> OrbitMesh:
+def regraded_coarser(mesh: OrbitMesh, orbit: Orbit) -> OrbitMesh:
     """`mesh` with the best grading of the time intervals for the solved `orbit` and fewer intervals; `mesh`
     itself if its grading, that of `orbit`, is almost as good."""
     stage_count = orbit.stage_count

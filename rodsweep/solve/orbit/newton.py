@@ -124,7 +124,7 @@ def newton(
     )
 
 
-def with_matrix_within_distance(
+def newton_step_if_matrix_distant(
     solved: ConvergedOrbit, distance: float, parameter_name: str | None = None
 ) -> ConvergedOrbit:
     """The orbit `solved`, after one more Newton step if its matrix was assembled at a relative distance of
@@ -144,7 +144,7 @@ def newton_step(solved: ConvergedOrbit, parameter_name: str | None = None) -> Co
     return ConvergedOrbit(orbit.plus_change(matrix.step), matrix, relative_change(orbit, matrix.step))
 
 
-def multipliers_and_trivial_error(solved: ConvergedOrbit) -> tuple[Complex, float]:
+def nontrivial_multipliers_and_error(solved: ConvergedOrbit) -> tuple[Complex, float]:
     """Returns (multipliers, trivial_error): nontrivial Floquet multipliers by descending modulus, (m,), and
     the distance of the computed trivial multiplier from 1."""
     multipliers = solved.matrix.multipliers()
@@ -154,7 +154,7 @@ def multipliers_and_trivial_error(solved: ConvergedOrbit) -> tuple[Complex, floa
     return nontrivial, float(abs(multipliers[trivial_index] - 1))
 
 
-def largest_multiplier_difference(multipliers: Complex, other_multipliers: Complex) -> float:
+def error_of_largest_multiplier(multipliers: Complex, other_multipliers: Complex) -> float:
     """Absolute error of the largest multiplier, from the multipliers on two meshes: the distance of
     `multipliers[0]` from the nearest of `other_multipliers`, or the difference of the two largest moduli,
     whichever is larger; 0 if a list is empty.

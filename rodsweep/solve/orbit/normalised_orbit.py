@@ -60,7 +60,7 @@ def normalised_tangent(orbit: Orbit, tangent: Array) -> Array:
 def normalised_values(values: Array, r: ReflectionArrays) -> Array:
     """Compiled `normalised_orbit_values`: normalised values, (N + 1,), of the orbit with the given `values`,
     (N,)."""
-    squared = moment_inner_product(values, values, r)
+    squared = start_moment_inner_product(values, values, r)
     out = np.empty(len(values) + 1)
     out[:-1] = values
     out[-1] = squared
@@ -77,7 +77,7 @@ def values_from_normalised(normalised: Array, r: ReflectionArrays) -> Array:
 
 
 @compiled_for_vectors
-def polynomial_weights(arguments: Array, orders: Array, step: float) -> Array:
+def extrapolated_change_weights(arguments: Array, orders: Array, step: float) -> Array:
     """Weights, (m,): p(step) - p(0) is the sum of weights times data, p: interpolation polynomial through m
     data.
 
@@ -126,8 +126,8 @@ def predicted_normalised_values(values: Array, data: Array, orders: Array, weigh
 def normalised_slopes(values: Array, tangent: Array, r: ReflectionArrays) -> Array:
     """Compiled `normalised_tangent`: derivative of the normalised values, (N + 1,). values, tangent: orbit
     values and derivative of the orbit values, (N,)."""
-    squared = moment_inner_product(values, values, r)
-    change = 2 * moment_inner_product(values, tangent, r)
+    squared = start_moment_inner_product(values, values, r)
+    change = 2 * start_moment_inner_product(values, tangent, r)
     # d(v/size) = dv/size - v d(size^2)/(2 size^3), for the reversed components only.
     relative_rate = change / (2 * squared)
     out = np.empty(len(values) + 1)
@@ -142,7 +142,7 @@ def normalised_slopes(values: Array, tangent: Array, r: ReflectionArrays) -> Arr
 
 
 @compiled_for_vectors
-def moment_inner_product(values: Array, other_values: Array, r: ReflectionArrays) -> float:
+def start_moment_inner_product(values: Array, other_values: Array, r: ReflectionArrays) -> float:
     """Integral over the rod of m3 m3' at t = 0, m3 and m3' from the orbit values `values` and `other_values`,
     (N,). With equal arguments this is the squared size."""
     total = 0.0

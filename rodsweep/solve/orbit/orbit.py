@@ -77,7 +77,7 @@ class Orbit:
         return self.all_states[: -1 : self.stage_count]
 
     @property
-    def equidistant_states(self) -> Array:
+    def states_equidistant_in_mesh_time(self) -> Array:
         """States at the starts of all intervals except the last, (K - 1, n): these starts divide the mesh
         time of the solved duration into K - 1 equal parts."""
         return self.states_at_interval_starts[:-1]
@@ -88,8 +88,8 @@ class Orbit:
         return self.interval_count, self.stage_count, self.grading
 
     @property
-    def equidistant_time_rates(self) -> Array:
-        """dt/dtau at the equidistant mesh times tau of `equidistant_states`, (K - 1,)."""
+    def time_slopes_by_mesh_time(self) -> Array:
+        """dt/dtau at the equidistant mesh times tau of `states_equidistant_in_mesh_time`, (K - 1,)."""
         full_length_interval_count = self.interval_count - 1
         return self.grading.rates(np.arange(full_length_interval_count) / full_length_interval_count)
 
@@ -123,15 +123,15 @@ class Orbit:
         """Largest energy norm of the states at the equidistant times, in units of sqrt(energy): the size of
         the motion."""
         # The norm is the same in the part of the period that follows by symmetry.
-        return float(self.form.energy_norm(self.equidistant_states).max())
+        return float(self.form.energy_norm(self.states_equidistant_in_mesh_time).max())
 
     def plus_change(self, change: Array, fraction: float = 1.0) -> "Orbit":
         """The orbit with the values `values` + `fraction` * `change`; change: (N,)."""
         return replace(self, values=self.values + fraction * change)
 
-    def states_at(self, times: Array) -> Array:
+    def states_at_time_fractions(self, times: Array) -> Array:
         """Interpolated states, (m, n), at `times`, (m,), in [0, 1], as fractions of the solved duration."""
-        states: Array = time_evaluation_matrix(self.time_mesh, times) @ self.all_states
+        states: Array = matrix_to_time_fractions(self.time_mesh, times) @ self.all_states
         return states
 
     def on_mesh(
@@ -214,10 +214,10 @@ def node_times(interval_count: int, stage_count: int, grading: TimeGrading = UNI
 def time_interpolation_matrix(source: TimeMesh, target: TimeMesh) -> csr_array:
     """Matrix that interpolates states from the time nodes of `source` to the time nodes of `target`. Shape:
     (1 + K s of target, 1 + K s of source), for K intervals with s stages each."""
-    return time_evaluation_matrix(source, node_times(*target))
+    return matrix_to_time_fractions(source, node_times(*target))
 
 
-def time_evaluation_matrix(source: TimeMesh, times: Array) -> csr_array:
+def matrix_to_time_fractions(source: TimeMesh, times: Array) -> csr_array:
     """Matrix, (m, 1 + K s), that interpolates states from the time nodes of `source`, K intervals with s
     stages each, to `times` in [0, 1], (m,).
 

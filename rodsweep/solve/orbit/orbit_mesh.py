@@ -20,11 +20,11 @@ from .time_grading import UNIFORM_TIME, TimeGrading
 class OrbitMeshSettings:
     """Settings for the choice of the mesh of an orbit in space and time."""
 
-    space_error_factor: float = 5.0
+    space_error_per_squared_tail: float = 5.0
     """Predicted error of period and extrema due to the mesh in space, divided by the squared tail in space.
-    With `space_error_factor` and `time_error_factor` the first mesh suffices for five rods in six, and costs
-    a fifth more than necessary."""
-    time_error_factor: float = 3.0
+    With `space_error_per_squared_tail` and `time_error_per_squared_tail` the first mesh suffices for five
+    rods in six, and costs a fifth more than necessary."""
+    time_error_per_squared_tail: float = 3.0
     """Predicted error of period and extrema due to the mesh in time, divided by the squared tail in time."""
     min_tail: float = 1e-15
     """Lower limit of the tails from which a mesh is chosen; smaller tails are rounding errors."""

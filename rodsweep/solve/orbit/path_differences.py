@@ -21,7 +21,9 @@ def path_differences(coarse: CycleMotion, fine: CycleMotion) -> Array:
     rods, which may be different on a branch. The remaining three differences are divided by the largest y of
     `fine`.
     """
-    max_distance = np.abs(fine.tip_samples - coarse.resampled_tip(len(fine.tip_samples))).max()
+    max_distance = np.abs(
+        fine.tip_samples - coarse.tip_x_y_theta_from_orbit_start(len(fine.tip_samples))
+    ).max()
     extrema = fine.extrema
     differences = {name: abs(value - extrema[name]) for name, value in coarse.extrema.items()}
     largest_y = abs(extrema["tip_y_max"])

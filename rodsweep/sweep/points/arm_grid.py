@@ -51,7 +51,7 @@ def grid_of_arms(
     parameter_names = (*parameter_names_except("F", NONLINEAR_PARAMETERS), *arm_config.cone_parameters)
     table = {name: _quantity_of_arms(arms, methodcaller("parameter", name)) for name in parameter_names}
     units = {name: _quantity_of_arms(arms, attrgetter(name)) for name in ARM_SCALES}
-    forces = _unit_load_forces(arm_config, arms, grid.get("taper"), find_force)
+    forces = _F_of_unit_load_on_arms(arm_config, arms, grid.get("taper"), find_force)
     unit_load_F = np.vectorize(attrgetter("F"), otypes=[float])(forces)
     # A copy, because a broadcast array cannot be written.
     codes = np.broadcast_to(_array_along(0, statuses), shape).copy()
@@ -101,11 +101,11 @@ def _arm_or_status(arm_config: ArmConfig, values: Mapping[str, float]) -> tuple[
         return None, error.status
 
 
-def _unit_load_forces(
+def _F_of_unit_load_on_arms(
     arm_config: ArmConfig, arms: Sequence[SlenderArm | None], tapers: Array | None, find_force: FlutterSearch
 ) -> ForceArray:
-    """Dimensionless force F of a unit load (see `_unit_load_force`) on each arm. tapers: values, (n,), that
-    replace the arms' taper; None for no replacement."""
+    """Dimensionless force F of a unit load (see `_F_of_unit_load_on_arm`) on each arm. tapers: values, (n,),
+    that replace the arms' taper; None for no replacement."""
     given_tapers = (
         [None] if tapers is None or arm_config.load_key not in LOAD_OF_RATIO else tapers.ravel().tolist()
     )
@@ -113,13 +113,13 @@ def _unit_load_forces(
     for i, arm in enumerate(arms):
         # Each taper is searched once, although it occurs in many combinations.
         force_by_taper = {
-            taper: _unit_load_force(arm_config, arm, taper, find_force) for taper in set(given_tapers)
+            taper: _F_of_unit_load_on_arm(arm_config, arm, taper, find_force) for taper in set(given_tapers)
         }
         forces[i, 0] = [force_by_taper[taper] for taper in given_tapers]
     return forces
 
 
-def _unit_load_force(
+def _F_of_unit_load_on_arm(
     arm_config: ArmConfig, arm: SlenderArm | None, taper: float | None, find_force: FlutterSearch
 ) -> FlutterForce:
     """Dimensionless force F of a unit load on an arm; NO_FORCE if `arm` is None or has no load. The unit load
@@ -160,7 +160,7 @@ def _refuse_grid_without_rods(
 ) -> None:
     """Raises ValueError with the reason why the rod model applies to no point. given_parameters: values,
     (n,), of the parameters that replace the arm's parameters, by name. has_arm_without_flutter: whether some
-    arm does not flutter. forces: result of `_unit_load_forces`."""
+    arm does not flutter. forces: result of `_F_of_unit_load_on_arms`."""
     # The first arm is made once more, because its own message is better than a general one.
     arm_config.arm_of(arm_config.first_values, with_load=True)
     for force in forces.ravel():

@@ -35,7 +35,9 @@ def read_points(
             rows = csv.reader(_lines(file, path))
             header = [cell.strip() for cell in next(rows, [])]
             if sorted(header) != sorted(names):
-                raise InputError(f"{path}: {_header_fault(header)}; it must name {enumeration(names, 'and')}")
+                raise InputError(
+                    f"{path}: {_wrong_header_fault(header)}; it must name {enumeration(names, 'and')}"
+                )
             columns = [array("d") for _ in header]  # a Python list would take eight times the memory
             # Empty lines, as at the end of many files, are no points.
             for row in filter(None, rows):
@@ -53,7 +55,7 @@ def read_points(
     return tuple(np.array(columns[header.index(name)]) for name in names)
 
 
-def _header_fault(header: list[str]) -> str:
+def _wrong_header_fault(header: list[str]) -> str:
     """Fault of a wrong header as a phrase. A header without parameter names is not quoted."""
     if "" in header and set(header) & set(PARAMETERS):
         return f"the header {short_repr(','.join(header))} has an empty name"

@@ -72,7 +72,7 @@ def flutter_force_of_rod(rod: Rod) -> FlutterForce:
         return FlutterForce(nan, str(error))
 
 
-def flutter_force_of_arm(
+def smallest_flutter_force_of_arm(
     arm: SlenderArm, taper: float | None, flutter_forces: FlutterForces, material: RodMaterial | None = None
 ) -> FlutterForce:
     """Force of first flutter of an arm, in k3/L^2 of the arm: the smallest force over the planes of motion.

@@ -21,14 +21,14 @@ from .arm_grid import grid_of_arms
 from .csv_points import read_points
 from .flutter_forces import (
     FlutterForces,
-    flutter_force_of_arm,
     flutter_force_of_rod,
     rods_needing_flutter_force,
+    smallest_flutter_force_of_arm,
 )
 from .points import Points
 
 
-def grid_size(config: Config) -> int:
+def parameter_grid_size(config: Config) -> int:
     """Number of points of a grid of parameters, without computing the values on the axes; 0 for a list or a
     grid over an arm's quantities."""
     if config.parameters.is_list or config.parameters.arm_axes:
@@ -56,7 +56,7 @@ def points_of(config: Config, directory: Path, flutter_forces: FlutterForces | N
             }
             # The forces are solved once for all points, or were solved on several ranks before.
             find_flutter_force = partial(
-                flutter_force_of_arm, flutter_forces=forces, material=config.stated_rod_material
+                smallest_flutter_force_of_arm, flutter_forces=forces, material=config.stated_rod_material
             )
             return grid_of_arms(
                 parameters.arm, axes, config.parameter_names, find_flutter_force, config.rod_material
@@ -64,14 +64,18 @@ def points_of(config: Config, directory: Path, flutter_forces: FlutterForces | N
         except ValueError as error:
             raise InputError(str(error)) from None
     columns_by_name = {name: axes[name] for name in config.parameter_names}
-    arm_statuses = None if parameters.arm is None else _crushing_codes(columns_by_name, config.rod_material)
+    arm_statuses = (
+        None
+        if parameters.arm is None
+        else _status_codes_if_some_crushed(columns_by_name, config.rod_material)
+    )
     refuse_invalid_axes(axes, config.allows_crushed_rods or arm_statuses is not None, config.rod_material)
     return Points(
         config.parameter_names, tuple(columns_by_name.values()), is_grid=True, arm_statuses=arm_statuses
     )
 
 
-def _crushing_codes(axes: dict[str, Array], material: RodMaterial) -> NDArray[np.int8] | None:
+def _status_codes_if_some_crushed(axes: dict[str, Array], material: RodMaterial) -> NDArray[np.int8] | None:
     """Status codes CRUSHED or SLENDER, (points,), of a grid of parameters in which the load crushes some
     rods. None if all rods or no rods are crushed, for a grid without F or k1, and for grids of more than
     MAX_ARM_GRID_POINTS points. axes: values of each parameter, (n,)."""

@@ -20,7 +20,7 @@ MAX_GROUP_POINTS = 128
 longer groups would leave fewer work items to the ranks."""
 MIN_GROUP_AXIS_VALUES = 8
 """Minimum number of values on the axis of groups. On a shorter axis, neighbouring points differ too much."""
-GROUPS_PER_BLOCK = 1 << 12
+GROUPS_TESTED_AT_ONCE = 1 << 12
 """Number of groups tested for missing points in a single array operation, which bounds the memory."""
 
 
@@ -85,8 +85,8 @@ class PointGroups:
             return [(0, self.count)]
         missing_points = IndexSet(missing)
         ranges: list[IndexRange] = []
-        for start in range(0, self.count, GROUPS_PER_BLOCK):
-            end = min(start + GROUPS_PER_BLOCK, self.count)
+        for start in range(0, self.count, GROUPS_TESTED_AT_ONCE):
+            end = min(start + GROUPS_TESTED_AT_ONCE, self.count)
             incomplete = self.missing_counts((start, end), missing_points) > 0
             edges = start + np.flatnonzero(np.diff(incomplete, prepend=False, append=False))
             ranges += zip(map(int, edges[::2]), map(int, edges[1::2]), strict=True)
@@ -98,8 +98,8 @@ class PointGroups:
         missing_points = IndexSet(missing)
         missing_count = 0
         for start, end in groups:
-            for block_start in range(start, end, GROUPS_PER_BLOCK):
-                block = (block_start, min(block_start + GROUPS_PER_BLOCK, end))
+            for block_start in range(start, end, GROUPS_TESTED_AT_ONCE):
+                block = (block_start, min(block_start + GROUPS_TESTED_AT_ONCE, end))
                 missing_count += int(self.missing_counts(block, missing_points).sum())
         return missing_count
 

@@ -60,7 +60,7 @@ class Points:
         return self.columns_by_name if self.is_grid else self.arm_axes
 
     @property
-    def varying_parameters(self) -> tuple[str, ...]:
+    def varied_parameter_by_axis(self) -> tuple[str, ...]:
         """Name of the only parameter that varies along each axis; "" for an axis along which several
         parameters or no parameters vary."""
         return self.names if self.is_grid else tuple(map(parameter_of_axis, self.arm_axes))
@@ -72,7 +72,7 @@ class Points:
         return [*self.arm_axes.values(), *self.columns]
 
     @property
-    def rod_values(self) -> dict[str, Array]:
+    def parameter_values_of_rods(self) -> dict[str, Array]:
         """Values of each parameter by name, (n,) each, as in `columns`, without points that have no rod."""
         if self.arm_statuses is None:
             return self.columns_by_name
@@ -118,7 +118,8 @@ class Points:
 
     @property
     def materials_of_rods(self) -> tuple[list[RodMaterial], NDArray[np.int64]]:
-        """Returns (distinct materials, index of the material of each point of `rod_values`, (rods,))."""
+        """Returns (distinct materials, index of the material of each point of
+        `parameter_values_of_rods`, (rods,))."""
         distinct_materials = list(dict.fromkeys(self.materials)) or [self.material]
         material_of_arm = np.array([distinct_materials.index(material) for material in self.materials] or [0])
         material_indices = material_of_arm[np.arange(self.count) * len(material_of_arm) // self.count]

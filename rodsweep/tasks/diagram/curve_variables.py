@@ -60,7 +60,7 @@ def boundary_curve_values(
     values = _values_along_dimension(declared, "curve_point", "curve_", points) | _values_along_dimension(
         declared, "fold", "fold_", folds
     )
-    values |= {"curve_agreement": traced.max_seed_curve_distance, "curves_untraced": traced.untraced_count}
+    values |= {"curve_agreement": traced.max_seed_distance_in_rows, "curves_untraced": traced.untraced_count}
     return _variables_with_values(declared, values | limit_values)
 
 
@@ -125,7 +125,7 @@ def fold_and_torus_curve_values(
     variables = cycle_curve_variables(*plane)
     values = _values_along_dimension(variables, "cycle_curve_point", "cycle_curve_", rows)
     values |= {
-        "cycle_curve_agreement": traced.max_seed_curve_distance,
+        "cycle_curve_agreement": traced.max_seed_distance_in_rows,
         "cycle_curves_untraced": traced.untraced_count,
     }
     return _variables_with_values(variables, values)

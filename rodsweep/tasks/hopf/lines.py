@@ -68,7 +68,7 @@ class HopfLine:
 
 def hopf_lines_of(points: Points) -> list[HopfLine]:
     """Lines of points of a file, without repetition. Rods that differ only in gamma1 share a line."""
-    names = [name for name in TRANSVERSE_PARAMETERS if name in points.rod_values]
+    names = [name for name in TRANSVERSE_PARAMETERS if name in points.parameter_values_of_rods]
     return [line for name in names for line in _hopf_lines_along(points, name, names)]
 
 
@@ -76,7 +76,7 @@ def _hopf_lines_along(points: Points, name: str, names: Sequence[str]) -> Iterat
     """Yields the lines along the parameter `name`, if at least two of its values are finite. Lines along F
     begin at 0, because the Hopf point may lie below the smallest force of the points. Arms with equal
     parameters and different profiles have no line, because a file cannot distinguish such arms."""
-    columns = {parameter_name: points.rod_values[parameter_name] for parameter_name in names}
+    columns = {parameter_name: points.parameter_values_of_rods[parameter_name] for parameter_name in names}
     other_names = [parameter_name for parameter_name in names if parameter_name != name]
     if points.is_grid:
         rods = np.array(

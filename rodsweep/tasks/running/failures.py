@@ -8,7 +8,7 @@ from typing import Any
 from ...results.file.provenance import MAX_FAILURE_REASONS, failure_kind
 from ...results.layouts.variables import STATUS_VARIABLE
 from ...solve.status import PointStatus
-from ...sweep.loop import ItemIndices
+from ...sweep.loop import PointIndexOrIndices
 from ...sweep.points.groups import GroupResult
 from ..protocol import SweepWideResult
 
@@ -30,7 +30,7 @@ class FailureReasons:
     point_text: Callable[[int], str]
     examples: dict[str, str] = field(default_factory=dict)
 
-    def add(self, index: ItemIndices, result: Any) -> list[str]:
+    def add(self, index: PointIndexOrIndices, result: Any) -> list[str]:
         """Adds the reason why a point failed; returns a list with this example, or an empty list if the
         reason is known, the list of reasons is full, or no point failed.
 
@@ -49,7 +49,7 @@ class FailureReasons:
         return [line]
 
 
-def reasons_of_changed_points(
+def failure_reasons_of_changed_points(
     result: SweepWideResult, statuses: Sequence[PointStatus], point_text: Callable[[int], str]
 ) -> list[str]:
     """Distinct reasons why points that have changed since they were solved failed. point_text: function from

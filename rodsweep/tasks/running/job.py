@@ -20,7 +20,7 @@ from ...results.layouts.si_variables import arm_variables, quantities_at_points,
 from ...results.layouts.variables import FilledVariable, Layout
 from ...solve.status import PointStatus
 from ...sweep.points.flutter_forces import FlutterForces
-from ...sweep.points.grid import grid_size, points_of
+from ...sweep.points.grid import parameter_grid_size, points_of
 from ...sweep.points.groups import GroupResult
 from ...sweep.points.points import Points
 from ...sweep.points.ranges import Shard
@@ -31,10 +31,10 @@ from ..protocol import Solver, Task
 
 MAX_FILE_BYTES = 2**63 - 1
 """Maximum size of a file in bytes; also the maximum number of points."""
-BYTES_PER_VALUE = 40
+SETUP_BYTES_PER_AXIS_VALUE = 40
 """Memory per value of an axis while a run is set up, in bytes, for four arrays and overhead; 33 to 36 bytes
 were measured."""
-MAX_RECORD_BYTES = 100_000_000
+MAX_POINT_RESULT_BYTES = 100_000_000
 """Maximum size of the results of one point in bytes: these results are held in memory and written at once."""
 
 
@@ -128,18 +128,18 @@ def job_of_config(
 
     source: the config as the user wrote it. flutter: flutter forces of rods with a load relative to flutter;
     None: the forces are computed here. Raises InputError if the axes do not fit into memory, or the results
-    into a file, or if the results of one point exceed MAX_RECORD_BYTES.
+    into a file, or if the results of one point exceed MAX_POINT_RESULT_BYTES.
     """
     axis_value_count = sum(
         axis.size for axis in config.parameters.axes.values()
     )  # checked before arrays are made
-    if axis_value_count * BYTES_PER_VALUE > machine_memory():
+    if axis_value_count * SETUP_BYTES_PER_AXIS_VALUE > machine_memory():
         raise InputError(
-            f"the grid has {grid_size(config):.6g} points; the {axis_value_count:.6g} values on its axes "
-            f"take {axis_value_count * BYTES_PER_VALUE / 1e9:.3g} GB, more than the "
+            f"the grid has {parameter_grid_size(config):.6g} points; the {axis_value_count:.6g} values "
+            f"on its axes take {axis_value_count * SETUP_BYTES_PER_AXIS_VALUE / 1e9:.3g} GB, more than the "
             f"{machine_memory() / 1e9:.3g} GB of memory of this machine; use fewer values"
         )
-    point_count = grid_size(config)
+    point_count = parameter_grid_size(config)
     document = resolved_config(config)
     layout = layout_of(document)
     bytes_per_point = layout.bytes_per_point
@@ -149,11 +149,11 @@ def job_of_config(
             f"{point_count * bytes_per_point:.3g} bytes, more than a file can have ({MAX_FILE_BYTES:.3g}); "
             "use fewer values"
         )
-    if bytes_per_point > MAX_RECORD_BYTES:
+    if bytes_per_point > MAX_POINT_RESULT_BYTES:
         raise InputError(
             f"the results of one point take {bytes_per_point / 1e9:.3g} GB, more than the "
-            f"{MAX_RECORD_BYTES / 1e9:.3g} GB allowed; reduce the options of {config.task} that set how many "
-            "values are stored"
+            f"{MAX_POINT_RESULT_BYTES / 1e9:.3g} GB allowed; reduce the options of {config.task} that set "
+            "how many values are stored"
         )
     points = replace(points_of(config, path.parent, flutter), material=config.rod_material)
     return Job(path, config, source, points, TASKS[config.task](config, points), document, layout)

@@ -35,13 +35,13 @@ FAILED_STATUS = "failed"
 PointExceptionNote = Callable[[Sequence[int], Exception], None]
 """Function called with the flat indices of the points that were solved together, and the exception of the
 solver."""
-ItemExceptionNote = Callable[[str, Exception], None]
+SweepWideExceptionNote = Callable[[str, Exception], None]
 """Function called with the name of a work item for variables that depend on all points, and the exception of
 the solver."""
 
 
 @dataclass(frozen=True, slots=True)
-class RecordedOutcome:
+class StorableOutcome:
     """Outcome of a point that is ready to be stored. status, message: as in the solver's outcome. values: all
     variables of the layout by name."""
 
@@ -71,14 +71,14 @@ class _GuardedSolver:
 
     def outcome(
         self, index: int, start: State, solve: Callable[[], tuple[Any, State]]
-    ) -> tuple[RecordedOutcome, State]:
+    ) -> tuple[StorableOutcome, State]:
         """Returns (outcome, initial state for the next point) of a point. An unforeseen exception of the
         solve or the record gives a failed outcome and no state."""
         began = time.perf_counter()
         try:
             outcome, state = solve()
             record = self.guarded.record(index, outcome)
-            return RecordedOutcome(outcome.status, outcome.message, record), state
+            return StorableOutcome(outcome.status, outcome.message, record), state
         except RUN_ENDING_EXCEPTIONS:
             raise
         except Exception as error:
@@ -86,11 +86,11 @@ class _GuardedSolver:
             self.note_exception([index], error)
             return self._failed(error, time.perf_counter() - began), None
 
-    def _failed(self, error: Exception, seconds: float) -> RecordedOutcome:
+    def _failed(self, error: Exception, seconds: float) -> StorableOutcome:
         """Outcome of a failed point, with the fill value of every variable."""
         status = next(status for status in self.guarded.statuses if status.name == FAILED_STATUS)
         values = {SECONDS_VARIABLE.name: seconds, STATUS_VARIABLE.name: int(status)}
-        return RecordedOutcome(status, describe_exception(error), self.layout.empty_point | values)
+        return StorableOutcome(status, describe_exception(error), self.layout.empty_point | values)
 
     def solve_group(self, indices: NDArray[np.int64]) -> GroupResult:
         """Result of a group of points, at `indices`, (n,). After an unforeseen exception the result has fill

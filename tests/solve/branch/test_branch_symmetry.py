@@ -133,7 +133,7 @@ def test_a_cycle_without_symmetry_closes_when_another_integrator_marches_it(know
     found = solve_ivp(rate, (0, times[1]), orbit.start_state, "LSODA", times, rtol=1e-6, atol=1e-6 * size)
     half, whole = found.y.T
     assert np.abs(whole - orbit.start_state).max() < 0.01 * size
-    assert np.abs(half - orbit.states_at(np.array([0.5]))[0]).max() < 0.01 * size
+    assert np.abs(half - orbit.states_at_time_fractions(np.array([0.5]))[0]).max() < 0.01 * size
     moments = slice(2 * nodes, 3 * nodes)
     assert np.abs(half + orbit.start_state)[moments].max() > 0.05 * np.abs(orbit.start_state[moments]).max()
 
@@ -174,7 +174,7 @@ def test_a_symmetric_orbit_over_its_whole_period_is_the_same_motion(known):
     assert not whole.is_symmetric
     times = np.linspace(0, 1, 21)
     assert (
-        np.abs(whole.states_at(times / 2) - orbit.states_at(times)).max()
+        np.abs(whole.states_at_time_fractions(times / 2) - orbit.states_at_time_fractions(times)).max()
         < 1e-4 * np.abs(orbit.all_states).max()
     )
     assert np.abs(asymmetry(whole)).max() < 1e-5 * np.abs(orbit.start_state).max()

@@ -15,14 +15,14 @@ from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
 from rodsweep.solve.orbit.compiled_measures import write_powers
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CycleMotion
-from rodsweep.solve.orbit.newton import newton, with_matrix_within_distance
+from rodsweep.solve.orbit.newton import newton, newton_step_if_matrix_distant
 
 STAGES, FINE = 4, 24
 
 
 def converged(orbit, intervals):
     found = newton(orbit.on_mesh(orbit.form.mesh, intervals, STAGES), 1e-11, NewtonWorkspace())
-    return with_matrix_within_distance(found, 1e-9)
+    return newton_step_if_matrix_distant(found, 1e-9)
 
 
 @pytest.fixture(scope="module", params=[1.01, 1.1])

@@ -103,13 +103,13 @@ def test_errors_in_space_of_several_elements_are_kept_where_errors_in_time_are_m
     orbit = handed.predictor.orbit
     grown = replace(
         calibration.scaled_on_chain(orbit, 0.05, calibration.indicators),
-        parameter_change=0.05,
-        error_growth=np.array([1.1, 1.2]),
+        relative_parameter_change=0.05,
+        space_time_error_growth=np.array([1.1, 1.2]),
     )
     measured = measured_calibration(newton(orbit, 1e-11, memory), REQUEST.accuracy, grown)
     assert not grown.is_measured_at_orbit
     assert measured.is_measured_at_orbit
-    assert measured.parameter_change == (0.05 if is_kept else 0.0)
+    assert measured.relative_parameter_change == (0.05 if is_kept else 0.0)
     assert measured.time_errors == pytest.approx(calibration.time_errors, rel=0.3)
     expected = calibration.space_errors * ([1.1, 1.1, 1.2, 1.2, 1.2] if is_kept else 1.0)
     assert measured.space_errors == pytest.approx(expected, rel=1e-12 if is_kept else 0.3)

@@ -12,7 +12,7 @@ from rodsweep.solve.orbit.matrix.multipliers import (
     nonzero_eigenvalues,
 )
 from rodsweep.solve.orbit.matrix.shooting_intervals import ShootingIntervals
-from rodsweep.solve.orbit.newton import largest_multiplier_difference
+from rodsweep.solve.orbit.newton import error_of_largest_multiplier
 from rodsweep.solve.orbit.symmetry import REFLECTION
 
 
@@ -73,8 +73,8 @@ def test_multipliers_over_legs_keep_their_digits_below_a_product_of_1e15():
 
 
 def test_change_of_the_largest_multiplier_is_not_its_distance_from_a_smaller_one():
-    assert largest_multiplier_difference(np.array([4e15, 1e3]), np.array([3e17, 5e15, 1e3])) == 3e17 - 4e15
-    assert largest_multiplier_difference(
+    assert error_of_largest_multiplier(np.array([4e15, 1e3]), np.array([3e17, 5e15, 1e3])) == 3e17 - 4e15
+    assert error_of_largest_multiplier(
         np.array([1.1j, -1.1j, 0.2]), np.array([1.0j, -1.0j])
     ) == pytest.approx(0.1)
-    assert largest_multiplier_difference(np.array([0.9, -0.8]), np.array([-0.9, 0.7])) == pytest.approx(0.2)
+    assert error_of_largest_multiplier(np.array([0.9, -0.8]), np.array([-0.9, 0.7])) == pytest.approx(0.2)

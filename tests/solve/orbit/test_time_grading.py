@@ -13,7 +13,7 @@ from rodsweep.solve.cycle.accuracy.minimal_period import restricted_to_minimal_p
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CycleMotion
-from rodsweep.solve.orbit.mesh_choice import grading_and_interval_ratio, mesh_from_tails, regraded
+from rodsweep.solve.orbit.mesh_choice import grading_and_interval_ratio, mesh_from_tails, regraded_coarser
 from rodsweep.solve.orbit.newton import newton, relative_change
 from rodsweep.solve.orbit.orbit import interval_lengths, node_times
 from rodsweep.solve.orbit.orbit_mesh import ORBIT_MESH_SETTINGS, OrbitMesh, mesh_of
@@ -61,7 +61,10 @@ def test_graded_and_uniform_orbits_agree_in_all_measures():
     assert a.harmonic_amplitude[:count] == pytest.approx(b.harmonic_amplitude[:count], abs=1e-9)
     assert a.injection_mean == pytest.approx(b.injection_mean, rel=1e-9)
     assert graded.mean_crossing_time == pytest.approx(uniform.mean_crossing_time, abs=1e-9)
-    energies = graded.energy_and_powers(30), uniform.energy_and_powers(30)
+    energies = (
+        graded.energy_and_powers_from_mean_crossing(30),
+        uniform.energy_and_powers_from_mean_crossing(30),
+    )
     assert energies[0] == pytest.approx(energies[1], rel=1e-6)
     shapes = graded.shapes_from_mean_crossing(12, 9), uniform.shapes_from_mean_crossing(12, 9)
     assert shapes[0] == pytest.approx(shapes[1], abs=1e-8)
@@ -85,12 +88,12 @@ def test_the_fitted_grading_makes_tails_equal_and_needs_fewer_intervals():
     tails = [tails_of_intervals(orbit)[:-2] for orbit in (uniform, orbit_with(14, grading))]
     assert tails[1].max() < 0.6 * tails[0].max()
     assert tails[1].min() > tails[0].min()
-    mesh = regraded(mesh_of(uniform), uniform)
+    mesh = regraded_coarser(mesh_of(uniform), uniform)
     assert mesh.grading == grading
     assert 14 > mesh.interval_count >= ratio * 13
     # The number of intervals for a tail is the same from an orbit that has this grading already.
     again = orbit_with(14, grading)
-    assert regraded(mesh_of(again), again) == mesh_of(again)
+    assert regraded_coarser(mesh_of(again), again) == mesh_of(again)
     counts = [mesh_from_tails(orbit, 1e-7, 4).interval_count for orbit in (uniform, again)]
     assert abs(counts[0] - counts[1]) <= 1
 
@@ -119,7 +122,7 @@ def test_three_graded_periods_are_cut_to_one():
     thrice = half.on_mesh(half.form.mesh, 118, 4)
     at = 3 * node_times(118, 4, GRADING)
     number = np.minimum(np.floor(at + 1e-12), 2)
-    states = half.states_at(np.clip(at - number, 0, 1))
+    states = half.states_at_time_fractions(np.clip(at - number, 0, 1))
     odd = number == 1
     states[odd] = half.symmetry.apply(states[odd], half.form.layout)
     thrice = replace(thrice, values=np.append(states, 3 * half.period))

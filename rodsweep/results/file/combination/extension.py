@@ -171,7 +171,7 @@ def _stored_point_map(header: ResultHeader, old: Points, plan: FilePlan) -> Stor
         positions[chains.axis] = kept_positions
     if plan.groups:
         axis = plan.groups.axis
-        old_groups = groups_along_longest_axis(old.shape, old.varying_parameters)
+        old_groups = groups_along_longest_axis(old.shape, old.varied_parameter_by_axis)
         is_same_axis = old_groups is not None and old_groups.axis == axis
         is_kept = is_same_axis & _is_stretch_unchanged(positions[axis], new_points.shape[axis])
         positions[axis] = np.where(is_kept, positions[axis], -1)

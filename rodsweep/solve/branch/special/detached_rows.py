@@ -197,7 +197,7 @@ class DiagramStages:
                 curves.append(curve)
         return TracedCurves(
             tuple(curves),
-            max(stage_curves.max_seed_curve_distance for stage_curves in traced_stages),
+            max(stage_curves.max_seed_distance_in_rows for stage_curves in traced_stages),
             sum(stage_curves.untraced_count for stage_curves in traced_stages),
         )
 

@@ -92,7 +92,7 @@ class SpecialCurveTracer:
         curves = tuple(traced.curve for traced_search in traced_searches for traced in traced_search.curves)
         return TracedCurves(
             curves,
-            max(traced_search.max_seed_curve_distance for traced_search in traced_searches),
+            max(traced_search.max_seed_distance_in_rows for traced_search in traced_searches),
             sum(traced_search.untraced_count for traced_search in traced_searches),
         )
 

@@ -10,7 +10,7 @@ import numpy as np
 from ....arrays import Array
 from ....determinant.parameter_plane import ParameterPlane
 from ...hopf.bautin_points import BautinPoint
-from ...orbit.normalised_orbit import polynomial_weights
+from ...orbit.normalised_orbit import extrapolated_change_weights
 from .row_crossing import RowCrossing, crossings_from_arrays, numbered_arrays
 from .solved_curve_point import SolvedPoint
 from .special_point import SpecialKind
@@ -225,7 +225,7 @@ def lagrange_weights(abscissas: Array, abscissa: float) -> Array:
     value of their interpolating polynomial at the abscissa `abscissa`."""
     # Relative to the last abscissa, whose weight follows as all weights sum to 1.
     differences = abscissas[:-1] - abscissas[-1]
-    weights = polynomial_weights(differences, np.zeros(len(differences)), abscissa - abscissas[-1])
+    weights = extrapolated_change_weights(differences, np.zeros(len(differences)), abscissa - abscissas[-1])
     return np.append(weights, 1 - weights.sum())
 
 

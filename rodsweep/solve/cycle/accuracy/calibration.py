@@ -52,21 +52,21 @@ class Calibration:
     tails_and_size: Array
     """Coefficient tails in space, of each element, and in time, and size of the measured orbit, (elements +
     2,), from `error_indicators.tails_and_size`."""
-    parameter_change: float
+    relative_parameter_change: float
     """Sum of the relative changes of the parameter since the measurement; inf if the errors no longer
     apply."""
     indicators: Array = field(default_factory=lambda: np.full(3, inf))
     """`error_indicators` of the measured orbit, (3,); inf if unknown."""
-    error_growth: Array = field(default_factory=lambda: np.ones(2))
+    space_time_error_growth: Array = field(default_factory=lambda: np.ones(2))
     """Estimated growth factors of the errors in space and in time since the measurement, (2,)."""
     extrema_growth: float = 1.0
     """Estimated growth factor of the errors of the extrema other than the largest y since the measurement;
-    used only if larger than both factors in `error_growth`."""
+    used only if larger than both factors in `space_time_error_growth`."""
 
     def arrays(self) -> dict[str, Array]:
         """All fields except the growth factors as named arrays, for a checkpoint."""
         errors = {name: getattr(self, field) for name, field in CHECKPOINT_FIELDS.items()}
-        scalars = {"reach": np.array(self.parameter_change), "calibrated_mesh": self.mesh.as_array}
+        scalars = {"reach": np.array(self.relative_parameter_change), "calibrated_mesh": self.mesh.as_array}
         return errors | scalars
 
     @classmethod
@@ -74,21 +74,24 @@ class Calibration:
         """The calibration from the named arrays that `Calibration.arrays` returns."""
         mesh = OrbitMesh.from_array(arrays["calibrated_mesh"])
         errors: dict[str, Any] = {field: arrays[name] for name, field in CHECKPOINT_FIELDS.items()}
-        return cls(mesh=mesh, parameter_change=float(arrays["reach"]), **errors)
+        return cls(mesh=mesh, relative_parameter_change=float(arrays["reach"]), **errors)
 
     def scaled_on_chain(self, orbit: Orbit, change: float, indicators: Array) -> "Calibration":
-        """This calibration with the errors scaled to a later orbit of a chain; `parameter_change` is inf if
-        the orbit has shrunk too much. change: relative change of the parameter since the previous orbit.
-        indicators: `error_indicators` of the later orbit, (3,)."""
+        """This calibration with the errors scaled to a later orbit of a chain; `relative_parameter_change` is
+        inf if the orbit has shrunk too much. change: relative change of the parameter since the previous
+        orbit. indicators: `error_indicators` of the later orbit, (3,)."""
         tails = tails_and_size(orbit)
         # Errors are relative to the size of the orbit; at a much smaller cycle they are measured again.
         has_shrunk = tails[-1] < CALIBRATION_SETTINGS.min_size_ratio * self.tails_and_size[-1]
         growth = error_growth_factors(self.tails_and_size, tails)
         time_growth, extrema_growth = indicator_growth(self.indicators, indicators)
         growth[1] = max(growth[1], time_growth)
-        parameter_change = inf if has_shrunk else self.parameter_change + change
+        relative_parameter_change = inf if has_shrunk else self.relative_parameter_change + change
         return replace(
-            self, error_growth=growth, extrema_growth=extrema_growth, parameter_change=parameter_change
+            self,
+            space_time_error_growth=growth,
+            extrema_growth=extrema_growth,
+            relative_parameter_change=relative_parameter_change,
         )
 
     def scaled_on_branch(self, orbit: Orbit) -> "Calibration":
@@ -97,26 +100,27 @@ class Calibration:
         # The size of the earlier orbit replaces that of the later one, so that only the tails count.
         present_tails = tails_and_size(orbit)
         present_tails[-1] = self.tails_and_size[-1]
-        return replace(self, error_growth=error_growth_factors(self.tails_and_size, present_tails))
+        return replace(self, space_time_error_growth=error_growth_factors(self.tails_and_size, present_tails))
 
     @property
     def with_outdated_errors(self) -> "Calibration":
-        """This calibration with an infinite `parameter_change`: its errors no longer apply, its rates still
-        do."""
-        return replace(self, parameter_change=inf)
+        """This calibration with an infinite `relative_parameter_change`: its errors no longer apply, its
+        rates still do."""
+        return replace(self, relative_parameter_change=inf)
 
     @property
     def is_valid(self) -> bool:
-        """Whether the scaled errors apply: `parameter_change` and `error_growth` are within their limits."""
-        is_near = self.parameter_change <= CALIBRATION_SETTINGS.max_parameter_change
-        return is_near and float(self.error_growth.max()) <= CALIBRATION_SETTINGS.max_error_growth
+        """Whether the scaled errors apply: `relative_parameter_change` and `space_time_error_growth` are
+        within their limits."""
+        is_near = self.relative_parameter_change <= CALIBRATION_SETTINGS.max_relative_parameter_change
+        return is_near and float(self.space_time_error_growth.max()) <= CALIBRATION_SETTINGS.max_error_growth
 
     @property
     def is_measured_at_orbit(self) -> bool:
         """Whether the errors were measured at the orbit to which they are scaled, or the errors in time if
         the errors in space were kept."""
-        return self.parameter_change == 0 or (
-            self.extrema_growth == 1 and bool((self.error_growth == 1).all())
+        return self.relative_parameter_change == 0 or (
+            self.extrema_growth == 1 and bool((self.space_time_error_growth == 1).all())
         )
 
     @property
@@ -129,14 +133,16 @@ class Calibration:
     @property
     def scaled_space_errors(self) -> Array:
         """Errors in space, (5,), scaled to the orbit as `errors` scales them."""
-        space_growth = float(self.error_growth[0])
-        growth = np.append(np.full(2, space_growth), np.full(ERROR_COUNT - 2, self.error_growth.max()))
+        space_growth = float(self.space_time_error_growth[0])
+        growth = np.append(
+            np.full(2, space_growth), np.full(ERROR_COUNT - 2, self.space_time_error_growth.max())
+        )
         scaled: Array = self.space_errors * growth
         return scaled
 
     def is_valid_after(self, change: float) -> bool:
         """Whether the errors may still apply after a further relative change `change` of the parameter."""
-        return self.parameter_change + change <= CALIBRATION_SETTINGS.max_parameter_change
+        return self.relative_parameter_change + change <= CALIBRATION_SETTINGS.max_relative_parameter_change
 
     def min_remeasured_errors(self, orbit: Orbit) -> tuple[Array, Array]:
         """Returns (errors in space, errors in time), (5,) each: lower limits of errors that are measured
@@ -151,11 +157,11 @@ class Calibration:
         requested relative accuracy `accuracy`. For the multiplier and the other extrema, errors in space and
         in time are scaled by the larger of the two growth factors, because an error was once seen to grow 2.7
         times as much as its tail."""
-        space_growth, time_growth = self.error_growth
+        space_growth, time_growth = self.space_time_error_growth
         errors = errors_with_safety_factors(
             self.space_errors * space_growth, self.time_errors * time_growth, accuracy
         )
-        max_growth = float(self.error_growth.max())
+        max_growth = float(self.space_time_error_growth.max())
         errors[2:] = errors_with_safety_factors(
             self.space_errors * max_growth, self.time_errors * max_growth, accuracy
         )[2:]

@@ -10,17 +10,17 @@ class CalibrationSettings:
 
     safety_factor: float = 3.0
     """Safety factor on measured errors of period, extrema and multiplier."""
-    min_largest_y_error_ratio: float = 0.16
+    min_largest_y_error_over_path_distance: float = 0.16
     """Lower limit of the error estimate of the largest y, divided by the distance between the tip's paths on
     two meshes with different elements: a single number may agree on two meshes by coincidence, a path does
     not."""
-    min_period_error_ratio: float = 0.16
+    min_period_error_over_path_distance: float = 0.16
     """Lower limit of the error estimate of the period, divided by the distance between the tip's paths on two
     meshes with different elements."""
-    min_extrema_error_ratio: float = 1.6
+    min_extrema_error_over_path_distance: float = 1.6
     """Lower limit of the error estimate of the other extrema, divided by the sum of the distances between the
     tip's paths for different elements and for different time intervals."""
-    time_path_error_factor: float = 0.004
+    time_path_distance_factor: float = 0.004
     """This factor times the distance between the tip's paths for different time intervals is added to the
     lower limits of the error estimates of period and largest y. The distance is largest in theta, whose
     errors matter least."""
@@ -32,7 +32,7 @@ class CalibrationSettings:
     planned_error_ratio: float = 0.5
     """A mesh is planned for predicted errors of period and largest y of at most this fraction of the
     accuracy."""
-    planned_extrema_error_ratio: float = 0.75
+    planned_extrema_error_over_tolerance: float = 0.75
     """A mesh is planned for a predicted error of the other extrema of at most this fraction of their
     tolerance. This error changes less along a chain: it contains the distance between the tip's paths."""
     error_to_coefficient_decay_ratio: float = 1.6
@@ -56,7 +56,7 @@ class CalibrationSettings:
     max_interval_ratio: int = 4
     """Upper limit of the ratio of the numbers of time intervals, planned mesh to current mesh; the
     convergence rates are not known for finer meshes."""
-    max_parameter_change: float = 0.2
+    max_relative_parameter_change: float = 0.2
     """The errors are measured again if the summed relative changes of the parameter exceed this number."""
     max_error_growth: float = 4.0
     """The errors are measured again if an error has grown by more than this factor since the measurement."""

@@ -46,7 +46,7 @@ def cheapest_mesh(calibration: Calibration, accuracy: float) -> OrbitMesh:
     )
     errors = errors_with_safety_factors(space_errors[:, :, None], time_errors[:, None, :], accuracy)
     period_error, y_error = errors[:2] / CALIBRATION_SETTINGS.planned_error_ratio
-    extrema_error = errors[2] / CALIBRATION_SETTINGS.planned_extrema_error_ratio
+    extrema_error = errors[2] / CALIBRATION_SETTINGS.planned_extrema_error_over_tolerance
     is_accurate = largest_weighted_error(period_error, y_error, extrema_error) <= accuracy
     # For each order the smallest number of intervals that suffices, which argmax finds as the first True.
     meshes = [

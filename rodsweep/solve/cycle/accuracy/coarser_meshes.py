@@ -14,7 +14,7 @@ import numpy as np
 
 from ....arrays import Array
 from ...orbit.matrix.workspace import NewtonWorkspace
-from ...orbit.newton import largest_multiplier_difference, newton
+from ...orbit.newton import error_of_largest_multiplier, newton
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import ORBIT_MESH_SETTINGS, OrbitMesh
 from ...orbit.path_differences import PERIOD_INDEX, Y_INDEX, path_differences
@@ -29,31 +29,31 @@ from .finer_meshes import FINER_MESH_SETTINGS, ComparedCycle
 class CoarserMeshSettings:
     """Settings for the coarser meshes that predict a cycle on a fine mesh."""
 
-    min_order_difference: int = 2
+    min_fine_to_coarse_order_difference: int = 2
     """Smallest difference between the orders of a fine mesh and of its coarse mesh."""
-    max_order_difference: int = 4
+    max_fine_to_coarse_order_difference: int = 4
     """Largest difference between the orders of a fine mesh and of its coarse mesh."""
     min_log_error_decrease: float = 1.5
-    """The difference of the orders is chosen, up to `max_order_difference`, so that ln(error) in space is
-    expected to decrease by at least this number from the coarse mesh to the fine mesh. Where coefficients
-    decay slowly, errors oscillate with the order, and meshes of nearly the same order may agree by
-    coincidence. With a difference of 2 orders, 16 of 112 errors of slender cones exceeded their estimates, by
-    factors up to 2.2. With this decrease no error exceeded 0.4 times its estimate."""
+    """The difference of the orders is chosen, up to `max_fine_to_coarse_order_difference`, so that ln(error)
+    in space is expected to decrease by at least this number from the coarse mesh to the fine mesh. Where
+    coefficients decay slowly, errors oscillate with the order, and meshes of nearly the same order may agree
+    by coincidence. With a difference of 2 orders, 16 of 112 errors of slender cones exceeded their estimates,
+    by factors up to 2.2. With this decrease no error exceeded 0.4 times its estimate."""
     added_interval_fraction: float = 0.4
     """Additional time intervals of the fine mesh, as a fraction of the number of intervals of the coarse
     mesh."""
-    max_order_excess: int = 2
+    max_order_above_intended_mesh: int = 2
     """A coarse mesh made for a fine mesh of order p predicts cycles on meshes of orders up to p +
-    max_order_excess."""
+    max_order_above_intended_mesh."""
     max_interval_ratio: float = 2.0
     """A coarse mesh predicts the cycle on a fine mesh only if the ratio of the numbers of time intervals,
     fine mesh to coarse mesh, is at most this number."""
-    min_predicted_error_ratio: float = 0.033
+    min_predicted_error_over_accuracy: float = 0.033
     """Lower limit of a predicted error in space or in time of period and largest y, divided by the accuracy:
     the coarse cycles are solved to a tenth of the accuracy, and their difference may be small because an
     error changes its sign between their meshes. Without this limit two of 400 errors of the largest y
     exceeded their estimates, by factors of 1.2 and 1.5."""
-    pessimistic_decay_ratio: float = 1.2
+    pessimistic_error_to_coefficient_decay_ratio: float = 1.2
     """Pessimistic decrease of ln(error) in space per order, divided by the decrease of ln(coefficient) per
     order."""
 
@@ -63,24 +63,26 @@ COARSER_MESH_SETTINGS = CoarserMeshSettings()
 
 class CoarserMeshes:
     """Solutions of a cycle on a coarse mesh, on meshes finer in space only and on meshes finer in time only,
-    from which the cycle on a fine mesh is predicted. amplitude_rounding: relative error of the largest y on
-    any mesh, due to rounding."""
+    from which the cycle on a fine mesh is predicted. amplitude_rounding: relative error of the
+    largest y on any mesh, due to rounding."""
 
     def __init__(self, mesh: OrbitMesh, start: Orbit, accuracy: float, workspace: NewtonWorkspace) -> None:
         """Solves the cycle on the coarse mesh; raises Unsolvable. mesh: the fine mesh. start: an orbit near
         the cycle, on any mesh. accuracy: requested relative accuracy."""
-        order_difference = _order_difference(start)
+        order_difference = _fine_to_coarse_order_difference(start)
         order = max(
             mesh.order - order_difference,
-            ORBIT_MESH_SETTINGS.min_order - COARSER_MESH_SETTINGS.min_order_difference,
+            ORBIT_MESH_SETTINGS.min_order - COARSER_MESH_SETTINGS.min_fine_to_coarse_order_difference,
         )
-        self._max_predicted_order = order + order_difference + COARSER_MESH_SETTINGS.max_order_excess
+        self._max_predicted_order = (
+            order + order_difference + COARSER_MESH_SETTINGS.max_order_above_intended_mesh
+        )
         interval_count = (
             round(mesh.full_length_interval_count / (1 + COARSER_MESH_SETTINGS.added_interval_fraction)) + 1
         )
         self._fine_mesh = mesh
         self.coarse_mesh = replace(mesh.with_order(order), interval_count=interval_count)
-        self._min_error = COARSER_MESH_SETTINGS.min_predicted_error_ratio * accuracy
+        self._min_error = COARSER_MESH_SETTINGS.min_predicted_error_over_accuracy * accuracy
         self._tolerance = FINER_MESH_SETTINGS.newton_tolerance_ratio * accuracy
         self._workspace = workspace
         coarse_orbit = newton(self.coarse_mesh.interpolated_orbit(start), self._tolerance, workspace)
@@ -121,7 +123,7 @@ class CoarserMeshes:
         time_factors = self._interval_ratio(mesh) ** time_orders
         # The error of the multipliers may decrease more slowly than the errors of the paths. The difference
         # between the multipliers on the two finer meshes bounds this error.
-        multiplier_error = largest_multiplier_difference(space_cycle.multipliers, time_cycle.multipliers)
+        multiplier_error = error_of_largest_multiplier(space_cycle.multipliers, time_cycle.multipliers)
         space_errors = np.append(self._errors_of_finer_mesh(space_cycle, space_factor), 0.0)
         time_errors = np.append(self._errors_of_finer_mesh(time_cycle, time_factors), multiplier_error)
         return orbit, calibration_of(mesh, space_errors, time_errors, orbit, None)
@@ -154,15 +156,17 @@ class CoarserMeshes:
 
 def _pessimistic_space_decay(orbit: Orbit) -> float:
     """Pessimistic decrease of ln(error) in space per order, from the coefficients of an orbit."""
-    min_decay = COARSER_MESH_SETTINGS.pessimistic_decay_ratio * tails_of(orbit).space_decay
+    min_decay = (
+        COARSER_MESH_SETTINGS.pessimistic_error_to_coefficient_decay_ratio * tails_of(orbit).space_decay
+    )
     return min(max(min_decay, CALIBRATION_SETTINGS.min_space_decay), CALIBRATION_SETTINGS.max_space_decay)
 
 
-def _order_difference(orbit: Orbit) -> int:
+def _fine_to_coarse_order_difference(orbit: Orbit) -> int:
     """Difference between the orders of a fine mesh and its coarse mesh, for a cycle near the orbit
     `orbit`."""
     difference = ceil(COARSER_MESH_SETTINGS.min_log_error_decrease / _pessimistic_space_decay(orbit))
     return min(
-        max(difference, COARSER_MESH_SETTINGS.min_order_difference),
-        COARSER_MESH_SETTINGS.max_order_difference,
+        max(difference, COARSER_MESH_SETTINGS.min_fine_to_coarse_order_difference),
+        COARSER_MESH_SETTINGS.max_fine_to_coarse_order_difference,
     )

@@ -29,13 +29,13 @@ class CycleErrorSettings:
 
     rounding_error: float = 2e-14
     """Smallest relative error estimate of period and extrema: the rounding error on any mesh."""
-    min_error_ratio: float = 0.1
+    min_error_over_accuracy: float = 0.1
     """Lower limit of error estimates, divided by the accuracy: a smaller estimate may be a coincidence."""
     min_largest_y_error_over_accuracy: float = 0.2
     """Lower limit of the error estimate of the largest y, divided by the accuracy: this error changes its
     sign along a chain, so that a small error may be measured at one cycle and used at the next cycles. With a
     limit of 0.1, two of 1500 errors exceeded their estimates, by a factor of 1.5."""
-    extrema_tolerance_ratio: float = 100.0
+    extrema_to_period_tolerance_ratio: float = 100.0
     """Tolerance of the tip's other extrema divided by the tolerance of period and largest y. Period and
     largest y converge fastest, because a time node lies at the largest y."""
 
@@ -60,7 +60,8 @@ class CycleErrors:
     @property
     def largest_weighted_error(self) -> float:
         """The error that is compared with the requested accuracy: the largest of the error of the period, the
-        error of the largest y, and the error of the other extrema divided by `extrema_tolerance_ratio`."""
+        error of the largest y, and the error of the other extrema divided by
+        `extrema_to_period_tolerance_ratio`."""
         return float(largest_weighted_error(self.period_error, self.amplitude_error, self.extrema_error))
 
 
@@ -68,7 +69,8 @@ def largest_weighted_error(period: Array | float, amplitude: Array | float, extr
     """`CycleErrors.largest_weighted_error` for errors of the period, the largest y (`amplitude`) and the
     other extrema: numbers, or arrays of a common shape."""
     largest: Array = np.maximum(
-        np.maximum(period, amplitude), np.asarray(extrema) / CYCLE_ERROR_SETTINGS.extrema_tolerance_ratio
+        np.maximum(period, amplitude),
+        np.asarray(extrema) / CYCLE_ERROR_SETTINGS.extrema_to_period_tolerance_ratio,
     )
     return largest
 
@@ -87,24 +89,30 @@ def errors_with_safety_factors(space_errors: Array, time_errors: Array, accuracy
     scaled_errors = CALIBRATION_SETTINGS.safety_factor * (space_errors + time_errors)
     # Single quantities may agree on two meshes by chance; the whole path cannot.
     path_error = space_errors[PATH_INDEX] + time_errors[PATH_INDEX]
-    time_path_error = CALIBRATION_SETTINGS.time_path_error_factor * time_errors[PATH_INDEX]
+    time_path_error = CALIBRATION_SETTINGS.time_path_distance_factor * time_errors[PATH_INDEX]
     larger_errors = [np.maximum(part[PERIOD_INDEX], part[Y_INDEX]) for part in (space_errors, time_errors)]
     # Period and largest y come from the same orbit, so neither is much more accurate than the other.
     min_errors = CALIBRATION_SETTINGS.min_ratio_to_larger_error * (larger_errors[0] + larger_errors[1])
     min_period_error = (
-        CALIBRATION_SETTINGS.min_period_error_ratio * space_errors[PATH_INDEX] + time_path_error
+        CALIBRATION_SETTINGS.min_period_error_over_path_distance * space_errors[PATH_INDEX] + time_path_error
     )
     min_height_error = np.maximum(
-        CALIBRATION_SETTINGS.min_largest_y_error_ratio * space_errors[PATH_INDEX] + time_path_error,
+        CALIBRATION_SETTINGS.min_largest_y_error_over_path_distance * space_errors[PATH_INDEX]
+        + time_path_error,
         CYCLE_ERROR_SETTINGS.min_largest_y_error_over_accuracy * accuracy,
     )
     stated_errors = [
         np.maximum(np.maximum(scaled_errors[PERIOD_INDEX], min_period_error), min_errors),
         np.maximum(np.maximum(scaled_errors[Y_INDEX], min_height_error), min_errors),
-        np.maximum(scaled_errors[EXTREMUM_INDEX], CALIBRATION_SETTINGS.min_extrema_error_ratio * path_error),
+        np.maximum(
+            scaled_errors[EXTREMUM_INDEX],
+            CALIBRATION_SETTINGS.min_extrema_error_over_path_distance * path_error,
+        ),
         scaled_errors[MULTIPLIER_ERROR_INDEX],
     ]
-    min_error = max(CYCLE_ERROR_SETTINGS.min_error_ratio * accuracy, CYCLE_ERROR_SETTINGS.rounding_error)
+    min_error = max(
+        CYCLE_ERROR_SETTINGS.min_error_over_accuracy * accuracy, CYCLE_ERROR_SETTINGS.rounding_error
+    )
     errors: Array = np.maximum(np.array(stated_errors), min_error)
     return errors
 

@@ -41,7 +41,7 @@ def error_indicators(solved: ConvergedOrbit, motion: CycleMotion) -> Array:
     # Over a period a cycle gains no energy, so the imbalance is the error of the collocation.
     lost_energy = abs(means.injection_mean - means.dissipation_mean) * orbit.solved_duration
     # The squared energy norm is twice the elastic energy.
-    twice_energy = float((orbit.form.energy_norm(orbit.equidistant_states) ** 2).mean())
+    twice_energy = float((orbit.form.energy_norm(orbit.states_equidistant_in_mesh_time) ** 2).mean())
     relative_loss = lost_energy / twice_energy
     # A slowly attracting cycle is displaced farther by the same loss.
     amplitude_error = relative_loss / _slowest_decay_over_solved_part(

@@ -14,10 +14,10 @@ from ....arrays import Array, Complex
 from ...orbit.measures import CycleMotion
 from ...orbit.newton import (
     ConvergedOrbit,
-    largest_multiplier_difference,
-    multipliers_and_trivial_error,
+    error_of_largest_multiplier,
     newton,
-    with_matrix_within_distance,
+    newton_step_if_matrix_distant,
+    nontrivial_multipliers_and_error,
 )
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of
 from ...orbit.path_differences import Y_INDEX, path_differences
@@ -91,7 +91,7 @@ def measured_calibration(
     if same_mesh.keeps_space_errors:
         calibration = calibration_with(same_mesh.scaled_space_errors, time_errors)
         if calibration.errors(accuracy).largest_weighted_error <= accuracy:
-            return replace(calibration, parameter_change=same_mesh.parameter_change)
+            return replace(calibration, relative_parameter_change=same_mesh.relative_parameter_change)
     return calibration_with(np.maximum(errors_beside(space_mesh), min_space_errors), time_errors)
 
 
@@ -116,13 +116,13 @@ class ComparedCycle:
     @cached_property
     def multipliers(self) -> Complex:
         """Nontrivial multipliers of the cycle, (multipliers,), by descending modulus."""
-        return multipliers_and_trivial_error(
-            with_matrix_within_distance(self._converged_orbit, FINER_MESH_SETTINGS.max_matrix_distance)
+        return nontrivial_multipliers_and_error(
+            newton_step_if_matrix_distant(self._converged_orbit, FINER_MESH_SETTINGS.max_matrix_distance)
         )[0]
 
     def differences_from(self, fine: "ComparedCycle") -> Array:
         """Differences between this cycle and the same cycle `fine` on a finer mesh, (5,): the four
-        differences of `path_differences`, and `largest_multiplier_difference` of the nontrivial
+        differences of `path_differences`, and `error_of_largest_multiplier` of the nontrivial
         multipliers."""
-        change = largest_multiplier_difference(self.multipliers, fine.multipliers)
+        change = error_of_largest_multiplier(self.multipliers, fine.multipliers)
         return np.append(path_differences(self.motion, fine.motion), change)

@@ -80,6 +80,6 @@ def restricted_to_minimal_period(orbit: Orbit) -> Orbit:
         return orbit
     times = node_times(orbit.interval_count, orbit.stage_count)
     # A symmetric orbit bends in odd harmonics only, so its divisor is odd and the shorter orbit is symmetric.
-    values = np.append(orbit.states_at(times / divisor), orbit.period / divisor)
+    values = np.append(orbit.states_at_time_fractions(times / divisor), orbit.period / divisor)
     # The grading was fitted to several minimal periods, so the shorter orbit starts with a uniform one.
     return replace(orbit, values=values, grading=UNIFORM_TIME)

@@ -12,14 +12,14 @@ import numpy as np
 
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.measures import CycleMotion
-from ...orbit.mesh_choice import cheapest_stage_count, finer_orbit_mesh, mesh_from_tails, regraded
+from ...orbit.mesh_choice import cheapest_stage_count, finer_orbit_mesh, mesh_from_tails, regraded_coarser
 from ...orbit.newton import (
     ORBIT_NEWTON_SETTINGS,
     ConvergedOrbit,
-    multipliers_and_trivial_error,
     newton,
     newton_step,
-    with_matrix_within_distance,
+    newton_step_if_matrix_distant,
+    nontrivial_multipliers_and_error,
 )
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_limit_error
@@ -46,7 +46,7 @@ def cycle_with_calibrated_errors(
     motion = motion or CycleMotion(solved.orbit)
     measures = motion.measures
     errors = with_amplitude_rounding(calibration.errors(accuracy), solved, measures)
-    multipliers, trivial_error = multipliers_and_trivial_error(solved)
+    multipliers, trivial_error = nontrivial_multipliers_and_error(solved)
     max_modulus = max(float(np.abs(multipliers[0])), 1.0) if len(multipliers) else 1.0
     # The matrix was assembled at a nearby orbit; the error of the trivial multiplier shows the effect.
     matrix_error = (
@@ -98,7 +98,7 @@ def refined_cycle_of_any_period(
                 REFINEMENT_SETTINGS.retry_accuracy_factor * mesh_accuracy, REFINEMENT_SETTINGS.min_accuracy
             )
             mesh = mesh_from_tails(orbit, mesh_accuracy, orbit.stage_count)
-            if mesh.interval_count * mesh.unknown_count**3 > REFINEMENT_SETTINGS.max_retry_cost:
+            if mesh.interval_count * mesh.unknown_count**3 > REFINEMENT_SETTINGS.max_retry_mesh_cost:
                 raise
             start = mesh.interpolated_orbit(orbit)
 
@@ -141,7 +141,7 @@ def _predicted_cycle(
         REFINEMENT_SETTINGS.min_prediction_distance,
     ):
         raise Unsolvable("coarser meshes do not predict the cycle")
-    solved = with_matrix_within_distance(solved, min(accuracy, REFINEMENT_SETTINGS.max_matrix_distance))
+    solved = newton_step_if_matrix_distant(solved, min(accuracy, REFINEMENT_SETTINGS.max_matrix_distance))
     motion = CycleMotion(solved.orbit)
     calibration = with_indicators(best[1], error_indicators(solved, motion))
     if calibration.errors(accuracy).largest_weighted_error > sufficient_error >= error:
@@ -171,7 +171,7 @@ def cycle_with_measured_errors(
         if error <= sufficient_error or error > max_error:
             break
         max_error = REFINEMENT_SETTINGS.max_error_increase * error
-        target = regraded(cheapest_mesh(calibration, sufficient_error), solved.orbit)
+        target = regraded_coarser(cheapest_mesh(calibration, sufficient_error), solved.orbit)
         next_mesh = finer_orbit_mesh(calibration.mesh, target)
         if not next_mesh.is_allowed:
             break

@@ -36,7 +36,7 @@ class RefinementSettings:
     retry_accuracy_factor: float = 1e-3
     """If a mesh is so coarse that the rod has no cycle on this mesh, the next mesh is chosen for the accuracy
     times this factor."""
-    max_retry_cost: float = 1e8
+    max_retry_mesh_cost: float = 1e8
     """After a mesh without a cycle, a finer mesh is tried only if its number of time intervals times its
     cubed number of unknowns is at most this number. Cycles near a Hopf point need fewer than 20 intervals and
     150 unknowns; without this limit, a motion that never repeats costs a minute."""

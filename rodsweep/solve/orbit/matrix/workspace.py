@@ -134,7 +134,7 @@ class NewtonWorkspace:
         finally:
             self._max_work = previous_max_work
 
-    def add_work(self, work: float) -> None:
+    def count_matrix_work_within_limit(self, work: float) -> None:
         """Counts the work of the next matrix; raises WorkLimitReached if the matrix exceeds the limit.
         work: number of multiplications."""
         if (
@@ -194,7 +194,9 @@ class FactorStorage:
         self._shape = (interval_count, block_count(stage_count), unknown_count, unknown_count)
         self._size = factors_size(interval_count, stage_count, unknown_count)
         # Work is counted first: a matrix beyond the limit must not end the last reservation.
-        workspace.add_work(float(interval_count * stage_count**2) * float(unknown_count) ** 3)
+        workspace.count_matrix_work_within_limit(
+            float(interval_count * stage_count**2) * float(unknown_count) ** 3
+        )
         self._reservation = workspace.reserve(self._size)
         self.propagator = np.zeros((unknown_count, unknown_count))
         """P, (n, n), which stays valid when the workspace is used again."""
