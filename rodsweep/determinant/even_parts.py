@@ -20,7 +20,14 @@ from .even_functions import (
     even_functions_by_roots,
     even_functions_by_series,
 )
-from .exponents import EXPONENT_SETTINGS, TWO_MACHINE_EPSILONS, entire_cosh, modulus, squared_exponents
+from .exponents import (
+    EXPONENT_SETTINGS,
+    TWO_MACHINE_EPSILONS,
+    entire_cosh,
+    modulus,
+    modulus_without_underflow,
+    squared_exponents,
+)
 
 EvenSum = tuple[EvenFunctionValues, complex, float]
 """(s and d with derivatives, sum z+' E(z+) + z-' E(z-) times exp(-S), rounding error). `even_parts` returns
@@ -136,7 +143,7 @@ def even_parts(w: complex, coefficients: Coefficients) -> EvenSum:
     M = T * w - F * g
     square = w * (G + X * w)
     N = G + 2 * X * w
-    size = modulus(w)
+    size = modulus_without_underflow(w)
     soft = abs(g) + abs(F) * c2 / 2  # includes the rounding errors of c2 and F c2, since nu may cancel F c2
     stiffness = nu * soft + X * size
     rounding_M = T * size + abs(F) * soft

@@ -29,6 +29,9 @@ class ExponentSettings(KernelConstants):
     sinh_series_below: float = 0.25
     """sinh(q)/q and its slope are computed by series for |q^2| below this number, because the closed form of
     the slope would cancel."""
+    min_modulus_from_square: float = 1e-145
+    """A modulus |w| below this number is computed without |w|^2, which loses digits below 1e-308 and is 0 at
+    the exponentially small eigenvalues of strongly pulled rods, |w| < 1e-162."""
     field_ranges: ClassVar = {"max_exponent": (0.0, 709.0)}
 
 
@@ -52,6 +55,13 @@ class HyperbolicFunctions(NamedTuple):
 def modulus(z: complex) -> float:
     """|z|, faster than abs(z). |z|^2 must not overflow; if |z|^2 underflows, the result is 0."""
     return math.sqrt(z.real * z.real + z.imag * z.imag)
+
+
+@compiled
+def modulus_without_underflow(w: complex) -> float:
+    """|w|, also if |w|^2 underflows; |w|^2 must not overflow."""
+    size = modulus(w)
+    return abs(w) if size < EXPONENT_SETTINGS.min_modulus_from_square else size
 
 
 @compiled

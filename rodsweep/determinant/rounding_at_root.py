@@ -22,6 +22,7 @@ from .exponents import (
     entire_cosh,
     hyperbolic_functions,
     modulus,
+    modulus_without_underflow,
     squared_exponents,
 )
 
@@ -57,7 +58,7 @@ def rounding_error_at_root(w: complex, coefficients: Coefficients, log_scale: fl
     X = c2 * gamma3
     M = T * w - F * g
     square = w * (g * nu + X * w)
-    size = modulus(w)
+    size = modulus_without_underflow(w)
     soft = abs(g) + abs(F) * c2 / 2  # includes the rounding errors of c2 and F c2, since nu may cancel F c2
     stiffness = nu * soft + X * size
     terms = _DispersionTerms(

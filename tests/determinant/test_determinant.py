@@ -9,6 +9,7 @@ from rods import rod_of
 
 from rodsweep.determinant.parameter_path import determinant_along_path
 from rodsweep.determinant.roots.newton import refine_eigenvalue
+from rodsweep.determinant.roots.roots import root_error_and_scales
 from rodsweep.determinant.rounding_at_root import rounding_error_at_root
 from rodsweep.determinant.value import DETERMINANT_SETTINGS, newton_correction_and_scales, scaled_determinant
 from rodsweep.model.rod import Rod
@@ -104,6 +105,24 @@ def test_the_rounding_error_by_derivatives_is_small_at_high_modes_of_a_pulled_ro
         w = refine_eigenvalue(complex(guess), rod.coefficients)
         _, _, scale, noise = scaled_determinant(w, rod.coefficients)
         assert rounding(w, rod) * noise < rounding_error_at_root(w, rod.coefficients, scale) < noise / 8
+
+
+@pytest.mark.parametrize(
+    ("F", "k1", "gamma3", "guess"),
+    [
+        (-2435.396491691431, 36.2377642702722, 0.0024668777254547563, -2.9e-173),
+        (-2600.0, 33.0, 1e-3, -1e-196),
+        (-2000.0, 34.0, 0.0, -3e-154),
+    ],
+)
+def test_errors_cover_eigenvalues_whose_square_underflows(F, k1, gamma3, guess):
+    rod = Rod(F=F, k1=k1, k2=np.inf, gamma3=gamma3)
+    w = refine_eigenvalue(complex(guess), rod.coefficients)
+    _, _, scale, noise = scaled_determinant(w, rod.coefficients)
+    exact = reference.refine(mp.mpmathify(w), F, k1, np.inf, gamma3)
+    difference = abs(exact - mp.mpmathify(w))
+    assert difference <= root_error_and_scales(w, rod.coefficients)[0] < 1e-12 * abs(w)
+    assert 0 < rounding_error_at_root(w, rod.coefficients, scale) < 3 * noise
 
 
 def test_the_typical_rounding_fraction_is_typical():
