@@ -63,12 +63,28 @@ class UnstableModeCounter:
         return -1
 
     def count_at_start(self, start: float, stop: float, crossings: list[Threshold]) -> int:
-        """Number of unstable modes at `start`, or, if that count is undecided, at a position before all
-        crossings `crossings`, all gaps and `stop`; -1 if undecided."""
-        number = self.count_at(start)
-        # Up to the first crossing or gap the number cannot change, so any position there gives the count.
-        first_position = min([stop, *(c.value for c in crossings), *(a for a, _ in self.gaps)])
-        return number if number >= 0 else self.count_between(start, first_position)
+        """Number of unstable modes at `start`, before all crossings `crossings` of the imaginary axis. If the
+        count at `start` is undecided, as for a pair close to the axis, the number follows from a count before
+        the first crossing, or between later crossings, and their directions. -1 if undecided."""
+        # Beyond a gap the number of modes does not give the number before.
+        end = min([stop, *(gap_start for gap_start, _ in self.gaps)])
+        ordered = sorted((c for c in crossings if c.value - c.error < end), key=lambda c: c.value)
+        # A crossing at `start` within its error may lie on either side: only a count after it is valid.
+        if not ordered or start < ordered[0].value - ordered[0].error:
+            number = self.count_at(start)
+            if number >= 0:
+                return number
+        lower_edges = [start, *(c.value + c.error for c in ordered)]
+        upper_edges = [*(c.value - c.error for c in ordered), end]
+        change = 0
+        for index, (a, b) in enumerate(zip(lower_edges, upper_edges, strict=True)):
+            number = self.count_between(a, b) if a < b else -1
+            if number >= 0:
+                # A contradiction of crossings and count leaves the number unknown.
+                return number - change if number >= change else -1
+            if index < len(ordered):
+                change += _change_of_count(ordered[index].kind)
+        return -1
 
     def crossings_with_counts(
         self, ordered_thresholds: list[Threshold], parameter_ends: tuple[float, float], unstable_count: int
@@ -88,9 +104,7 @@ class UnstableModeCounter:
                 unstable_count = self._count_before(start, crossing.value, unstable_count)
                 start = crossing.value
                 if unstable_count >= 0:
-                    # Eigenvalues cross in conjugate pairs, as the determinant is real for real w; none
-                    # crosses at w = 0.
-                    unstable_count += 2 if kind == ThresholdKind.hopf else -2
+                    unstable_count += _change_of_count(kind)
                 if kind == ThresholdKind.hopf_reverse and unstable_count == 0:
                     kind = ThresholdKind.restabilization
             counted_thresholds.append(replace(crossing, kind=kind, unstable_after=unstable_count))
@@ -121,3 +135,9 @@ class UnstableModeCounter:
                 + (f", but the crossings found imply {unstable_count}" if count >= 0 else "")
             )
         return unstable_count
+
+
+def _change_of_count(kind: ThresholdKind) -> int:
+    """Change of the number of unstable modes at a crossing of the imaginary axis by increasing parameter."""
+    # Eigenvalues cross in conjugate pairs, as the determinant is real for real w; none crosses at w = 0.
+    return 2 if kind == ThresholdKind.hopf else -2

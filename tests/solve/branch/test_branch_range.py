@@ -48,6 +48,21 @@ def test_branch_passes_a_fold_within_the_range(fold):
     assert same.parameter_value == pytest.approx(fold.parameter_value, abs=fold.error + same.error)
 
 
+@pytest.mark.parametrize("distance", [1e-7, 1e-9, 1e-12, 0.0, -1e-12, -1e-9, -1e-7])
+def test_a_range_that_starts_beside_a_hopf_point_has_its_branch(distance):
+    """The relative distance of the start above (+) or below (-) the Hopf point is far below the accuracy."""
+    rod = Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4)
+    (hopf,) = find_axis_crossings(ParameterPath(rod, "F"), 0.0, 40.0).thresholds
+    start = hopf.value * (1 + distance)
+    found = solve_branches(rod, BranchRequest("F", start, 40.0, 1e-5, True, 100, 10))
+    assert found.status == BranchStatus.ok, found.message
+    (curve,) = found.curves
+    kinds = [SpecialKind.end if distance > 0 else SpecialKind.hopf, SpecialKind.end]
+    assert [point.kind for point in curve.special_points] == kinds
+    begin = hopf.value if distance <= 0 else start
+    assert curve.special_points[0].parameter_value == pytest.approx(begin, rel=1e-13)
+
+
 @pytest.mark.long
 def test_a_branch_passes_the_drag_below_which_omega_is_an_unknown():
     """Along the taper of a rod with gamma3 = 1e-4 the rotational drag of the tip is 1e-5 at 0.316."""

@@ -15,7 +15,8 @@ from rodsweep.solve.changes.diagram.rows import classes_and_unstable_counts
 from rodsweep.solve.changes.status import ThresholdStatus
 from rodsweep.solve.changes.threshold_kinds import ThresholdKind
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
-from rodsweep.solve.changes.thresholds_along_path import find_thresholds
+from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings, find_thresholds
+from rodsweep.solve.changes.unstable_modes import UnstableModeCounter
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
 REFERENCE = json.loads((ROOT / "tests" / "reference" / "thresholds.json").read_text())
@@ -57,6 +58,48 @@ def test_a_range_that_ends_at_a_multiple_of_a_threshold_is_proved(multiple):
     assert found.status == ThresholdStatus.ok, found.message
     assert [c.kind for c in found.thresholds][:2] == [ThresholdKind.onset, ThresholdKind.hopf]
     assert found.thresholds[1].value == pytest.approx(at, rel=1e-13)
+
+
+BESIDE_A_HOPF_POINT = [
+    ("F", Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), (0.0, 60.0), (0, 2)),
+    ("k1", Rod(F=38.0, k1=100.0, k2=1e2, gamma3=1e-3), (40.0, 5e3), (0, 2)),
+    ("taper", Rod(F=20.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.3), (0.3, 1.0), (2, 0)),
+]
+"""Parameter, rod, range with one Hopf point, and numbers of unstable modes at both ends of the range."""
+
+
+@pytest.mark.parametrize(("name", "rod", "ends", "counts"), BESIDE_A_HOPF_POINT)
+def test_a_search_that_starts_beside_a_hopf_point_is_proved(name, rod, ends, counts):
+    """At the start a pair is so close to the axis that the unstable modes there cannot be counted."""
+    path = ParameterPath(rod, name)
+    (hopf,) = find_axis_crossings(path, *ends).thresholds
+    for distance in (1e-6, 1e-7, 1e-9, 1e-12, 0.0):
+        start = hopf.value * (1 - distance)
+        for search in (find_axis_crossings, find_thresholds):
+            found = search(path, start, ends[1])
+            crossings = [c for c in found.thresholds if not c.kind.switches_real_and_complex]
+            assert [c.value for c in crossings] == pytest.approx([hopf.value], rel=1e-13)
+            assert (found.unstable_at_start, found.unstable_at_end) == counts
+            assert found.proved, found.doubt_text
+        if distance > 1e-13:
+            beyond = find_axis_crossings(path, hopf.value * (1 + distance), ends[1])
+            assert not beyond.thresholds
+            assert beyond.proved
+            assert (beyond.unstable_at_start, beyond.unstable_at_end) == (counts[1], counts[1])
+
+
+def test_a_start_beside_two_hopf_points_is_counted_after_both(monkeypatch):
+    """No position before or between the first two crossings gives a count: a later one gives all numbers."""
+    path = ParameterPath(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), "F")
+    whole = find_axis_crossings(path, 0.0, 200.0)
+    second = whole.thresholds[1].value
+    counted = UnstableModeCounter.count_at
+    monkeypatch.setattr(
+        UnstableModeCounter, "count_at", lambda self, value: counted(self, value) if value > second else -1
+    )
+    found = find_axis_crossings(path, 1.0, 200.0, certify=False)
+    assert found.unstable_at_start == 0
+    assert [c.unstable_after for c in found.thresholds] == [c.unstable_after for c in whole.thresholds]
 
 
 def test_the_partial_beam_flutters_where_the_compressed_filament_does():
