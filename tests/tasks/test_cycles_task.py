@@ -142,8 +142,13 @@ REFUSED = [
     (config("samples: -1"), "limit_cycle.samples = -1 is not allowed; it should be a whole number from 0"),
     (config("shapes: 1.5"), "limit_cycle.shapes = 1.5 is not allowed; it should be a whole number from 0"),
     (
-        config("most_periods: 0"),
-        "limit_cycle.most_periods = 0 is not allowed; it should be a whole number from 1",
+        config("most_periods: 2"),
+        "limit_cycle.most_periods = 2 is not allowed; it should be a whole number from 3 to 1e+06",
+    ),
+    (
+        config("method: integration, most_periods: 15"),
+        "limit_cycle.most_periods = 15 is not allowed with method: integration, which needs 16 returns of "
+        "the tip for a cycle and its errors; it should be a whole number from 16 to 1e+06",
     ),
     (config("time: tau3"), "limit_cycle.time = 'tau3' is not allowed; it should be tau2 or tau1"),
     (

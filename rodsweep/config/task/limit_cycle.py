@@ -14,6 +14,11 @@ from ..values import Number, StrictConfigSection
 LONGEST_AXIS = "longest"
 ChainParameter = Literal[(*NONLINEAR_PARAMETERS, *OPTIONAL_PARAMETERS, *SINGLE_PARAMETER_OF, LONGEST_AXIS)]  # type: ignore[valid-type]  # pydantic reads it at run time, from the table
 
+LEAST_PERIODS = {"collocation": 3, "integration": 16}
+"""Smallest allowed `most_periods` by method. Collocation: a shorter motion is not classified. Integration:
+two motions are compared for the errors; the first is integrated over at least ten returns and the second over
+at least six, so that its returns can be compared (`tests/solve/cycle/test_fewest_returns.py`)."""
+
 
 class LimitCycleOptions(StrictConfigSection):
     """Options of the task limit_cycle: initial guess, limits of the computation, stored data of a cycle."""
@@ -43,9 +48,10 @@ class LimitCycleOptions(StrictConfigSection):
     transient: Annotated[int, Field(ge=0, le=100_000)] = 0
     """Number of times, from the start of the motion until the cycle is reached, at which the tip is stored; 0
     stores no transient."""
-    most_periods: Annotated[int, Field(ge=1, le=1_000_000)] = 400
-    """Maximum number of periods of the motion, counted as returns of the tip to theta = 0; the maximum number
-    of time steps is 200 times this number. A motion that has not settled by then is `not_settled`."""
+    most_periods: Annotated[int, Field(ge=LEAST_PERIODS["collocation"], le=1_000_000)] = 400
+    """Maximum number of periods of the motion, counted as returns of the tip to theta = 0; at least 16 with
+    method: integration, which integrates two motions. The maximum number of time steps is 200 times this
+    number, and at least 20000. A motion that has not settled by then is `not_settled`."""
     time: Literal["tau2", "tau1"] = "tau2"
     """Unit of time. tau1 adds the period in units of tau1; all other variables stay in units of tau2."""
 
@@ -101,6 +107,7 @@ class LimitCycleConfig(Config):
     def _refuse_unused_keys(self) -> "LimitCycleConfig":
         self.parameters.require_points(self.parameter_names)
         self.refuse_options_without_effect()
+        self._require_enough_periods()
         arm = self.parameters.arm
         parameter = self.limit_cycle.along
         if parameter in SINGLE_PARAMETER_OF and (
@@ -118,6 +125,17 @@ class LimitCycleConfig(Config):
         if self.limit_cycle.start == "neighbour":
             self._require_chain_parameter()
         return self
+
+    def _require_enough_periods(self) -> None:
+        """Raises ValueError if no motion can settle within `most_periods`."""
+        options = self.limit_cycle
+        least = LEAST_PERIODS[options.method]
+        if options.most_periods < least:
+            raise ValueError(
+                f"limit_cycle.most_periods = {options.most_periods} is not allowed with method: "
+                f"{options.method}, which needs {least} returns of the tip for a cycle and its errors; "
+                f"it should be a whole number from {least} to 1e+06"
+            )
 
     def _require_chain_parameter(self) -> None:
         """Raises ValueError if no axis changes only the parameter along which chains of cycles go."""

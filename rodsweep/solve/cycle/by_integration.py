@@ -49,6 +49,7 @@ from .transient.returns import (
     section_crossings,
     tip_angle_row,
 )
+from .transient.run_length import compared_run_length
 from .transient.transient_settings import TRANSIENT_SETTINGS
 
 
@@ -74,7 +75,7 @@ class _IntegrationUntilSettled:
         self.scheme = TimeScheme("arkimex", "5", tolerance=tolerance)
         self.system = ExplicitSystem(self.rod, self.mesh)
         self.leading_mode = leading_mode(self.system)
-        self.return_count = 0
+        self.return_count = self.settled_count = 0  # returns so far, and until the motion last settled
         self.return_times = ReturnTimeEstimate(self.leading_mode.period)
         self.intervals_per_return = INTEGRATION_SETTINGS.measurement_intervals_per_return
 
@@ -130,13 +131,12 @@ class _IntegrationUntilSettled:
         max_returns = self.request.most_periods
         while self.return_count < max_returns:
             report(lambda: SolvePosition(f"{self.return_count} of at most {max_returns} returns of the tip"))
+            returns = compared_run_length(max_returns - self.return_count)
             run = self._integrate(
                 z,
-                TRANSIENT_SETTINGS.max_run_duration_ratio
-                * TRANSIENT_SETTINGS.returns_per_run
-                * self.return_times.time_per_return,
+                TRANSIENT_SETTINGS.max_run_duration_ratio * returns * self.return_times.time_per_return,
                 time_step,
-                return_limit(angle_row, z, TRANSIENT_SETTINGS.returns_per_run),
+                return_limit(angle_row, z, returns),
             )
             z = run.states[-1]
             # The last time step of a run is the first time step of the next run, which continues the motion.
@@ -150,12 +150,13 @@ class _IntegrationUntilSettled:
             if len(past_moments) <= TRANSIENT_SETTINGS.returns_per_run:
                 continue
             returns_per_repetition, distance = recurrence(list(past_moments))
-            distances.record_test(distance, returns_per_repetition / TRANSIENT_SETTINGS.returns_per_run)
+            distances.record_test(distance, returns_per_repetition / returns)
             # For distances in a geometric sequence the distance from the cycle is distance/(1 - rate).
             tolerance = max_settled_distance_from_cycle(self.request.accuracy)
             if distance <= tolerance * (1 - distances.contraction_rate):
+                self.settled_count = self.return_count
                 return SettledMotion(z, returns_per_repetition, time_step)
-        message = not_settled_text(self.return_count, len(past_moments), distances.last)
+        message = not_settled_text(self.return_count, len(past_moments), distances.last, self.settled_count)
         raise NoCycleFound(IntegratedCycleStatus.not_settled, message)
 
     def _integrate(

@@ -163,16 +163,25 @@ def recurrence(moments: Sequence[Array]) -> tuple[int, float]:
     return next((m, distance) for distance, m in distances if distance <= tolerance)
 
 
-def not_settled_text(total_count: int, return_count: int, return_distance: float) -> str:
+def not_settled_text(
+    total_count: int, return_count: int, return_distance: float, settled_count: int = 0
+) -> str:
     """Message that explains why a motion has not settled after `total_count` returns of the tip.
 
     return_count: number of returns with a recorded state. return_distance: relative distance of the last
-    return from an earlier return; NaN for too few returns, inf for a decayed motion.
+    return from an earlier return; NaN for too few returns, inf for a decayed motion. settled_count: number of
+    returns until the motion settled on a coarser mesh; 0 if it has not settled.
     """
     if isfinite(return_distance):
         return (
             f"the motion does not repeat: after {total_count} returns of the tip the state still differs by "
             f"a relative {return_distance:.1e} from the state at an earlier return"
+        )
+    if isnan(return_distance) and settled_count:
+        further = counted(total_count - settled_count, "further return")
+        return (
+            f"the motion has settled after {settled_count} returns of the tip, but the errors come from a "
+            f"second integration, for which {further} are not enough"
         )
     if isnan(return_distance):
         return f"the tip returned to theta = 0 only {counted(return_count, 'time')}, so no period is known"

@@ -30,6 +30,7 @@ from .motion_mesh import integrable_rod
 from .no_period import decayed_without_end_text, no_period_text
 from .orbit_from_motion import orbit_from_motion, scaled_state
 from .returns import RETURN_SETTINGS, recurrence, return_limit, run_failure, section_crossings, tip_angle_row
+from .run_length import classified_run_length, is_too_short
 from .schemes import schemes_for_growth
 from .shape_trace import ShapeTrace
 from .tip_trace import TipTrace
@@ -41,9 +42,9 @@ class TransientIntegration:
     """Integration of the motion of one rod from a start; `follow` is called only once. form: the rod whose
     cycle is solved for, and the mesh. straight: stability of the straight rod. tangent_parameter: parameter
     of the cycle's tangent, or None. unstable_cycle: a nearby unstable cycle, or None. system: the integrated
-    rod; a nearby rod if `form` has a limiting rod (k1 = inf, ...). record: record of the tip's path or of
-    shapes, or None. returns, steps, jump_count: numbers of returns, time steps and jumps so far. attempts:
-    number of Newton's attempts, up to a maximum. next_attempt: number of returns before the next attempt."""
+    rod, near a limiting rod of `form` (k1 = inf, ...). record: record of the tip's path or of shapes, or
+    None. returns, steps, jump_count: numbers of returns, time steps and jumps so far. attempts: number of
+    attempts of Newton's method, up to a maximum. next_attempt: number of returns before the next attempt."""
 
     def __init__(
         self,
@@ -96,7 +97,8 @@ class TransientIntegration:
         is_first_run = True
         while self.returns < self.max_returns and self.steps < self.max_steps and not self.unsolved_message:
             report(lambda: SolvePosition(f"{self.returns} of at most {self.max_returns} returns of the tip"))
-            run = self._run_of_returns(z, is_first_run)
+            returns = classified_run_length(is_first_run, self.max_returns - self.returns)
+            run = self._run_of_returns(z, returns, is_first_run)
             if failure := run_failure(self.system, run, self.returns):
                 status = CycleStatus.left_the_model if failure.left_the_model else CycleStatus.failed
                 return self._result(status, failure.message)
@@ -114,7 +116,7 @@ class TransientIntegration:
                 continue
             is_first = is_first_run
             is_first_run = False
-            if len(times) < 3 or (is_first and self.amplitude_equation.is_slow_mode(times, states)):
+            if is_too_short(times) or (is_first and self.amplitude_equation.is_slow_mode(times, states)):
                 continue
             continues = self.record is not None and self.record.needs_more_motion(z)
             if not (is_first or continues) and self.amplitude_equation.decays_at_linear_rate(times, states):
@@ -140,15 +142,15 @@ class TransientIntegration:
             return None
         start = scaled_state(self.system, z, factor)
         start = relax_fast_components(self.system, start, self.leading_mode.period)
-        run = self._run_of_returns(start, False)
+        run = self._run_of_returns(start, TRANSIENT_SETTINGS.returns_per_run)
         times, _ = section_crossings(self.system, run)
         if len(times) < 2 or run_failure(self.system, run, self.returns):
             return None
         return self._cycle_near(run, float(times[-1] - times[-2]), 1)
 
     def _record_returns(self, run: Trajectory, times: Array, states: Array) -> None:
-        """Counts the returns and time steps of a run, and records times and bending moments of the returns.
-        times, states: times and states of the returns, (k,) and (k, unknowns)."""
+        """Counts returns and time steps of a run, and records the bending moments at its returns. times,
+        states: times and states of the returns, (k,) and (k, unknowns)."""
         self.returns += max(len(times), 1)
         self.steps += len(run.times) - 1
         moments = self.system.layout.stress_field(states, "m3")
@@ -188,10 +190,9 @@ class TransientIntegration:
     def _result(self, status: CycleStatus, text: str, cycle: RefinedCycle | None = None) -> TransientOutcome:
         return TransientOutcome(status, text, self.returns, cycle)
 
-    def _run_of_returns(self, z: Array, first: bool) -> Trajectory:
-        """A run from the state z, (unknowns,), over `returns_per_run` returns, or `returns_in_first_run` if
-        `first`, of at most `max_run_duration_ratio` times the expected time of these returns."""
-        returns = TRANSIENT_SETTINGS.returns_in_first_run if first else TRANSIENT_SETTINGS.returns_per_run
+    def _run_of_returns(self, z: Array, returns: int, first: bool = False) -> Trajectory:
+        """A run from the state z, (unknowns,), over `returns` returns, of at most `max_run_duration_ratio`
+        times their expected time. first: whether the run is the first of the motion."""
         scheme = self.first_scheme if first else self.scheme
         limit = return_limit(self.tip_angle_row, z, returns)
         # A slow-fast cycle may take many time constants of a leading mode that does not oscillate.
@@ -229,8 +230,7 @@ class TransientIntegration:
 
     def _cycle_near(self, run: Trajectory, period: float, return_count: int) -> RefinedCycle | None:
         """The stable cycle near the end of a run, by Newton's method; None if not found. period: approximate
-        period, in tau2. return_count: number of returns of the tip per period."""
-        # The run may be shorter than a period of several returns.
+        period, in tau2. return_count: number of returns of the tip per period. The run may be shorter."""
         if run.times[-1] < period:
             start = run.states[-1]
             run = integrator(self.system.mesh, self.scheme).run(self.system, start, period, self.step)

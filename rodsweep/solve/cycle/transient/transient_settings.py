@@ -19,6 +19,9 @@ class TransientSettings:
     returns_in_first_run: int = 3
     """Number of returns of the first run. A fast-growing motion may already have reached its cycle then; slow
     growth and decay are recognised only after later runs."""
+    min_returns_per_run: int = 3
+    """Smallest number of returns of a run after which the motion is classified. The last run takes up to this
+    number minus 1 further returns, since they could not be classified in a run of their own."""
     max_newton_distance: float = 0.1
     """Relative distance between two returns, below which Newton's method starts."""
     distance_divisor: int = 10
