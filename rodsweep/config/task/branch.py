@@ -65,9 +65,10 @@ class BranchConfig(Config):
     accuracy: Annotated[Number, Field(ge=1e-11, le=1e-2)] = 1e-7
     """Relative error of the parameter of each cycle at a given deflection, and of its period and largest y at
     the stored parameter p. Where the largest y is steep, |(p/y) dy/dp| > 100 as near Hopf points and folds,
-    the errors of period and largest y are larger in proportion. Special points are located to the smaller of
-    `accuracy` and 1e-9. The file has error estimates of all these numbers. Cycles without mirror symmetry are
-    solved to 1e-4 at least, cycles of rods close to a generalised Hopf point to 5e-7 or less."""
+    the error of the largest y is larger in proportion, and at folds the error of the period too. Special
+    points are located to the smaller of `accuracy` and 1e-9. The file has error estimates of all these
+    numbers. Cycles without mirror symmetry are solved to 1e-4 at least, cycles of rods close to a generalised
+    Hopf point to 5e-7 or less."""
     branch: BranchOptions = BranchOptions()
 
     parameters_depend_on_options: ClassVar[bool] = True

@@ -19,12 +19,8 @@ from ..orbit.path_differences import path_differences
 from ..unsolvable import Unsolvable
 from .bordered.condition import BorderCondition, moved_orbit
 from .bordered.scale import ALONG_PARAMETER
-from .branch_errors import (
-    BRANCH_ERROR_SETTINGS,
-    BranchCalibration,
-    BranchDerivatives,
-    branch_newton_tolerance,
-)
+from .branch_error_settings import BRANCH_ERROR_SETTINGS
+from .branch_errors import BranchCalibration, BranchDerivatives, branch_newton_tolerance
 from .multiplier_sensitivity import MultiplierSensitivity
 
 
@@ -66,7 +62,7 @@ def measured_branch_calibration(
     return BranchCalibration(
         calibration,
         differences[:, -1],
-        relative_tip_y_sensitivity(rough, derivatives),
+        *parameter_sensitivities(rough, derivatives),
         sensitivity,
     )
 
@@ -115,9 +111,9 @@ def _differences_between_meshes(
     )
 
 
-def relative_tip_y_sensitivity(motion: CycleMotion, derivatives: BranchDerivatives) -> float:
-    """Sensitivity |(p/y) dy/dp| of the largest tip y to the parameter p along a branch at the cycle `motion`.
-    derivatives: derivatives of the branch at this cycle."""
+def parameter_sensitivities(motion: CycleMotion, derivatives: BranchDerivatives) -> tuple[float, float]:
+    """Sensitivities |(p/y) dy/dp| of the largest tip y and |(p/T) dT/dp| of the period T to the parameter p
+    along a branch at the cycle `motion`. derivatives: derivatives of the branch at this cycle."""
     orbit: Orbit = motion.orbit
     name = derivatives.scale.parameter_name
     step = BRANCH_ERROR_SETTINGS.sensitivity_arc_length * derivatives.tangent
@@ -129,6 +125,6 @@ def relative_tip_y_sensitivity(motion: CycleMotion, derivatives: BranchDerivativ
         moved_motion = CycleMotion(moved_orbit(orbit, name, -step))
     y = motion.extrema["tip_y_max"]
     moved_y = moved_motion.extrema["tip_y_max"]
-    return abs((moved_y - y) / (BRANCH_ERROR_SETTINGS.sensitivity_arc_length * y)) / max(
-        abs(derivatives.parameter_rate), EXPONENT_SETTINGS.min_divisor
-    )
+    parameter_rate = max(abs(derivatives.parameter_rate), EXPONENT_SETTINGS.min_divisor)
+    y_rate = abs((moved_y - y) / (BRANCH_ERROR_SETTINGS.sensitivity_arc_length * y))
+    return y_rate / parameter_rate, abs(float(derivatives.unit_tangent[1])) / parameter_rate

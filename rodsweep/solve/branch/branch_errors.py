@@ -19,50 +19,13 @@ from ...determinant.exponents import EXPONENT_SETTINGS
 from ..cycle.accuracy.calibration import ERROR_COUNT, Calibration
 from ..cycle.accuracy.calibration_settings import CALIBRATION_SETTINGS
 from ..cycle.accuracy.cheapest_mesh import cheapest_mesh
-from ..cycle.accuracy.cycle_errors import CYCLE_ERROR_SETTINGS, MULTIPLIER_ERROR_INDEX, CycleErrors
+from ..cycle.accuracy.cycle_errors import CYCLE_ERROR_SETTINGS, MULTIPLIER_ERROR_INDEX
 from ..cycle.accuracy.refinement import newton_tolerance
 from ..orbit.orbit_mesh import OrbitMesh
 from ..orbit.path_differences import EXTREMUM_INDEX, PATH_INDEX, PERIOD_INDEX, Y_INDEX
 from .bordered.scale import ArcLengthScale
+from .branch_error_settings import BRANCH_ERROR_SETTINGS
 from .multiplier_sensitivity import MultiplierSensitivity
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BranchErrorSettings:
-    """Settings for the error estimates of the cycles of a branch."""
-
-    max_tip_y_sensitivity: float = 120.0
-    """Limit of the sensitivity |(p/y) dy/dp| of the largest tip y to the parameter p. At larger
-    sensitivities, as near a Hopf point or a fold, the allowed errors at equal p are larger than the accuracy
-    by the factor sensitivity/limit. A fifth above the documented limit, because a user estimates the
-    sensitivity from cycles."""
-    min_deflection_rate_ratio: float = 0.1
-    """Lower limit of |d(deflection)/ds| in the parameter error at equal deflection, divided by
-    |d(parameter)/ds|, s: arc length. Without this limit the error would be infinite where the deflection is
-    stationary."""
-    interpolation_safety_factor: float = 2.0
-    """Safety factor on interpolated errors."""
-    min_error: float = 1e-16
-    """Lower limit of an error before its logarithm is taken; smaller errors are rounding errors."""
-    max_error_ratio: float = 30.0
-    """Largest ratio of two measured errors between which errors are interpolated. If the ratio is larger, the
-    smaller error is small only because errors change their sign near its cycle, and is replaced."""
-    newton_tolerance_ratio: float = 1e-4
-    """Tolerance of Newton's method for a cycle of a branch, also on the two finer meshes of an error
-    measurement, divided by the accuracy. Near a fold or a Hopf point this tolerance over the derivative of
-    the parameter is an error at equal parameter, and with 0.01 measured errors were mostly of this kind."""
-    min_newton_tolerance: float = 1e-11
-    """Lower limit of this tolerance, unless a single cycle of the same accuracy has a smaller one: cycles of
-    strongly unstable branches have larger rounding errors."""
-    min_rate_near_zero_parameter: float = 0.1
-    """Close to the parameter coordinate 0, cycles on finer meshes are solved at an equal parameter, not at an
-    equal arc length, if the modulus of the derivative of the scaled parameter coordinate with respect to arc
-    length exceeds this number, far from a fold."""
-    sensitivity_arc_length: float = 1e-4
-    """Arc length of the difference quotient for the sensitivity of the largest tip y."""
-
-
-BRANCH_ERROR_SETTINGS = BranchErrorSettings()
 
 
 def branch_newton_tolerance(accuracy: float) -> float:
@@ -110,21 +73,23 @@ class BranchDerivatives:
 class BranchCalibration:
     """Measured errors of a mesh at a cycle of a branch. at_equal_parameter: errors at equal parameter.
     parameter_errors: relative errors of the parameter at equal deflection, caused by the mesh in space and by
-    the mesh in time, (2,). sensitivity: |(p/y) dy/dp|, p: parameter, y: largest tip y.
-    multiplier_sensitivity: sensitivity of the largest multiplier at this cycle."""
+    the mesh in time, (2,). sensitivity, period_sensitivity: |(p/y) dy/dp| and |(p/T) dT/dp|, p: parameter, y:
+    largest tip y, T: period. multiplier_sensitivity: sensitivity of the largest multiplier at this cycle."""
 
     at_equal_parameter: Calibration
     parameter_errors: Array
     sensitivity: float
+    period_sensitivity: float
     multiplier_sensitivity: MultiplierSensitivity
 
     @property
     def mesh(self) -> OrbitMesh:
         return self.at_equal_parameter.mesh
 
-    def errors(self, accuracy: float) -> CycleErrors:
-        """Errors of the cycle at equal parameter, at least a fraction of the relative accuracy."""
-        return self.at_equal_parameter.errors(accuracy)
+    def period_error(self, accuracy: float) -> float:
+        """Relative error of the period at equal parameter, at least a fraction of the relative accuracy,
+        without the effect of a steep slope dy/dp if the period is not as steep."""
+        return self._period_errors.errors(accuracy).period_error
 
     def parameter_error(self, accuracy: float) -> float:
         """Relative error of the parameter at equal deflection, with a safety factor, at least a fraction of
@@ -150,15 +115,31 @@ class BranchCalibration:
         accuracy."""
         return cheapest_mesh(self._parameter_errors_only, accuracy)
 
+    @property
+    def _steepness(self) -> float:
+        """Ratio, at least 1, of the allowed errors at equal parameter to the accuracy."""
+        # Errors at equal p are proportional to the slope dy/dp; a steep slope is no defect of the mesh.
+        return max(1.0, self.sensitivity / BRANCH_ERROR_SETTINGS.max_tip_y_sensitivity)
+
+    @cached_property
+    def _period_errors(self) -> Calibration:
+        """Errors from which the error of the period is estimated: errors at equal parameter, but the errors
+        of largest y and path, which limit the error of the period from below, without the part that a steep
+        slope dy/dp causes. Near a Hopf point a mesh displaces this point, and y at equal p changes by a large
+        fraction, but the period does not; at a fold both change."""
+        reduction = max(1.0, self._steepness / max(1.0, self.period_sensitivity))
+        parts = [self.at_equal_parameter.space_errors.copy(), self.at_equal_parameter.time_errors.copy()]
+        for part in parts:
+            part[[Y_INDEX, PATH_INDEX]] /= reduction
+        return replace(self.at_equal_parameter, space_errors=parts[0], time_errors=parts[1])
+
     @cached_property
     def _limiting_errors(self) -> Calibration:
         """Errors from which the mesh is chosen: errors at equal parameter, reduced as in
         `largest_weighted_error`, and the parameter error."""
-        # Errors at equal p are proportional to the slope dy/dp; a steep slope is no defect of the mesh.
-        reduction = max(1.0, self.sensitivity / BRANCH_ERROR_SETTINGS.max_tip_y_sensitivity)
         space_and_time_errors = [
-            self.at_equal_parameter.space_errors / reduction,
-            self.at_equal_parameter.time_errors / reduction,
+            self.at_equal_parameter.space_errors / self._steepness,
+            self.at_equal_parameter.time_errors / self._steepness,
         ]
         for part, parameter_error in zip(space_and_time_errors, self.parameter_errors, strict=True):
             part[PERIOD_INDEX] = max(part[PERIOD_INDEX], parameter_error)
@@ -191,20 +172,21 @@ class BranchCalibration:
         self,
         other: "BranchCalibration",
         fraction: float,
-        sensitivity: float,
+        sensitivities: tuple[float, float],
         multiplier_sensitivity: MultiplierSensitivity,
     ) -> "BranchCalibration":
         """Interpolated errors of a cycle on the branch between two measured cycles with the same mesh. other:
         errors of the second measured cycle. fraction: fraction of the arc length from the first measured
-        cycle to the interpolated one. sensitivity, multiplier_sensitivity: of the interpolated cycle."""
+        cycle to the interpolated one. sensitivities (`sensitivity`, `period_sensitivity`),
+        multiplier_sensitivity: of the interpolated cycle."""
         first, second = self.at_equal_parameter, other.at_equal_parameter
         parameter_errors = _log_interpolated_errors(self.parameter_errors, other.parameter_errors, fraction)
         # The interpolated errors contain their growth since the last measurement.
         start = replace(first, space_time_error_growth=np.ones(2))
-        interpolated = BranchCalibration(start, parameter_errors, sensitivity, multiplier_sensitivity)
-        sensitivities = self._sensitivities, other._sensitivities
+        interpolated = BranchCalibration(start, parameter_errors, *sensitivities, multiplier_sensitivity)
+        factors = self._sensitivities, other._sensitivities
         parts = [
-            interpolated._errors_between(errors, sensitivities, fraction)
+            interpolated._errors_between(errors, factors, fraction)
             for errors in ((first.space_errors, second.space_errors), (first.time_errors, second.time_errors))
         ]
         calibration = replace(interpolated.at_equal_parameter, space_errors=parts[0], time_errors=parts[1])

@@ -9,10 +9,9 @@ from dataclasses import replace
 import numpy as np
 
 from ...arrays import Array
-from ..cycle.accuracy.refinement import (
-    allowed_matrix_distance,
-    cycle_with_calibrated_errors,
-)
+from ..cycle.accuracy.refined_cycle import RefinedCycle
+from ..cycle.accuracy.refinement import allowed_matrix_distance, cycle_with_calibrated_errors
+from ..orbit.measures import CycleMotion
 from ..orbit.mesh_choice import finer_orbit_mesh, regraded_coarser
 from ..orbit.newton import ConvergedOrbit, nontrivial_multipliers_and_error
 from ..orbit.orbit_mesh import OrbitMesh, mesh_limit_error, mesh_of
@@ -21,7 +20,7 @@ from .arc_length_step import ARC_STEP_CONTROL, BranchCycle
 from .bordered.condition import BorderCondition
 from .bordered.corrected_linearisation import linearisation_of
 from .bordered.scale import ArcLengthScale
-from .branch_error_measurement import measured_branch_calibration, relative_tip_y_sensitivity
+from .branch_error_measurement import measured_branch_calibration, parameter_sensitivities
 from .branch_errors import BranchCalibration, branch_newton_tolerance
 from .branch_mesh_ahead import expected_error_growth, mesh_ahead
 from .branch_mesh_settings import BRANCH_MESH_SETTINGS
@@ -52,7 +51,7 @@ def first_measured_cycle(
         multiplier_rate=2 * trivial_error / arc_from_start,
     )
     calibration = measured_branch_calibration(solved, derivatives, accuracy, None)
-    cycle = cycle_with_calibrated_errors(calibration.at_equal_parameter, solved, accuracy)
+    cycle = _cycle_with_branch_errors(calibration, solved, accuracy)
     return solve_on_sufficient_mesh(
         BranchCycle(
             cycle=cycle,
@@ -96,12 +95,21 @@ def with_calibration(point: BranchCycle, calibration: BranchCalibration, accurac
     """The cycle `point`, solved to a relative accuracy, with the errors of `calibration`, which was measured
     or interpolated at this cycle. In the result the number of unmeasured steps is 0."""
     cycle_before = point.cycle
-    cycle = cycle_with_calibrated_errors(
-        calibration.at_equal_parameter, cycle_before.converged_orbit, accuracy, cycle_before.motion
+    cycle = _cycle_with_branch_errors(
+        calibration, cycle_before.converged_orbit, accuracy, cycle_before.motion
     )
     return replace(
         point, cycle=cycle, calibration=calibration, steps_since_measured=0, arc_since_measured=0.0
     )
+
+
+def _cycle_with_branch_errors(
+    calibration: BranchCalibration, solved: ConvergedOrbit, accuracy: float, motion: CycleMotion | None = None
+) -> RefinedCycle:
+    """The solved orbit `solved` as a cycle, with the errors of a calibration measured or interpolated at this
+    orbit. accuracy: relative accuracy. motion: motion of the orbit, if known."""
+    cycle = cycle_with_calibrated_errors(calibration.at_equal_parameter, solved, accuracy, motion)
+    return replace(cycle, errors=replace(cycle.errors, period_error=calibration.period_error(accuracy)))
 
 
 def solve_on_sufficient_mesh(
@@ -231,7 +239,7 @@ def _with_interpolated_errors(
     calibration = start.calibration.interpolate(
         end.calibration,
         fraction,
-        relative_tip_y_sensitivity(point.cycle.motion, point.derivatives),
+        parameter_sensitivities(point.cycle.motion, point.derivatives),
         MultiplierSensitivity.of_cycle(point.cycle.converged_orbit),
     )
     if growth.max() > BRANCH_MESH_SETTINGS.max_uncorrected_tail_growth:

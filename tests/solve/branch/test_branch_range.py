@@ -63,6 +63,23 @@ def test_a_range_that_starts_beside_a_hopf_point_has_its_branch(distance):
     assert curve.special_points[0].parameter_value == pytest.approx(begin, rel=1e-13)
 
 
+@pytest.mark.parametrize("distance", [1e-3, 1e-4, 3e-5])
+def test_the_period_is_accurate_where_the_amplitude_is_steep(distance):
+    """Near its Hopf point a mesh displaces this point: y at a force changes by far more than the accuracy,
+    the period does not."""
+    rod = Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4)
+    (hopf,) = find_axis_crossings(ParameterPath(rod, "F"), 0.0, 40.0).thresholds
+    start = hopf.value * (1 + distance)
+    ends = []
+    for accuracy in (1e-9, 1e-5):
+        (curve,) = solve_branches(rod, BranchRequest("F", start, 40.0, accuracy, True, 100, 10)).curves
+        ends.append(curve.special_points[0])
+    exact, end = ends
+    assert end.parameter_value == exact.parameter_value == pytest.approx(start, rel=1e-13)
+    assert abs(end.period / exact.period - 1) <= end.period_error < 2e-6
+    assert abs(end.tip_y_max / exact.tip_y_max - 1) <= end.tip_y_max_error < 0.02 * 1e-5 / distance
+
+
 @pytest.mark.long
 def test_a_branch_passes_the_drag_below_which_omega_is_an_unknown():
     """Along the taper of a rod with gamma3 = 1e-4 the rotational drag of the tip is 1e-5 at 0.316."""

@@ -97,7 +97,7 @@ def test_further_stages_replace_time_intervals_on_the_first_mesh_of_a_special_po
         np.array([1e-4, 1e-4, 1.0]),
         0.0,
     )
-    branch = BranchCalibration(known, np.full(2, 1e-8), 1.0, MultiplierSensitivity(1.0, 1.0))
+    branch = BranchCalibration(known, np.full(2, 1e-8), 1.0, 1.0, MultiplierSensitivity(1.0, 1.0))
     mesh = first_mesh(branch, 1e-9)
     assert mesh.stage_count == 5
     assert mesh.interval_count < 2 * known.mesh.interval_count
