@@ -30,24 +30,17 @@ import numpy as np
 from ....arrays import Array
 from ....model.compiled.compilation import compiled, compiled_for_vectors
 from .different_elements import numbers_of_different_elements
-from .elimination import elimination_matrix
+from .elimination import fill_eliminations
 from .minor_rates import (
     C3,
     PADDED,
-    SM,
-    TM,
-    TS,
-    YM,
-    YT,
     G,
-    add_eliminated_start_value,
-    add_rates_by_theta_m,
-    add_rates_by_y_theta,
-    add_start_value,
-    add_theta_s_rates,
     fill_drag_rates,
-    fill_theta_m_rates,
-    fill_y_theta_rates,
+    integrate_s_m,
+    integrate_theta_m,
+    integrate_theta_s,
+    integrate_y_m,
+    integrate_y_theta,
 )
 from .settings import ARM_ELEMENT_SETTINGS, MINORS
 
@@ -97,23 +90,17 @@ def fill_propagator_terms(
     PADDED), all 0 at first.
     """
     count = 1
-    shape = (ARM_ELEMENT_SETTINGS.stages, ARM_ELEMENT_SETTINGS.width)
-    values = np.empty((MINORS, *shape))
-    rates = np.empty((MINORS, *shape))
-    largest_terms = np.empty((MINORS, shape[1]))
-    repeated = np.empty((6, *shape))
-    matrices = np.empty((shape[0], 1 + shape[0], shape[1]))
+    stages, width = ARM_ELEMENT_SETTINGS.stages, ARM_ELEMENT_SETTINGS.width
+    repeated = np.empty((6, stages, width))
+    eliminations = np.empty((stages, 1 + stages, width))
     for arm in range(len(F)):
         for b in range(coefficients.shape[1]):
             _repeat_per_initial_value(coefficients[arm, b], repeated)
-            for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
-                element = coefficients[arm, b, :, :, lane]
-                matrix = elimination_matrix(F[arm], element[C3], element[G], method.integrals)
-                _copy_to_simd_lane(matrix, lane, matrices)
+            c3, g = coefficients[arm, b, C3], coefficients[arm, b, G]
+            fill_eliminations(F[arm], c3, g, method.integrals, eliminations)
             start = b * ARM_ELEMENT_SETTINGS.lane_count
             batch = terms[arm, start : start + ARM_ELEMENT_SETTINGS.lane_count]
-            work = values, rates, largest_terms
-            count = max(count, _fill_batch_terms((F[arm], W), repeated, (method, matrices), work, batch))
+            count = max(count, _fill_batch_terms((F[arm], W), repeated, method, eliminations, batch))
     return count
 
 
@@ -127,118 +114,75 @@ def _repeat_per_initial_value(coefficients: Array, repeated: Array) -> None:
                     repeated[q, i, k * ARM_ELEMENT_SETTINGS.lane_count + lane] = coefficients[q, i, lane]
 
 
-@compiled_for_vectors
-def _copy_to_simd_lane(matrix: Array, lane: int, lane_matrices: Array) -> None:
-    """Copies `matrix`, the `elimination_matrix` of one element, into the columns of lane number `lane` of
-    `lane_matrices`, (STAGES, 1 + STAGES, WIDTH)."""
-    for i in range(ARM_ELEMENT_SETTINGS.stages):
-        for j in range(1 + ARM_ELEMENT_SETTINGS.stages):
-            for k in range(MINORS):
-                lane_matrices[i, j, k * ARM_ELEMENT_SETTINGS.lane_count + lane] = matrix[i, j]
-
-
 @compiled
 def _fill_batch_terms(
     load: tuple[float, float],
     coefficients: Array,
-    method: tuple[IntegrationMatrices, Array],
-    work: tuple[Array, Array, Array],
+    method: IntegrationMatrices,
+    eliminations: Array,
     terms: Array,
 ) -> int:
     """Fills `terms`, the coefficients of propagators, for one batch of elements; returns the number of terms
     needed.
 
-    terms: (LANES, MAX_TERMS, PADDED). load: (F, W). coefficients: (6, STAGES, WIDTH). method: integrals, and
-    `elimination_matrix` of each lane's element. work: values and rates of the minors, (MINORS, STAGES,
-    WIDTH) each, and the largest terms of the propagators, (MINORS, WIDTH).
+    terms: (LANES, MAX_TERMS, PADDED). load: (F, W). coefficients: (6, STAGES, WIDTH). eliminations:
+    matrices of `fill_eliminations`, (STAGES, 1 + STAGES, WIDTH).
     """
     F, W = load
-    (Q, weights), matrices = method
-    values, rates, largest_terms = work
-    values[:] = 0.0
-    rates[:] = 0.0
-    largest_terms[:] = 0.0
+    Q, weights = method
+    # Shapes known to the compiler give vector instructions without tests of overlapping arrays.
+    values = np.zeros((MINORS, ARM_ELEMENT_SETTINGS.stages, ARM_ELEMENT_SETTINGS.width))
+    rates = np.zeros((MINORS, ARM_ELEMENT_SETTINGS.stages, ARM_ELEMENT_SETTINGS.width))
+    starts = np.zeros((MINORS, ARM_ELEMENT_SETTINGS.width))
+    end_terms = np.zeros((MINORS, ARM_ELEMENT_SETTINGS.width))
+    largest_terms = np.zeros((MINORS, ARM_ELEMENT_SETTINGS.width))
+    for k in range(MINORS):
+        for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
+            starts[k, k * ARM_ELEMENT_SETTINGS.lane_count + lane] = 1.0
     for n in range(terms.shape[1]):
-        start = 1.0 if n == 0 else 0.0  # the initial values belong to the term of w^0
         fill_drag_rates(W, coefficients, values, rates)
-        _integrate(Q, rates[SM], values[SM])
-        add_start_value(SM, start, values)
+        integrate_s_m(F, Q, starts, coefficients, rates)
         # theta^s and theta^m depend on each other, and so do y^theta and y^m: one of each pair is eliminated.
-        add_theta_s_rates(F, start, coefficients, values, rates)
-        _integrate_eliminated(matrices, rates[TS], values[TS])
-        add_eliminated_start_value(TS, start, matrices, values)
-        fill_theta_m_rates(coefficients, values, rates)
-        _integrate(Q, rates[TM], values[TM])
-        add_start_value(TM, start, values)
-        add_rates_by_theta_m(F, start, coefficients, values, rates)
-        _integrate(Q, rates[YM], values[YM])  # without the part by y^theta
-        add_start_value(YM, start, values)
-        fill_y_theta_rates(coefficients, values, rates)
-        _integrate_eliminated(matrices, rates[YT], values[YT])
-        add_eliminated_start_value(YT, start, matrices, values)
-        add_rates_by_y_theta(F, coefficients, values, rates)
-        _integrate(Q, rates[YM], values[YM])
-        add_start_value(YM, start, values)
-        # The rates are needed once more, with the complete y^m, for the value at the end of the element.
-        fill_y_theta_rates(coefficients, values, rates)
-        if _write_end_terms(weights, rates, n, largest_terms, terms):
+        integrate_theta_s(eliminations, starts, coefficients, values, rates)
+        integrate_theta_m(F, Q, starts, coefficients, rates)
+        integrate_y_m(Q, starts, coefficients, values, rates)  # without the part by y^theta
+        integrate_y_theta(F, eliminations, starts, coefficients, values, rates)
+        integrate_y_m(Q, starts, coefficients, values, rates)
+        _integrate_to_end(weights, starts, rates, end_terms)
+        for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
+            for row in range(MINORS):
+                for k in range(MINORS):
+                    column = k * ARM_ELEMENT_SETTINGS.lane_count + lane
+                    terms[lane, n, MINORS * k + row] = end_terms[row, column]
+        if _count_larger_terms(end_terms, largest_terms) == 0:
             return n + 1
+        starts[:] = 0.0  # the initial values belong to the term of w^0
     return terms.shape[1] + 1
 
 
 @compiled_for_vectors
-def _integrate(Q: Array, rates: Array, out: Array) -> None:
-    """out = the integrals of rates, both (STAGES, WIDTH), to each stage; Q: integrals, (STAGES, STAGES)."""
-    for i in range(ARM_ELEMENT_SETTINGS.stages):
-        for c in range(ARM_ELEMENT_SETTINGS.width):
-            total = 0.0
-            for j in range(ARM_ELEMENT_SETTINGS.stages):
-                total += Q[i, j] * rates[j, c]
-            out[i, c] = total
-
-
-@compiled_for_vectors
-def _integrate_eliminated(matrices: Array, rates: Array, out: Array) -> None:
-    """Writes M Q rates into out, both (STAGES, WIDTH): rates integrated after the elimination of a minor.
-    matrices: `elimination_matrix` of each lane's element, with M Q, (STAGES, 1 + STAGES, WIDTH)."""
-    for i in range(ARM_ELEMENT_SETTINGS.stages):
-        for c in range(ARM_ELEMENT_SETTINGS.width):
-            total = 0.0
-            for j in range(ARM_ELEMENT_SETTINGS.stages):
-                total += matrices[i, j + 1, c] * rates[j, c]
-            out[i, c] = total
-
-
-@compiled
-def _write_end_terms(weights: Array, rates: Array, n: int, largest_terms: Array, terms: Array) -> bool:
-    """Writes the propagators' coefficients of w^n into terms[:, n]; returns whether all are negligible, each
-    compared with the largest coefficient of the same entry of the propagator: entries have different units,
-    and at a strong pull their sizes differ by many powers of ten.
-
-    terms: (LANES, MAX_TERMS, PADDED). rates: rates of minors, (MINORS, STAGES, WIDTH). weights: (STAGES,).
-    largest_terms: largest modulus of the coefficients of lower powers of w, (MINORS, WIDTH), updated here."""
-    integrals = np.empty((MINORS, ARM_ELEMENT_SETTINGS.width))
-    _integrate_to_end(weights, rates, integrals)
-    is_negligible = True
-    for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
-        for row in range(MINORS):
-            for k in range(MINORS):
-                column = k * ARM_ELEMENT_SETTINGS.lane_count + lane
-                entry = integrals[row, column] + (1.0 if n == 0 and k == row else 0.0)
-                terms[lane, n, MINORS * k + row] = entry
-                max_size = ARM_ELEMENT_SETTINGS.negligible_term_ratio * largest_terms[row, column]
-                is_negligible = is_negligible and abs(entry) <= max_size
-                largest_terms[row, column] = max(largest_terms[row, column], abs(entry))
-    return is_negligible
-
-
-@compiled_for_vectors
-def _integrate_to_end(weights: Array, rates: Array, integrals: Array) -> None:
-    """Writes integrals of rates, (MINORS, STAGES, WIDTH), into `integrals`, (MINORS, WIDTH); weights,
-    (STAGES,)."""
+def _integrate_to_end(weights: Array, starts: Array, rates: Array, end_terms: Array) -> None:
+    """Writes the propagators' coefficients of a power of w into `end_terms`, (MINORS, WIDTH): integrals of
+    rates, (MINORS, STAGES, WIDTH), plus the initial values `starts`, (MINORS, WIDTH). weights: (STAGES,)."""
     for row in range(MINORS):
         for c in range(ARM_ELEMENT_SETTINGS.width):
-            total = 0.0
+            total = starts[row, c]
             for i in range(ARM_ELEMENT_SETTINGS.stages):
                 total += weights[i] * rates[row, i, c]
-            integrals[row, c] = total
+            end_terms[row, c] = total
+
+
+@compiled_for_vectors
+def _count_larger_terms(end_terms: Array, largest_terms: Array) -> float:
+    """Number of entries of `end_terms`, the coefficients of one power of w, that are not negligible, each
+    compared with the largest coefficient of the same entry of the propagator: entries have different units,
+    and at a strong pull their sizes differ by many powers of ten. end_terms: (MINORS, WIDTH). largest_terms:
+    largest modulus of the coefficients of lower powers of w, (MINORS, WIDTH), updated here."""
+    count = 0.0
+    for row in range(MINORS):
+        for c in range(ARM_ELEMENT_SETTINGS.width):
+            size = abs(end_terms[row, c])
+            is_negligible = size <= ARM_ELEMENT_SETTINGS.negligible_term_ratio * largest_terms[row, c]
+            count += 0.0 if is_negligible else 1.0  # nan is not negligible
+            largest_terms[row, c] = max(largest_terms[row, c], size)
+    return count

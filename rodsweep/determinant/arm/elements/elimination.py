@@ -1,45 +1,80 @@
 """Elimination of the minors theta^m and y^m from the collocation equations of an element. STAGES: number of
-Gauss points of an element."""
+Gauss points of an element. LANES: number of elements of a batch. WIDTH: number of pairs (initial value,
+element)."""
 
 import numpy as np
 
 from ....arrays import Array
 from ....model.compiled.compilation import compiled, compiled_for_vectors
-from .settings import ARM_ELEMENT_SETTINGS
+from .settings import ARM_ELEMENT_SETTINGS, MINORS
 
 
 @compiled
-def elimination_matrix(F: float, c3: Array, g: Array, Q: Array) -> Array:
-    """The matrix [M 1, M Q], (STAGES, 1 + STAGES), where M is the inverse of the matrix 1 + F Q c3 Q g.
+def fill_eliminations(F: float, c3: Array, g: Array, Q: Array, eliminations: Array) -> None:
+    """Writes the matrix [M 1, M Q] of each lane's element into `eliminations`, (STAGES, 1 + STAGES, WIDTH),
+    once for each initial value. M is the inverse of the matrix 1 + F Q c3 Q g.
 
     M eliminates theta^m and y^m: M Q integrates the rates of theta^s and y^theta; M 1 is the contribution of
     a start value of 1. Q: matrix of integrals from 0 to each Gauss point, (STAGES, STAGES). c3, g:
-    coefficients at the Gauss points times the length of the element, (STAGES,).
+    coefficients at the Gauss points times the length of the element, (STAGES, LANES).
     """
     stages = ARM_ELEMENT_SETTINGS.stages
+    integrands = np.empty((stages, ARM_ELEMENT_SETTINGS.lane_count * stages))
+    integrals = np.empty((stages, ARM_ELEMENT_SETTINGS.lane_count * stages))
+    _fill_once_integrated(F, c3, g, Q, integrands)
+    _integrate_columns(Q, integrands, integrals)
     # The matrix, the right-hand sides 1 and Q, and columns of zeros: rows are whole vector instructions.
     system = np.zeros((stages, 2 * stages + ARM_ELEMENT_SETTINGS.lane_count))
     row = np.empty(system.shape[1])
-    row[:stages] = g
-    _add_twice_integrated(F, c3, row, Q, system)
-    for i in range(stages):
-        system[i, i] += 1.0
-        system[i, stages] = 1.0
-        system[i, stages + 1 : 2 * stages + 1] = Q[i]
-    _solve_linear_system(system, row)
-    return system[:, stages : 2 * stages + 1]
+    for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
+        _fill_linear_system(integrals, lane, Q, system)
+        _solve_linear_system(system, row)
+        _copy_solution_to_lane(system, lane, eliminations)
 
 
 @compiled_for_vectors
-def _add_twice_integrated(F: float, c3: Array, g: Array, Q: Array, system: Array) -> None:
-    """Adds F Q c3 Q g to the leading (STAGES, STAGES) part of `system`, (STAGES, columns). c3, Q: as in
-    `elimination_matrix`. g: (STAGES or more,), of which the first STAGES entries are used."""
-    stages = Q.shape[0]  # no constant: the compiler would unroll the inner loop instead of vectorizing it
-    for i in range(stages):
-        for k in range(stages):
-            factor = F * Q[i, k] * c3[k]
-            for j in range(stages):
-                system[i, j] += factor * Q[k, j] * g[j]
+def _fill_once_integrated(F: float, c3: Array, g: Array, Q: Array, integrands: Array) -> None:
+    """Writes F c3 Q g of each lane's element into `integrands`, (STAGES, LANES * STAGES), the columns of one
+    lane after the other. Other arguments: as in `fill_eliminations`."""
+    for k in range(ARM_ELEMENT_SETTINGS.stages):
+        for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
+            for j in range(ARM_ELEMENT_SETTINGS.stages):
+                column = lane * ARM_ELEMENT_SETTINGS.stages + j
+                integrands[k, column] = F * c3[k, lane] * Q[k, j] * g[j, lane]
+
+
+@compiled_for_vectors
+def _integrate_columns(Q: Array, integrands: Array, integrals: Array) -> None:
+    """integrals = Q integrands, both (STAGES, LANES * STAGES); Q: (STAGES, STAGES)."""
+    for i in range(ARM_ELEMENT_SETTINGS.stages):
+        for column in range(ARM_ELEMENT_SETTINGS.lane_count * ARM_ELEMENT_SETTINGS.stages):
+            total = 0.0
+            for k in range(ARM_ELEMENT_SETTINGS.stages):
+                total += Q[i, k] * integrands[k, column]
+            integrals[i, column] = total
+
+
+@compiled_for_vectors
+def _fill_linear_system(integrals: Array, lane: int, Q: Array, system: Array) -> None:
+    """Writes the linear system with the right-hand sides 1 and Q of lane number `lane` into `system`,
+    (STAGES, columns). integrals: F Q c3 Q g of each lane, (STAGES, LANES * STAGES). Q: (STAGES, STAGES)."""
+    for i in range(ARM_ELEMENT_SETTINGS.stages):
+        for j in range(ARM_ELEMENT_SETTINGS.stages):
+            system[i, j] = integrals[i, lane * ARM_ELEMENT_SETTINGS.stages + j]
+            system[i, ARM_ELEMENT_SETTINGS.stages + 1 + j] = Q[i, j]
+        system[i, i] += 1.0
+        system[i, ARM_ELEMENT_SETTINGS.stages] = 1.0
+
+
+@compiled_for_vectors
+def _copy_solution_to_lane(system: Array, lane: int, eliminations: Array) -> None:
+    """Copies the solutions in `system`, (STAGES, columns), into the columns of lane number `lane` of
+    `eliminations`, (STAGES, 1 + STAGES, WIDTH)."""
+    for i in range(ARM_ELEMENT_SETTINGS.stages):
+        for j in range(1 + ARM_ELEMENT_SETTINGS.stages):
+            for k in range(MINORS):
+                column = k * ARM_ELEMENT_SETTINGS.lane_count + lane
+                eliminations[i, j, column] = system[i, ARM_ELEMENT_SETTINGS.stages + j]
 
 
 @compiled_for_vectors

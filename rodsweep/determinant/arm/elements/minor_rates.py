@@ -1,11 +1,15 @@
-"""Rates d/du of the five minors along an element, one power of w at a time, and start values of the minors.
+"""Rates d/du of the five minors along an element, and their integrals, one power of w at a time.
 
 The minor s^m is the 2 x 2 determinant of the rows s and m of two solutions; s^m, theta^s, ... and their
 equations are defined in `rodsweep.determinant.arm.elements.collocation`. STAGES: number of Gauss points of an
 element. WIDTH: number of pairs (initial value, element). values, rates: values and rates of the minors at the
 Gauss points of some elements, (MINORS, STAGES, WIDTH). coefficients: `LocalCoefficients` at these points, (6,
-STAGES, WIDTH). eliminations: `elimination_matrix` of each element, (STAGES, 1 + STAGES, WIDTH). start: 1 at
-the power w^0, else 0.
+STAGES, WIDTH). Q: matrix of integrals from 0 to each Gauss point, (STAGES, STAGES). eliminations:
+matrices of `fill_eliminations`, (STAGES, 1 + STAGES, WIDTH). starts: initial values of the minors,
+(MINORS, WIDTH), all 0 except at the power w^0.
+
+Each integral is added to the rates that contain the minor in the same loop, as most of the time is spent on
+loads and stores: only the values that a later step needs are stored.
 """
 
 from ....arrays import Array
@@ -19,26 +23,6 @@ PADDED = 28
 a multiple of 4, for vector instructions."""
 NU, C2, C3, GAMMA2, GAMMA3, G = range(6)
 """Row indices of the `LocalCoefficients` nu, c2, c3, gamma2, gamma3 and g."""
-
-
-@compiled_for_vectors
-def add_start_value(minor: int, start: float, values: Array) -> None:
-    """Adds `start` to the values, (MINORS, STAGES, WIDTH), of the minor with row index `minor`, in the lanes
-    of the solution whose start value is 1 for this minor and 0 for all other minors."""
-    for i in range(ARM_ELEMENT_SETTINGS.stages):
-        for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
-            values[minor, i, minor * ARM_ELEMENT_SETTINGS.lane_count + lane] += start
-
-
-@compiled_for_vectors
-def add_eliminated_start_value(minor: int, start: float, eliminations: Array, values: Array) -> None:
-    """`add_start_value` for the minor theta^s or y^theta, from whose equation another minor is eliminated.
-    values: (MINORS, STAGES, WIDTH). eliminations: (STAGES, 1 + STAGES, WIDTH), whose column 0 multiplies
-    `start`."""
-    for i in range(ARM_ELEMENT_SETTINGS.stages):
-        for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
-            c = minor * ARM_ELEMENT_SETTINGS.lane_count + lane
-            values[minor, i, c] += start * eliminations[i, 0, c]
 
 
 @compiled_for_vectors
@@ -56,58 +40,71 @@ def fill_drag_rates(W: float, coefficients: Array, values: Array, rates: Array) 
 
 
 @compiled_for_vectors
-def add_theta_s_rates(F: float, start: float, coefficients: Array, values: Array, rates: Array) -> None:
-    """Adds to the rates of theta^s, (STAGES, WIDTH), the term -c3 s^m, and F c3 times the start value of
-    theta^m. coefficients, values: see the module docstring."""
+def integrate_s_m(F: float, Q: Array, starts: Array, coefficients: Array, rates: Array) -> None:
+    """Integrates the rates of s^m, and adds the terms with s^m to the rates of theta^s and y^m. The
+    elimination of theta^m leaves out its initial value, so the share of theta^s is added here. Arguments: see
+    the module docstring."""
     for i in range(ARM_ELEMENT_SETTINGS.stages):
         for c in range(ARM_ELEMENT_SETTINGS.width):
-            rates[TS, i, c] -= coefficients[C3, i, c] * values[SM, i, c]
-        # The elimination leaves out the start value of theta^m, so its share of theta^s is added here.
-        for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
-            c = TM * ARM_ELEMENT_SETTINGS.lane_count + lane
-            rates[TS, i, c] += F * start * coefficients[C3, i, c]
+            value = starts[SM, c]
+            for j in range(ARM_ELEMENT_SETTINGS.stages):
+                value += Q[i, j] * rates[SM, j, c]
+            rates[TS, i, c] += coefficients[C3, i, c] * (F * starts[TM, c] - value)
+            rates[YM, i, c] += coefficients[C2, i, c] * value
 
 
 @compiled_for_vectors
-def fill_theta_m_rates(coefficients: Array, values: Array, rates: Array) -> None:
-    """Writes the rates -g theta^s of the minor theta^m, (STAGES, WIDTH); arguments: see the module
+def integrate_theta_s(
+    eliminations: Array, starts: Array, coefficients: Array, values: Array, rates: Array
+) -> None:
+    """Integrates the rates of theta^s after the elimination of theta^m, and writes the rates -g theta^s of
+    theta^m. Arguments: see the module docstring."""
+    for i in range(ARM_ELEMENT_SETTINGS.stages):
+        for c in range(ARM_ELEMENT_SETTINGS.width):
+            value = eliminations[i, 0, c] * starts[TS, c]
+            for j in range(ARM_ELEMENT_SETTINGS.stages):
+                value += eliminations[i, j + 1, c] * rates[TS, j, c]
+            values[TS, i, c] = value
+            rates[TM, i, c] = -coefficients[G, i, c] * value
+
+
+@compiled_for_vectors
+def integrate_theta_m(F: float, Q: Array, starts: Array, coefficients: Array, rates: Array) -> None:
+    """Integrates the rates of theta^m, and adds the terms with theta^m to the rates of theta^s and y^m; the
+    rates of theta^s already contain its initial value (`integrate_s_m`). Arguments: see the module
     docstring."""
     for i in range(ARM_ELEMENT_SETTINGS.stages):
         for c in range(ARM_ELEMENT_SETTINGS.width):
-            rates[TM, i, c] = -coefficients[G, i, c] * values[TS, i, c]
+            change = 0.0
+            for j in range(ARM_ELEMENT_SETTINGS.stages):
+                change += Q[i, j] * rates[TM, j, c]
+            rates[TS, i, c] += F * coefficients[C3, i, c] * change
+            rates[YM, i, c] += (coefficients[G, i, c] + coefficients[NU, i, c]) * (starts[TM, c] + change)
 
 
 @compiled_for_vectors
-def add_rates_by_theta_m(F: float, start: float, coefficients: Array, values: Array, rates: Array) -> None:
-    """Adds to the rates of theta^s and y^m, (STAGES, WIDTH) each, the terms with theta^m, and to the rates of
-    y^m the term c2 s^m. The start value of theta^m in theta^s, already added, is subtracted.
-    coefficients, values: see the module docstring."""
+def integrate_y_m(Q: Array, starts: Array, coefficients: Array, values: Array, rates: Array) -> None:
+    """Integrates the rates of y^m, and writes the rates c3 y^m - c2 theta^s of y^theta. Arguments: see the
+    module docstring."""
     for i in range(ARM_ELEMENT_SETTINGS.stages):
         for c in range(ARM_ELEMENT_SETTINGS.width):
-            turn = values[TM, i, c]
-            rates[TS, i, c] += F * coefficients[C3, i, c] * turn
-            rates[YM, i, c] += (coefficients[G, i, c] + coefficients[NU, i, c]) * turn
-            rates[YM, i, c] += coefficients[C2, i, c] * values[SM, i, c]
-        for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
-            c = TM * ARM_ELEMENT_SETTINGS.lane_count + lane
-            rates[TS, i, c] -= F * start * coefficients[C3, i, c]  # contained in `add_theta_s_rates`
+            value = starts[YM, c]
+            for j in range(ARM_ELEMENT_SETTINGS.stages):
+                value += Q[i, j] * rates[YM, j, c]
+            values[YM, i, c] = value
+            rates[YT, i, c] = coefficients[C3, i, c] * value - coefficients[C2, i, c] * values[TS, i, c]
 
 
 @compiled_for_vectors
-def fill_y_theta_rates(coefficients: Array, values: Array, rates: Array) -> None:
-    """Writes the rates c3 y^m - c2 theta^s of the minor y^theta, (STAGES, WIDTH). coefficients, values:
-    see the module docstring."""
+def integrate_y_theta(
+    F: float, eliminations: Array, starts: Array, coefficients: Array, values: Array, rates: Array
+) -> None:
+    """Integrates the rates of y^theta after the elimination of y^m, and adds the term -F g y^theta to the
+    rates of y^m. Arguments: see the module docstring."""
     for i in range(ARM_ELEMENT_SETTINGS.stages):
         for c in range(ARM_ELEMENT_SETTINGS.width):
-            rates[YT, i, c] = (
-                coefficients[C3, i, c] * values[YM, i, c] - coefficients[C2, i, c] * values[TS, i, c]
-            )
-
-
-@compiled_for_vectors
-def add_rates_by_y_theta(F: float, coefficients: Array, values: Array, rates: Array) -> None:
-    """Adds to the rates of y^m, (STAGES, WIDTH), the term -F g y^theta; arguments: see the module
-    docstring."""
-    for i in range(ARM_ELEMENT_SETTINGS.stages):
-        for c in range(ARM_ELEMENT_SETTINGS.width):
-            rates[YM, i, c] -= F * coefficients[G, i, c] * values[YT, i, c]
+            value = eliminations[i, 0, c] * starts[YT, c]
+            for j in range(ARM_ELEMENT_SETTINGS.stages):
+                value += eliminations[i, j + 1, c] * rates[YT, j, c]
+            values[YT, i, c] = value
+            rates[YM, i, c] -= F * coefficients[G, i, c] * value
