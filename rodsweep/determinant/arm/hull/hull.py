@@ -86,34 +86,34 @@ class HullSamples(NamedTuple):
 def _hull_samples(rods: Sequence[Rod]) -> HullSamples:
     """The `HullSamples` of arms of one material."""
     material = rods[0].material
-    lengths, u = _chebyshev_points_of_material(material)
+    lengths, u, end_to_end_u = _chebyshev_points_of_material(material)
     F = np.array([rod.F for rod in rods])
     coefficients = np.array(Rod.local_coefficients_of_rods(rods, u))
     averaged_regions = np.empty((len(rods), 0, 2))
     if material.jump_positions:
-        averaged_regions = _averaged_regions_by_arm(F, lengths, coefficients)
+        averaged_regions = _averaged_regions_by_arm(F, end_to_end_u, coefficients)
     return HullSamples(F, lengths, coefficients, averaged_regions)
 
 
 @lru_cache(maxsize=HULL_SETTINGS.max_cached_materials)
-def _chebyshev_points_of_material(material: RodMaterial) -> tuple[Array, Array]:
-    """Returns (lengths, u): lengths of the intervals between breaks of the profile, (pieces,), and their
-    Chebyshev points u, (pieces, points)."""
+def _chebyshev_points_of_material(material: RodMaterial) -> tuple[Array, Array, Array]:
+    """Returns (lengths, u, end_to_end_u): lengths of the intervals between breaks of the profile, (pieces,);
+    their Chebyshev points u, (pieces, points); the same points with intervals that follow each other without
+    the short distances of the first and last points from the breaks, (pieces * points,)."""
     x = (1 - 2 * HULL_SETTINGS.end_distance_fraction) * _chebyshev_matrices().points
     lengths = np.diff(material.breaks)
     u = material.breaks[:-1, None] + lengths[:, None] * (x + 1) / 2
-    return lengths * (1 - 2 * HULL_SETTINGS.end_distance_fraction), u
+    lengths = lengths * (1 - 2 * HULL_SETTINGS.end_distance_fraction)
+    interval_starts = np.cumsum(lengths) - lengths
+    return lengths, u, (interval_starts[:, None] + lengths[:, None] * (x + 1) / 2).ravel()
 
 
-def _averaged_regions_by_arm(F: Array, lengths: Array, coefficients: Array) -> Array:
+def _averaged_regions_by_arm(F: Array, u: Array, coefficients: Array) -> Array:
     """Constants (a, c) of the region of all eigenvalues for each arm and each trial weight of
     `averaged_regions`, (n, trials, 2); inf for an arm without c2 > 0 and g > 0 everywhere. F: forces, (n,).
-    lengths: lengths of the intervals between breaks, (pieces,). coefficients: `LocalCoefficients` at the
-    sampled points, (6, n, pieces, points).
+    u: sampled points, (pieces * points,). coefficients: `LocalCoefficients` at these points, (6, n, pieces,
+    points).
     """
-    interval_starts = np.cumsum(lengths) - lengths
-    x = (1 - 2 * HULL_SETTINGS.end_distance_fraction) * _chebyshev_matrices().points
-    u = (interval_starts[:, None] + lengths[:, None] * (x + 1) / 2).ravel()
     flat_coefficients = coefficients.reshape(6, len(F), -1)
     regions = np.full((len(F), AVERAGED_WEIGHT_SETTINGS.trial_count, 2), inf)
     for i in np.flatnonzero(((flat_coefficients[5] > 0) & (flat_coefficients[1] > 0)).all(axis=1)).tolist():
