@@ -191,8 +191,11 @@ def refine_eigenvalues_and_errors(
 
 def _common_propagators(w: Sequence[complex], determinant: ArmDeterminant) -> PropagatorsUpToW | None:
     """The propagators that `_propagators_up_to` gives for every w; None if they differ or there is no w."""
-    levels = [_propagators_up_to(value, determinant) for value in w]
-    return levels[0] if levels and all(level is levels[0] for level in levels) else None
+    if not w:
+        return None
+    # The propagators for all other w lie between the propagators for the smallest and the largest |w|.
+    level = _propagators_up_to(max(w, key=abs), determinant)
+    return level if level is _propagators_up_to(min(w, key=abs), determinant) else None
 
 
 def taylor_parabola_roots(middle: complex, determinant: ArmDeterminant) -> tuple[complex, complex]:

@@ -43,8 +43,17 @@ def arm_mesh(rod: Rod, mode_count: int, accuracy: float) -> ArmMesh:
     _, amplified_q = local_growths_and_wave_numbers(rod)
     unloaded_q = (mode_count - RESOLUTION_SETTINGS.mode_offset) * pi * _wave_number_over_mean(rod)
     wave_numbers = np.hypot(RESOLUTION_SETTINGS.wave_safety_factor * amplified_q, unloaded_q)
-    elements = _elements_for_wave(rod, wave_numbers * weights, accuracy, RESOLUTION_SETTINGS.max_order)
+    order_increase = 0 if _is_piecewise_constant(rod) else ARM_RESOLUTION_SETTINGS.profile_order_increase
+    elements = _elements_for_wave(
+        rod, wave_numbers * weights, accuracy, RESOLUTION_SETTINGS.max_order, order_increase
+    )
     return ArmMesh(elements.edges, elements.order)
+
+
+def _is_piecewise_constant(rod: Rod) -> bool:
+    """Whether the coefficients of an arm are constant between the breaks of its profile."""
+    profile = rod.material.profile
+    return rod.taper == 1 and (profile is None or profile.is_piecewise_constant)
 
 
 def graded_towards_ends(rod: Rod, mesh: ArmMesh) -> ArmMesh:
@@ -74,7 +83,12 @@ def arm_elements(rod: Rod, wave_number: float, accuracy: float, max_order: int |
     relative accuracy. max_order: of an element, `RESOLUTION_SETTINGS.max_order` by default."""
     wave_numbers = wave_number * _wave_number_over_mean(rod)
     return _elements_for_wave(
-        rod, wave_numbers * sampled_arm(rod).weights, accuracy, max_order or RESOLUTION_SETTINGS.max_order
+        rod,
+        wave_numbers * sampled_arm(rod).weights,
+        accuracy,
+        max_order or RESOLUTION_SETTINGS.max_order,
+        # Deformation varies the field's coefficients in pieces with constant stiffnesses too.
+        0 if rod.is_uniform else ARM_RESOLUTION_SETTINGS.profile_order_increase,
     )
 
 
@@ -86,9 +100,12 @@ def _wave_number_over_mean(rod: Rod) -> Array:
     return wave_number / (weights @ wave_number)
 
 
-def _elements_for_wave(rod: Rod, phases: Array, accuracy: float, max_order: int) -> Elements:
+def _elements_for_wave(
+    rod: Rod, phases: Array, accuracy: float, max_order: int, order_increase: int
+) -> Elements:
     """Elements that resolve a wave along an arm to a relative accuracy. phases: phase of the wave over each
-    sample interval, |q| times length, (n,). max_order: maximum order of an element."""
+    sample interval, |q| times length, (n,). max_order: maximum order of an element without `order_increase`.
+    order_increase: increase of the order that uniform pieces need."""
     breaks = rod.material.breaks
     phases_between_breaks = phases.reshape(len(breaks) - 1, -1).sum(axis=1)
     max_count = first_excessive_element_count(max_order)
@@ -107,9 +124,7 @@ def _elements_for_wave(rod: Rod, phases: Array, accuracy: float, max_order: int)
     if is_too_fine:  # more unknowns than allowed, whatever the order
         return Elements(tuple(edges), max_order)
     order = max(RESOLUTION_SETTINGS.min_order, ceil(required_order(hypot(max_element_phase, 1.0), accuracy)))
-    return Elements(
-        tuple(edges), order + (0 if rod.is_uniform else ARM_RESOLUTION_SETTINGS.profile_order_increase)
-    )
+    return Elements(tuple(edges), order + order_increase)
 
 
 def finer_arm_mesh(rod: Rod, mesh: ArmMesh) -> ArmMesh:

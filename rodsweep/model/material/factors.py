@@ -33,12 +33,11 @@ def factors_along(
     u. Callers must not write into these arrays, because they may be shared through the cache. taper: a
     number, or an array for n arms, (n, 1, ...), with which factors that depend on the taper have the shape
     (n, *u.shape). remainder: exact coordinates of the points minus u, (*u.shape); None: u is exact."""
-    if remainder is None:
-        remainder = np.zeros(u.shape)
     if isinstance(taper, np.ndarray) or u.size > FACTOR_CACHE_SETTINGS.max_points:
-        return _factors_along(profile, taper, u, remainder)
+        return _factors_along(profile, taper, u, np.zeros(u.shape) if remainder is None else remainder)
     # Arrays cannot be keys of a cache, but their bytes can.
-    return _cached_factors(profile, float(taper), (u.tobytes(), remainder.tobytes()), u.shape)
+    remainder_bytes = b"" if remainder is None else remainder.tobytes()
+    return _cached_factors(profile, float(taper), (u.tobytes(), remainder_bytes), u.shape)
 
 
 @lru_cache(maxsize=FACTOR_CACHE_SETTINGS.max_entries)
@@ -46,9 +45,10 @@ def _cached_factors(
     profile: Profile | None, taper: float, point_bytes: tuple[bytes, bytes], shape: tuple[int, ...]
 ) -> dict[str, Array]:
     """The result of `factors_along`, cached by the bytes of the points, because the arms of a sweep over F
-    are evaluated at the same points. point_bytes: bytes of the arrays u and `remainder`. shape: their
-    shape."""
-    u, remainder = (np.frombuffer(values).reshape(shape) for values in point_bytes)
+    are evaluated at the same points. point_bytes: bytes of the arrays u and `remainder`, the latter empty
+    if u is exact. shape: shape of the arrays."""
+    u = np.frombuffer(point_bytes[0]).reshape(shape)
+    remainder = np.frombuffer(point_bytes[1]).reshape(shape) if point_bytes[1] else np.zeros(shape)
     return _factors_along(profile, taper, u, remainder)
 
 

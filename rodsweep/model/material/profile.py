@@ -71,9 +71,24 @@ class Profile:
             )
 
     @cached_property
+    def _hash(self) -> int:
+        return hash((self.u, self.rows))
+
+    def __hash__(self) -> int:
+        # Cached, as rods are keys of caches. Hashes of numbers are the same in all processes.
+        return self._hash
+
+    @cached_property
     def breaks(self) -> Array:
         """Ends of the intervals of u on which all factors are smooth, increasing from 0 to 1, (breaks,)."""
         return np.unique(self.u)
+
+    @cached_property
+    def is_piecewise_constant(self) -> bool:
+        """Whether every factor is constant between neighbouring u."""
+        return all(
+            self.u[i] == self.u[i + 1] or self.rows[i] == self.rows[i + 1] for i in range(len(self.u) - 1)
+        )
 
     @cached_property
     def _cubic_coefficients(self) -> Array:

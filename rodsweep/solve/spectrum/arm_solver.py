@@ -1,15 +1,36 @@
 """Krylov-Schur solver for nonuniform arms, on elements with boundaries at the jumps of every coefficient."""
 
+from math import isfinite
+
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Complex
+from ...arrays import Array, Complex
 from ...discretization.straight.arm_pencil import ArmPencil
 from ...discretization.straight.arm_resolution import ArmMesh
 from ...discretization.straight.pencil import PencilMatrices, fields_of_vectors, finite_eigenvalue_count
+from ...model.compiled.compilation import compiled
 from ...model.rod import Rod
 from ..backend.solver_pools import LruPool
 from .shift_invert import KRYLOV_SETTINGS, LoadedPencil, ShiftInvertSolver
+
+
+@compiled
+def _sum_of_entries(A: Array, B: Array) -> float:
+    """Sum of all entries of both arrays, (n,) and (m,)."""
+    return A.sum() + B.sum()
+
+
+@compiled
+def _write_shifted_matrix(A: Array, values: Array, places: NDArray, shift: Array) -> None:
+    """Writes `values`, (nnz,), minus diag(shift) into `A`, the transpose of PETSc's array, (n, n). places:
+    index of each value in the entries of A, (nnz,). shift: (n,)."""
+    entries = A.reshape(-1)
+    entries[:] = 0.0
+    for k in range(len(values)):
+        entries[places[k]] = values[k]
+    for i in range(len(shift)):
+        A[i, i] -= shift[i]
 
 
 class ArmSolver(ShiftInvertSolver):
@@ -27,21 +48,19 @@ class ArmSolver(ShiftInvertSolver):
     def load(self, rod: Rod, shift: float) -> LoadedPencil:
         self.matrices = matrices = self.pencil.matrices(rod)
         # One sum tests all entries at once: inf or nan anywhere makes it non-finite.
-        if not np.isfinite(matrices.A.sum() + matrices.B.sum() + shift):
+        if not isfinite(_sum_of_entries(matrices.A, matrices.B) + shift):
             raise FloatingPointError(
                 "with these parameters matrix entries exceed the largest floating-point number"
             )
         # B is diagonal, so the column of each entry is the number of its row.
         self.B.setValuesCSR(self.row_starts, self.row_starts[:-1], matrices.B)
         self.B.assemble()
-        # The matrices stay unshifted, as the displacements are computed from them later.
-        values = matrices.A.copy()
-        values[self.is_diagonal_entry] -= shift * matrices.B
         if self.is_dense:
-            entries = self.A.getDenseArray().T.reshape(-1)  # stored by columns
-            entries[:] = 0.0
-            entries[self._places] = values
+            # PETSc stores dense matrices by columns.
+            _write_shifted_matrix(self.A.getDenseArray().T, matrices.A, self._places, shift * matrices.B)
         else:
+            values = matrices.A.copy()
+            values[self.is_diagonal_entry] -= shift * matrices.B
             self.A.setValuesCSR(self.indptr, self.indices, values)
         return LoadedPencil(finite_eigenvalue_count(rod, self.node_count), shift)
 
