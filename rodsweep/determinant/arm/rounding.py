@@ -23,15 +23,19 @@ from ...model.compiled.kernel_constants import KernelConstants
 from ..exponents import MACHINE_EPSILON
 from .elements.evaluation import (
     apply_propagator,
+    apply_real_propagator,
     apply_transposed_propagator,
+    apply_transposed_real_propagator,
     fill_propagator_value,
+    fill_real_propagator_value,
     modulus_sum_of_form,
+    modulus_sum_of_form_at_real_w,
     modulus_sum_of_real_form,
     powers_and_derivatives,
 )
 from .elements.minor_rates import PADDED, SM
 from .elements.settings import MINORS
-from .value import divide_by_norm
+from .value import divide_by_norm, divide_real_by_norm
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,7 +59,37 @@ ARM_ROUNDING_SETTINGS = ArmRoundingSettings()
 def rounding_error_from_propagators(w: complex, W: float, polynomials: Array, S: float) -> float:
     """Bound of the rounding error of D exp(-S) at w, to first order. polynomials: propagators valid for |w|
     <= W, (elements, terms, PADDED). S: logarithm of the scale of the result."""
+    if w.imag == 0:
+        return _error_of_real_chain(w.real, W, polynomials, S)
     return error_of_interpolated_chain(w, W, polynomials, S, np.empty((0, 2, PADDED)))
+
+
+@compiled
+def _error_of_real_chain(w: float, W: float, polynomials: Array, S: float) -> float:
+    """`rounding_error_from_propagators` at real w, where all minors are real."""
+    elements, terms, _ = polynomials.shape
+    powers = powers_and_derivatives(complex(w / W, 0.0), terms)
+    C = np.empty((elements, PADDED))
+    x = np.zeros((elements + 1, MINORS))
+    x[0, SM] = 1.0
+    scale = np.zeros(elements + 1)
+    for e in range(elements):
+        fill_real_propagator_value(polynomials[e], powers, C[e])
+        apply_real_propagator(C[e], x[e], x[e + 1])
+        scale[e + 1] = scale[e] + divide_real_by_norm(x[e + 1])
+    next_moduli = np.zeros(MINORS)
+    next_moduli[SM] = 1.0
+    moduli = np.empty(MINORS)
+    scale_after = -S
+    total = 0.0
+    # From tip to clamp, as in `error_of_interpolated_chain`.
+    for e in range(elements - 1, -1, -1):
+        errors = modulus_sum_of_form_at_real_w(next_moduli, C[e], x[e])
+        total += math.exp(scale[e] + scale_after) * errors
+        apply_transposed_real_propagator(C[e], next_moduli, moduli)
+        scale_after += divide_real_by_norm(moduli)
+        next_moduli, moduli = moduli, next_moduli
+    return MACHINE_EPSILON * ARM_ROUNDING_SETTINGS.error_per_product * total
 
 
 @compiled

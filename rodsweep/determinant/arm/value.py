@@ -81,6 +81,16 @@ def divide_by_norm(x: Array) -> float:
 
 
 @compiled
+def divide_real_by_norm(x: Array) -> float:
+    """`divide_by_norm` for real minors x, (MINORS,)."""
+    size = _real_norm(x)
+    if not _needs_rescaling(size):
+        return 0.0
+    x /= size
+    return math.log(size)
+
+
+@compiled
 def _multiply_along_chain(
     z: complex, W: float, polynomials: Array, p_derivatives: Array
 ) -> tuple[complex, complex, complex, float]:

@@ -114,7 +114,19 @@ def fill_real_propagator_value(polynomial: Array, powers: Array, out: Array) -> 
     """Writes a propagator C at real z, without dC/dz, into out, (PADDED,). polynomial, powers: see module."""
     for k in range(PADDED):
         out[k] = polynomial[0, k]
-    for n in range(1, len(powers)):
+    terms = len(powers)
+    count = 1
+    for n in range(1, terms - 3, 4):  # as in `_fill_rows`
+        a, b, c, d = (powers[n, RE], powers[n + 1, RE], powers[n + 2, RE], powers[n + 3, RE])
+        for k in range(PADDED):
+            out[k] += (
+                a * polynomial[n, k]
+                + b * polynomial[n + 1, k]
+                + c * polynomial[n + 2, k]
+                + d * polynomial[n + 3, k]
+            )
+        count = n + 4
+    for n in range(count, terms):
         for k in range(PADDED):
             out[k] += powers[n, RE] * polynomial[n, k]
 
@@ -144,6 +156,29 @@ def apply_transposed_propagator(C: Array, x: Array, out: Array) -> None:
             imaginary += C[RE, k] * x[1, i] + C[IM, k] * x[0, i]
         out[0, j] = real
         out[1, j] = imaginary
+
+
+@compiled_for_vectors
+def apply_transposed_real_propagator(C: Array, x: Array, out: Array) -> None:
+    """out = C^T x for a real propagator C, (PADDED,), and real vectors x and out, (MINORS,)."""
+    for j in range(MINORS):
+        total = 0.0
+        for i in range(MINORS):
+            total += C[MINORS * j + i] * x[i]
+        out[j] = total
+
+
+@compiled_for_vectors
+def modulus_sum_of_form_at_real_w(a: Array, C: Array, x: Array) -> float:
+    """The sum of |a_i| |C_ij| |x_j| for a real propagator C, (PADDED,), and real vectors a and x,
+    (MINORS,)."""
+    total = 0.0
+    for j in range(MINORS):
+        column = 0.0
+        for i in range(MINORS):
+            column += abs(C[MINORS * j + i]) * abs(a[i])
+        total += column * abs(x[j])
+    return total
 
 
 @compiled_for_vectors
