@@ -51,9 +51,10 @@ def refine_mesh_eigenvalues(
     guesses = [w.real + 0j if abs(w.imag) <= settings.real_tolerance * abs(w) else w for w in mesh_w.tolist()]
     in_box = [i for i, w in enumerate(guesses) if _is_in_eigenvalue_box(w, hull)]
     guesses_in_box: Complex = np.array([guesses[i] for i in in_box], complex)
-    w_scales, is_resolved = _scales_and_resolved(guesses_in_box, determinant, max_q, max_end_q)
-    scale = dict(zip(in_box, w_scales.tolist(), strict=True))
-    resolved = np.array(in_box, int)[is_resolved].tolist()
+    scales = mean_wave_numbers_and_w_scales(guesses_in_box, determinant.samples)
+    wave_number, scale = (dict(zip(in_box, values, strict=True)) for values in scales.tolist())
+    is_resolved = _is_resolved(guesses_in_box, scales[0], determinant, max_q, max_end_q)
+    resolved = [i for i, is_kept in zip(in_box, is_resolved.tolist(), strict=True) if is_kept]
     starts = [guesses[i] for i in resolved]
     _prepare_elements(determinant, max(map(abs, starts), default=0.0), largest_w)
     errors = dict(zip(resolved, root_errors(starts, determinant).tolist(), strict=True))
@@ -68,35 +69,42 @@ def refine_mesh_eigenvalues(
     ]
     located = _refine_guesses([(near_w[k], half_distances[k]) for k in refined], determinant)
     located.sort(key=lambda root: (-root.w.real, -root.w.imag))
-    mesh_indices = np.array([near[refined[root.guess_index]] for root in located], np.int64)
-    w: Complex = np.array([root.w for root in located], complex)
-    wave_number = mean_wave_numbers_and_w_scales(w, determinant.samples)[0]
-    error = _errors_of_located_roots(located, determinant)
-    lengths: Array = np.array([scale[i] for i in mesh_indices.tolist()], float)
-    displacement = np.abs(w - np.array(guesses, complex)[mesh_indices]) / np.maximum(np.abs(w), lengths)
-    is_imaginary = np.abs(w.real) <= np.maximum(
-        ROOT_SETTINGS.axis_tolerance_in_errors * error, ROOT_SETTINGS.axis_tolerance * np.abs(w)
+    indices = [near[refined[root.guess_index]] for root in located]
+    errors_of_roots = _errors_of_located_roots(located, determinant)
+    # For so few numbers Python is faster than NumPy.
+    roots_and_indices = list(zip(located, indices, strict=True))
+    displacement = [abs(root.w - guesses[i]) / max(abs(root.w), scale[i]) for root, i in roots_and_indices]
+    is_imaginary = [
+        abs(root.w.real)
+        <= max(ROOT_SETTINGS.axis_tolerance_in_errors * error, ROOT_SETTINGS.axis_tolerance * abs(root.w))
+        for root, error in zip(located, errors_of_roots, strict=True)
+    ]
+    leading_growth = located[0].w.real if located else -math.inf
+    return Roots(
+        mesh_indices=np.array(indices, np.int64),
+        w=np.array([root.w for root in located], complex),
+        error=np.array(errors_of_roots, float),
+        displacement=np.array(displacement, float),
+        wave_number=np.array([wave_number[i] for i in indices], float),
+        is_imaginary=np.array(is_imaginary, bool),
+        # An eigenvalue inside the hull that approximates no root is spurious, or hides one that leads.
+        unmatched_count=sum(guesses[i].real > leading_growth for i in in_box if i not in near),
     )
-    leading_growth = w[0].real if len(w) else -math.inf
-    # An eigenvalue inside the hull that approximates no root is spurious, or hides one that leads.
-    spurious_count = sum(mesh_w[i].real > leading_growth for i in in_box if i not in near)
-    return Roots(mesh_indices, w, error, displacement, wave_number, is_imaginary, spurious_count)
 
 
-def _scales_and_resolved(
-    w: Complex, determinant: ArmDeterminant, max_q: float, max_end_q: Array
-) -> tuple[Array, NDArray[np.bool_]]:
-    """Returns (w_scales, mask), (n,) each. w_scales: change of w over which an exponent of D changes by about
-    one, at each rate w, (n,). mask: whether the wave number at w is at most `max_q` in the mean or, where an
-    eigenfunction is confined to an end of the arm, at most `max_end_q`, (2,), at the clamp or at the tip."""
-    mean_wave_numbers, w_scales = mean_wave_numbers_and_w_scales(w, determinant.samples)
-    is_resolved = mean_wave_numbers <= max_q
-    others = np.flatnonzero(~is_resolved)
-    if len(others):
+def _is_resolved(
+    w: Complex, mean_wave_numbers: Array, determinant: ArmDeterminant, max_q: float, max_end_q: Array
+) -> NDArray[np.bool_]:
+    """Whether the wave number at each rate w, (n,), is at most `max_q` in the mean or, where an eigenfunction
+    is confined to an end of the arm, at most `max_end_q`, (2,), at the clamp or at the tip.
+    mean_wave_numbers: of each w, (n,)."""
+    is_resolved: NDArray[np.bool_] = mean_wave_numbers <= max_q
+    if not is_resolved.all():
+        others = np.flatnonzero(~is_resolved)
         rod = determinant.rod
         end_wave_numbers = local_wave_numbers(w[others, None], float(rod.F), end_coefficients(rod))
         is_resolved[others] = (end_wave_numbers <= max_end_q).any(axis=1)
-    return w_scales, is_resolved
+    return is_resolved
 
 
 def _prepare_elements(determinant: ArmDeterminant, needed_w: float, later_w: float) -> None:
@@ -173,8 +181,8 @@ def _refine_guesses(guesses: list[tuple[complex, float]], determinant: ArmDeterm
     return roots
 
 
-def _errors_of_located_roots(roots: list[_LocatedRoot], determinant: ArmDeterminant) -> Array:
-    """Errors of the roots `roots`, (n,). For two entries that are the same root of D, the error is at least
+def _errors_of_located_roots(roots: list[_LocatedRoot], determinant: ArmDeterminant) -> list[float]:
+    """Errors of the roots `roots`. For two entries that are the same root of D, the error is at least
     the distance 2 |D'/D''| of the next root."""
     errors = [root.error for root in roots]
     for i, first_root in enumerate(roots):
@@ -187,4 +195,4 @@ def _errors_of_located_roots(roots: list[_LocatedRoot], determinant: ArmDetermin
                 if distance < ROOT_SETTINGS.same_root_fraction * next_root:
                     errors[i] = max(errors[i], next_root)
                     errors[j] = max(errors[j], next_root)
-    return np.array(errors, float)
+    return errors

@@ -176,14 +176,12 @@ class ArmProblem(TransverseProblem):
         """Roots of D refined from `mesh_eigenvalues`, (n,); if a proof is requested, and until one fails,
         only from the eigenvalues that the proof needs."""
         needed_mask, max_abs_w = self._proof_mask_and_max_abs_w(mesh_eigenvalues)
-        max_q = (
-            RESOLUTION_SETTINGS.max_wave_number_per_node
-            * mesh.order
-            * np.append(mesh.element_count, 1 / mesh.lengths[[0, -1]])
-        )
+        max_q_of_unit_element = RESOLUTION_SETTINGS.max_wave_number_per_node * mesh.order
+        max_end_q = max_q_of_unit_element * (1 / mesh.lengths[[0, -1]])
         # Infinite values are dropped by the refinement; all others keep their indices.
         w = np.where(needed_mask, mesh_eigenvalues, np.inf)
-        return roots_of_arm(w, self._determinant, self._hull, max_q[0], max_abs_w, max_q[1:])
+        max_q = max_q_of_unit_element * mesh.element_count
+        return roots_of_arm(w, self._determinant, self._hull, max_q, max_abs_w, max_end_q)
 
     def _proof_mask_and_max_abs_w(self, mesh_eigenvalues: Complex) -> tuple[NDArray[np.bool_], float]:
         """Returns (mask, max_abs_w). mask: True for each of the `mesh_eigenvalues` that the proof will need,

@@ -73,6 +73,7 @@ def _elements_per_length(W: float, squares: Array, tapers: Array, points: Array)
     return density
 
 
+@compiled
 def sum_and_remainder(a: Array, b: Array) -> tuple[Array, Array]:
     """Returns (a + b rounded to doubles, rounding error of this sum), whose sum is a + b exactly (Knuth's
     two-sum). a, b: of any shapes that broadcast. Near a thin tip the rounding of u alone would change the
@@ -87,13 +88,24 @@ def halved_where_coarse(edges: Array, W: float, forces: Array, coefficients: Arr
     exponentials of an arm; `edges` itself if none is halved. forces: F of n arms, (n,). coefficients:
     `LocalCoefficients` of the arms at the Gauss points, (6, n, elements, stages)."""
     stages = ARM_ELEMENT_SETTINGS.stages
-    is_coarse = _is_coarse(coefficients, _last_legendre_matrix(stages)) | _is_long(
-        edges[1:] - edges[:-1], W, forces, coefficients, _weights_of_mean(stages)
+    is_coarse = _is_coarse_or_long(
+        edges, W, forces, coefficients, (_last_legendre_matrix(stages), _weights_of_mean(stages))
     )
     if not is_coarse.any():
         return edges
     midpoints = (edges[:-1] + edges[1:])[is_coarse] / 2
     return np.sort(np.append(edges, midpoints))
+
+
+@compiled
+def _is_coarse_or_long(
+    edges: Array, W: float, forces: Array, coefficients: Array, weights: tuple[Array, Array]
+) -> NDArray[np.bool_]:
+    """Mask of the elements, (elements,), that `_is_coarse` or `_is_long` selects. edges: boundaries of the
+    elements, (elements + 1,). weights: last arguments of `_is_coarse` and of `_is_long`. Other arguments: as
+    in `halved_where_coarse`."""
+    is_coarse = _is_coarse(coefficients, weights[0])
+    return is_coarse | _is_long(edges[1:] - edges[:-1], W, forces, coefficients, weights[1])
 
 
 @cache
