@@ -1,6 +1,7 @@
 """Choice of the mesh of an arm: edges and order of its elements."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 from math import ceil, hypot, log, pi
 
 import numpy as np
@@ -8,7 +9,7 @@ import numpy as np
 from ...arrays import Array
 from ...model.dispersion import local_growths_and_wave_numbers, sampled_arm, wave_numbers_of_growth_at_ends
 from ...model.rod import Rod
-from ..elements.elements import Elements
+from ..elements.elements import ELEMENT_SETTINGS, Elements
 from ..elements.resolution import RESOLUTION_SETTINGS, first_excessive_element_count, required_order
 
 
@@ -47,7 +48,13 @@ def arm_mesh(rod: Rod, mode_count: int, accuracy: float) -> ArmMesh:
     elements = _elements_for_wave(
         rod, wave_numbers * weights, accuracy, RESOLUTION_SETTINGS.max_order, order_increase
     )
-    return ArmMesh(elements.edges, elements.order)
+    return _cached_mesh(elements.edges, elements.order)
+
+
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
+def _cached_mesh(edges: tuple[float, ...], order: int) -> ArmMesh:
+    """The `ArmMesh` with these edges and this order, cached with its computed properties."""
+    return ArmMesh(edges, order)
 
 
 def _is_piecewise_constant(rod: Rod) -> bool:

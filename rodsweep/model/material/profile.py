@@ -149,11 +149,14 @@ def relative_radius(taper: Any, u: Any, remainder: Any = 0.0) -> Any:
     the rounding of u itself changes the radius. All are numbers or arrays that broadcast.
     """
     # Both formulas add positive numbers only: the radius is summed from the thinner end.
-    from_tip = taper + (1 - taper) * (1 - u - remainder)
-    from_base = 1 + (taper - 1) * u
     if np.ndim(taper):
-        return np.where(taper < 1, from_tip, from_base)
-    return from_tip if taper < 1 else from_base
+        return np.where(taper < 1, _radius_from_tip(taper, u, remainder), 1 + (taper - 1) * u)
+    return _radius_from_tip(taper, u, remainder) if taper < 1 else 1 + (taper - 1) * u
+
+
+def _radius_from_tip(taper: Any, u: Any, remainder: Any) -> Any:
+    """`relative_radius`, summed from the tip."""
+    return taper + (1 - taper) * (1 - u - remainder)
 
 
 def _hermite_cubics(first: Array, last: Array, first_slope: Array, last_slope: Array) -> Array:

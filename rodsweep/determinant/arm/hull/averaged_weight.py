@@ -75,6 +75,21 @@ class TrialWeight(NamedTuple):
 
 
 @compiled
+def averaged_regions_of_arms(F: Array, u: Array, coefficients: Array) -> Array:
+    """Constants (a, c) of the region of all eigenvalues for each arm and each trial weight of
+    `averaged_regions`, (n, trials, 2); inf for an arm without c2 > 0 and g > 0 everywhere. F: forces, (n,).
+    u: points of the arms, (points,). coefficients: `LocalCoefficients` at these points, (6, n, points)."""
+    regions = np.full((len(F), AVERAGED_WEIGHT_SETTINGS.trial_count, 2), math.inf)
+    for arm in range(len(F)):
+        if (coefficients[1, arm] > 0).all() and (coefficients[5, arm] > 0).all():
+            # The smallest region of several arms need not have the smallest region of any of them.
+            regions[arm] = averaged_regions(
+                u, np.ascontiguousarray(coefficients[:, arm]), F[arm], len(F) == 1
+            )
+    return regions
+
+
+@compiled
 def averaged_regions(u: Array, coefficients: Array, F: float, only_smallest: bool) -> Array:
     """Constants (a, c) of the region of each trial weight, (trials, 2); inf if a trial gives no bound. u:
     points of an arm from clamp to tip, (points,), two at a jump. coefficients: `LocalCoefficients` at the

@@ -34,7 +34,7 @@ from ....model.compiled.compilation import compiled
 from ....model.material.rod_material import RodMaterial
 from ....model.rod import Rod
 from ...parameter_path import ParameterPath
-from .averaged_weight import AVERAGED_WEIGHT_SETTINGS, averaged_regions
+from .averaged_weight import averaged_regions_of_arms
 from .region import HULL_SETTINGS, UNBOUNDED_HULL, EigenvalueHull, PathHulls
 from .weights import (
     four_c_squared_by_clamp,
@@ -87,11 +87,11 @@ def _hull_samples(rods: Sequence[Rod]) -> HullSamples:
     """The `HullSamples` of arms of one material."""
     material = rods[0].material
     lengths, u, end_to_end_u = _chebyshev_points_of_material(material)
-    F = np.array([rod.F for rod in rods])
+    F = np.array([rod.F for rod in rods], float)
     coefficients = np.array(Rod.local_coefficients_of_rods(rods, u))
     averaged_regions = np.empty((len(rods), 0, 2))
     if material.jump_positions:
-        averaged_regions = _averaged_regions_by_arm(F, end_to_end_u, coefficients)
+        averaged_regions = averaged_regions_of_arms(F, end_to_end_u, coefficients.reshape(6, len(F), -1))
     return HullSamples(F, lengths, coefficients, averaged_regions)
 
 
@@ -106,21 +106,6 @@ def _chebyshev_points_of_material(material: RodMaterial) -> tuple[Array, Array, 
     lengths = lengths * (1 - 2 * HULL_SETTINGS.end_distance_fraction)
     interval_starts = np.cumsum(lengths) - lengths
     return lengths, u, (interval_starts[:, None] + lengths[:, None] * (x + 1) / 2).ravel()
-
-
-def _averaged_regions_by_arm(F: Array, u: Array, coefficients: Array) -> Array:
-    """Constants (a, c) of the region of all eigenvalues for each arm and each trial weight of
-    `averaged_regions`, (n, trials, 2); inf for an arm without c2 > 0 and g > 0 everywhere. F: forces, (n,).
-    u: sampled points, (pieces * points,). coefficients: `LocalCoefficients` at these points, (6, n, pieces,
-    points).
-    """
-    flat_coefficients = coefficients.reshape(6, len(F), -1)
-    regions = np.full((len(F), AVERAGED_WEIGHT_SETTINGS.trial_count, 2), inf)
-    for i in np.flatnonzero(((flat_coefficients[5] > 0) & (flat_coefficients[1] > 0)).all(axis=1)).tolist():
-        coefficients_of_arm = np.ascontiguousarray(flat_coefficients[:, i])
-        # The smallest region of several arms need not have the smallest region of any of them.
-        regions[i] = averaged_regions(u, coefficients_of_arm, float(F[i]), len(F) == 1)
-    return regions
 
 
 def _slice_of_samples(arms: HullSamples, arm_indices: slice) -> HullSamples:
