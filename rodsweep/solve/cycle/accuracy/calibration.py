@@ -19,7 +19,13 @@ from ...orbit.orbit_mesh import OrbitMesh
 from ...orbit.tails import tails_of
 from .calibration_settings import CALIBRATION_SETTINGS
 from .cycle_errors import CycleErrors, errors_with_safety_factors
-from .error_indicators import error_growth_factors, indicator_growth, squared_tail_growth, tails_and_size
+from .error_indicators import (
+    LAST_HARMONICS_INDEX,
+    error_growth_factors,
+    squared_tail_growth,
+    tails_and_size,
+    time_error_growth,
+)
 
 ERROR_COUNT = 5
 """Length of the error arrays: the errors of `path_differences`, and the error of the multiplier."""
@@ -59,9 +65,8 @@ class Calibration:
     """`error_indicators` of the measured orbit, (3,); inf if unknown."""
     space_time_error_growth: Array = field(default_factory=lambda: np.ones(2))
     """Estimated growth factors of the errors in space and in time since the measurement, (2,)."""
-    extrema_growth: float = 1.0
-    """Estimated growth factor of the errors of the extrema other than the largest y since the measurement;
-    used only if larger than both factors in `space_time_error_growth`."""
+    last_harmonics_change: float = 0.0
+    """Change, since the measurement, of the last harmonics of the tip's path (`error_indicators`)."""
 
     def arrays(self) -> dict[str, Array]:
         """All fields except the growth factors as named arrays, for a checkpoint."""
@@ -84,13 +89,12 @@ class Calibration:
         # Errors are relative to the size of the orbit; at a much smaller cycle they are measured again.
         has_shrunk = tails[-1] < CALIBRATION_SETTINGS.min_size_ratio * self.tails_and_size[-1]
         growth = error_growth_factors(self.tails_and_size, tails)
-        time_growth, extrema_growth = indicator_growth(self.indicators, indicators)
-        growth[1] = max(growth[1], time_growth)
+        growth[1] = max(growth[1], time_error_growth(self.indicators, indicators))
         relative_parameter_change = inf if has_shrunk else self.relative_parameter_change + change
         return replace(
             self,
             space_time_error_growth=growth,
-            extrema_growth=extrema_growth,
+            last_harmonics_change=float((indicators - self.indicators)[LAST_HARMONICS_INDEX]),
             relative_parameter_change=relative_parameter_change,
         )
 
@@ -120,7 +124,7 @@ class Calibration:
         """Whether the errors were measured at the orbit to which they are scaled, or the errors in time if
         the errors in space were kept."""
         return self.relative_parameter_change == 0 or (
-            self.extrema_growth == 1 and bool((self.space_time_error_growth == 1).all())
+            self.last_harmonics_change == 0 and bool((self.space_time_error_growth == 1).all())
         )
 
     @property
@@ -165,8 +169,10 @@ class Calibration:
         errors[2:] = errors_with_safety_factors(
             self.space_errors * max_growth, self.time_errors * max_growth, accuracy
         )[2:]
-        # Extrema other than the largest y lie between time nodes.
-        errors[2] *= max(self.extrema_growth / max_growth, 1.0)
+        # Extrema other than the largest y lie between time nodes, where harmonics are cut off.
+        errors[2] += CALIBRATION_SETTINGS.extrema_error_per_last_harmonics * max(
+            self.last_harmonics_change, 0.0
+        )
         return CycleErrors(*errors.tolist())
 
 

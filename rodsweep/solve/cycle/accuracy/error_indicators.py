@@ -75,7 +75,7 @@ def error_growth_factors(earlier_tails: Array, later_tails: Array) -> Array:
 
     Absolute errors grow as the squares of the tails. Near the Hopf point where the cycles end, the error of
     the size also grows as the reciprocal of the squared size, because the mesh displaces the Hopf point.
-    `indicator_growth` includes this factor for the errors in time. A predicted decrease is ignored.
+    `time_error_growth` includes this factor for the errors in time. A predicted decrease is ignored.
     """
     # Errors are of second order in the tails.
     growth = np.maximum(squared_tail_growth(earlier_tails, later_tails), 1.0)
@@ -103,14 +103,12 @@ def squared_tail_growth(earlier_tails: Array, later_tails: Array) -> Array:
     return np.array([growth[:-1].max(), growth[-1]])
 
 
-def indicator_growth(earlier_indicators: Array, later_indicators: Array) -> tuple[float, float]:
-    """Returns (growth of errors in time, growth of errors of extrema), between two orbits of a chain.
+def time_error_growth(earlier_indicators: Array, later_indicators: Array) -> float:
+    """Estimated growth of the errors in time between two orbits of a chain: the growth of the lost energy or
+    of the amplitude error due to this loss, whichever grows more.
 
-    earlier_indicators, later_indicators: `error_indicators` of both orbits, (3,) each. Errors in time grow
-    with the lost energy or with the amplitude error due to this loss, whichever grows more; errors of extrema
-    between the time nodes grow with the last harmonics of the path. The lost energy is the sum over all
-    fields and intervals. The tail in time is not used, because the largest tail may belong to a field on
-    which the cycle hardly depends.
+    earlier_indicators, later_indicators: `error_indicators` of both orbits, (3,) each. The lost energy is the
+    sum over all fields and intervals. The tail in time is not used, because the largest tail may belong to a
+    field on which the cycle hardly depends.
     """
-    growth = later_indicators / earlier_indicators
-    return float(growth[:LAST_HARMONICS_INDEX].max()), float(growth[LAST_HARMONICS_INDEX])
+    return float((later_indicators / earlier_indicators)[:LAST_HARMONICS_INDEX].max())
