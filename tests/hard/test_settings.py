@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import fields, is_dataclass, replace
 from functools import cache
-from itertools import count
+from itertools import count, pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -54,6 +54,11 @@ from rodsweep.solve.changes.thresholds import Thresholds, ThresholdsRequest, sol
 from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings
 from rodsweep.solve.cycle.by_integration import solve_by_integration
 from rodsweep.solve.cycle.limit_cycle import CycleOutcome, CycleRequest, CycleStatus, solve_cycle
+from rodsweep.solve.cycle.straight_rod import (
+    eigenvalues_to_follow,
+    straight_rod_stability,
+    straight_rod_stability_in_chain,
+)
 from rodsweep.solve.hopf.bautin_curves import BautinProblem, as_curve_point, bautin_curve
 from rodsweep.solve.hopf.bautin_points import curve_criticality
 from rodsweep.solve.hopf.hopf_coefficients import hopf_coefficients
@@ -65,6 +70,7 @@ from rodsweep.solve.motion.time_scheme import TimeScheme
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.point_outcome import FAILURES
 from rodsweep.solve.spectrum.path.followed_leader import follow_leading_eigenvalue
+from rodsweep.solve.spectrum.path.leader_in_range import next_range
 from rodsweep.solve.spectrum.path.neighbouring_rods import NeighbouringRods
 from rodsweep.solve.spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 from rodsweep.solve.spectrum.two_meshes import solve_on_two_meshes
@@ -302,6 +308,19 @@ def spectra_along(path: ParameterPath, forces: np.ndarray, request: SpectrumRequ
         here = replace(found, eigenvalues=found.eigenvalues[i], error_estimate=found.error_estimate[i])
         answer |= eigenvalues_of(here, f"F = {F}")
         answer[f"growing modes at F = {F}"] = float(found.unstable_count[i]), 0.1
+    return answer
+
+
+def leaders_of_a_range(accuracy: float) -> Answer:
+    """Leading eigenvalues along a chain of cones; the accuracy is that of Newton's method."""
+    rods = [Rod(F=12.0 + 0.1 * k, k1=1e4, k2=1e3, gamma3=1e-3, taper=0.8) for k in range(12)]
+    near, arm_range, answer = eigenvalues_to_follow(rods[0], straight_rod_stability(rods[0])), None, {}
+    for previous, rod in pairwise(rods):
+        found = straight_rod_stability_in_chain(rod, near, "F", arm_range)
+        near = eigenvalues_to_follow(rod, found)
+        arm_range = next_range(rod, previous, "F", found.arm_range, near)
+        answer[f"F = {rod.F}, real part"] = found.w.real, found.error
+        answer[f"F = {rod.F}, imaginary part"] = found.w.imag, found.error
     return answer
 
 
@@ -561,6 +580,7 @@ HELD = Case(held_tip, 1.0, 1.0)
 CONES = Case(followed_cones, 1e-8, 1e-10)
 SEGMENT_CYCLE = Case(cycle_of_segments, 1e-6, 1e-9)
 SEGMENTS = Case(segments, 1e-8, 1e-10)
+RANGE = Case(leaders_of_a_range, 1.0, 1.0)
 BETWEEN = Case(changes_between, 1.0, 1.0)
 SLOW = (LOPSIDED, TORUS, UNSTABLE, SLENDER_CONE)
 """Cases that take seconds."""
@@ -661,6 +681,7 @@ CASES = {
     "NEAR_AXIS_SETTINGS": SLENDER_CONE,
     "ARM_FOLLOWING_SETTINGS": CONE,
     "ARM_FAMILY_SETTINGS": CONE,
+    "ARM_RANGE_SETTINGS": RANGE,
     "NO_CROSSING_SETTINGS": CONES,
     "ARM_DOUBLE_EIGENVALUE_SETTINGS": CONE,
     "LONGITUDINAL_MODE_SETTINGS": LONGITUDINAL,

@@ -21,7 +21,7 @@ CHECKPOINT_GLOB = "chain-*"
 unfinished."""
 ITEM_RESULT_GLOB = "unit-*"
 """Pattern of the file names of results of work items, including files that a kill left unfinished."""
-CHECKPOINT_HEAD = b"rodsweep checkpoint 7\n"
+CHECKPOINT_HEAD = b"rodsweep checkpoint 8\n"
 """First line of a checkpoint; the number grows when a state changes in meaning. Checkpoints with another
 number are ignored."""
 RESULT_HEAD = b"rodsweep unit 2\n"

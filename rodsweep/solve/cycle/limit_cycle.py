@@ -18,6 +18,7 @@ from ..motion.fixed_tip import bent_state_with_tip_at
 from ..motion.integrator import destroy_integrators
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..point_outcome import outcome_or_failure
+from ..spectrum.path.leader_in_range import next_range
 from ..unsolvable import Unsolvable
 from .accuracy.refined_cycle import RefinedCycle
 from .accuracy.refinement import refined_cycle
@@ -33,7 +34,12 @@ from .neighbour import CycleStart, cycle_from_neighbour
 from .second_state import second_state
 from .small_motion import reason_for_decay, stable_cycle_near_hopf
 from .status import CycleStatus
-from .straight_rod import StraightRodStability, eigenvalues_to_follow, straight_rod_stability
+from .straight_rod import (
+    StraightRodStability,
+    eigenvalues_to_follow,
+    straight_rod_stability,
+    straight_rod_stability_in_chain,
+)
 from .transient.motion_mesh import MOTION_MESH_SETTINGS, motion_mesh, motion_meshes
 from .transient.shape_trace import ShapeTrace
 from .transient.tip_trace import TipTrace
@@ -64,7 +70,11 @@ def solve_cycle(
         return CycleOutcome(status=CycleStatus.failed, message=cause)
 
     def solve() -> CycleOutcome:
-        stability = straight_rod_stability(rod, start.eigenvalues if start else None)
+        stability = (
+            straight_rod_stability(rod)
+            if start is None
+            else straight_rod_stability_in_chain(rod, start.eigenvalues, parameter_name, start.arm_range)
+        )
         cycle = _solve_cycle_or_raise(rod, request, stability, start, parameter_name, memory)
         return _with_second_state(rod, _with_status_by_spectrum(cycle, stability), stability)
 
@@ -162,8 +172,13 @@ def _with_neighbour(
     leading eigenvalue of the straight rod."""
     if parameter_name is None:
         return cycle
-    eigenvalues = eigenvalues_to_follow(refined.orbit.form.rod, stability)
+    rod = refined.orbit.form.rod
+    eigenvalues = eigenvalues_to_follow(rod, stability)
     start = CycleStart.from_cycle(refined, previous, parameter_name, accuracy, eigenvalues)
+    if previous is not None:
+        previous_rod = previous.predictor.orbit.form.rod
+        arm_range = next_range(rod, previous_rod, parameter_name, stability.arm_range, eigenvalues)
+        start = replace(start, arm_range=arm_range)
     return replace(cycle, neighbour=start)
 
 

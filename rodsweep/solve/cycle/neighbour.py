@@ -8,8 +8,8 @@ chain, too. The next cycle depends only on the data in `CycleStart`, so that an 
 with the same results.
 """
 
-from dataclasses import dataclass, field
-from math import inf, nan
+from dataclasses import dataclass, field, replace
+from math import inf, isnan, nan
 from typing import Any
 
 import numpy as np
@@ -22,6 +22,7 @@ from ..orbit.mesh_choice import regraded_coarser
 from ..orbit.newton import ConvergedOrbit, newton, newton_step_if_matrix_distant
 from ..orbit.orbit_mesh import OrbitMesh, mesh_of
 from ..orbit.stored_orbit import orbit_arrays, orbit_from_arrays
+from ..spectrum.path.leader_in_range import NO_RANGE, ArmRange
 from ..unsolvable import Unsolvable
 from .accuracy.calibration import Calibration
 from .accuracy.cheapest_mesh import cheapest_mesh
@@ -72,13 +73,15 @@ class CycleStart:
 
     predictor: polynomial for the next cycle. next_mesh: mesh for the next cycle. calibration: measured errors
     of a mesh, perhaps outdated. eigenvalues: eigenvalues of the straight rod in 1/tau2 with Im >= 0, (n,),
-    the leading eigenvalue first; NaN if not known.
+    the leading eigenvalue first; NaN if not known. arm_range: range of arms that contains the next rod, or
+    None.
     """
 
     predictor: CyclePredictor
     next_mesh: OrbitMesh
     calibration: Calibration
     eigenvalues: Complex = field(default_factory=UNKNOWN_EIGENVALUES.copy)
+    arm_range: ArmRange | None = None
 
     @classmethod
     def from_cycle(
@@ -97,8 +100,8 @@ class CycleStart:
 
     def arrays(self) -> CheckpointArrays:
         """All data as named arrays, for a checkpoint: orbit (N,), data (m, N + 1), offsets ("places") and
-        orders (m,), eigenvalues (n,), meshes, symmetry, rod with its material, and calibration; N, m: as in
-        `CyclePredictor`."""
+        orders (m,), eigenvalues (n,), range of arms (5,), meshes, symmetry, rod with its material,
+        and calibration; N, m: as in `CyclePredictor`."""
         predictor = self.predictor
         arrays: dict[str, Any] = {
             "places": predictor.parameter_offsets,
@@ -106,6 +109,7 @@ class CycleStart:
             "data": predictor.values_and_derivatives,
             "next_mesh": self.next_mesh.as_array,
             "eigenvalues": self.eigenvalues,
+            "arm_range": np.array(self.arm_range or NO_RANGE),
         }
         return orbit_arrays(predictor.orbit) | arrays | self.calibration.arrays()
 
@@ -115,9 +119,10 @@ class CycleStart:
         next_mesh = OrbitMesh.from_array(arrays["next_mesh"])
         orbit = orbit_from_arrays(arrays)
         predictor = CyclePredictor(orbit, *(arrays[name] for name in ("places", "orders", "data")))
-        return cls(
-            predictor, next_mesh, Calibration.from_arrays(arrays), arrays["eigenvalues"].astype(complex)
-        )
+        eigenvalues = arrays["eigenvalues"].astype(complex)
+        start = cls(predictor, next_mesh, Calibration.from_arrays(arrays), eigenvalues)
+        arm_range = ArmRange(*arrays["arm_range"].tolist())
+        return start if isnan(arm_range.low) else replace(start, arm_range=arm_range)
 
 
 def _next_mesh_and_calibration(

@@ -5,7 +5,7 @@ rod, such as a rod with k1 = inf, by a nearby rod. The sign of the exact leading
 determines the stability, unless the growth rate is 0 within its error.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import isnan, nan
 
 import numpy as np
@@ -14,7 +14,12 @@ from ...arrays import Array, Complex
 from ...determinant.arm.determinant import forget_arm_determinants
 from ...determinant.roots.settings import ROOT_SETTINGS
 from ...model.rod import Rod
-from ..spectrum.path.followed_leader import follow_leading_eigenvalue, is_arm_leader_proved_without_count
+from ..spectrum.path.followed_leader import (
+    follow_leader_in_range,
+    follow_leading_eigenvalue,
+    is_arm_leader_proved_without_count,
+)
+from ..spectrum.path.leader_in_range import NO_RANGE, ArmRange
 from ..spectrum.search import SpectrumRequest, solve_spectrum
 
 
@@ -46,13 +51,15 @@ class StraightRodStability:
     NaN if w is not known.
 
     message: reason why w is not known. followed_eigenvalues: eigenvalues that were followed from a similar
-    rod, (n,), the leading eigenvalue first; empty if w was found by a search.
+    rod, (n,), the leading eigenvalue first; empty if w was found by a search. arm_range: range of arms of
+    the chain, None without a range, or `NO_RANGE` if the proof that w leads needs a count.
     """
 
     w: complex
     error: float
     message: str = ""
     followed_eigenvalues: Complex = field(default_factory=NO_EIGENVALUES.copy, compare=False)
+    arm_range: ArmRange | None = field(default=None, compare=False)
 
     @property
     def stable(self) -> bool | None:
@@ -105,13 +112,40 @@ def straight_rod_stability(
         else follow_leading_eigenvalue(rod, near_eigenvalues, request.accuracy)
     )
     if leading_w is not None:
-        return StraightRodStability(leading_w.w, leading_w.error, followed_eigenvalues=leading_w.eigenvalues)
+        # A proof that needs a count fails in a range, too.
+        return StraightRodStability(
+            leading_w.w,
+            leading_w.error,
+            followed_eigenvalues=leading_w.eigenvalues,
+            arm_range=NO_RANGE if leading_w.is_counted else None,
+        )
     spectrum = solve_spectrum(rod, request)
     if isnan(spectrum.error_estimate[0]):
         return StraightRodStability(complex(nan, nan), nan, spectrum.message)
     w = complex(spectrum.eigenvalues[0])
     # Both eigenvalues of a pair lead; the upper one stands for them.
     return StraightRodStability(complex(w.real, abs(w.imag)), float(spectrum.error_estimate[0]))
+
+
+def straight_rod_stability_in_chain(
+    rod: Rod, near_eigenvalues: Complex, parameter_name: str | None, arm_range: ArmRange | None
+) -> StraightRodStability:
+    """`straight_rod_stability` of a rod of a chain. near_eigenvalues: eigenvalues of the previous rod, (n,).
+    parameter_name: the varied parameter. arm_range: range of arms that contains the rod, or None."""
+    if parameter_name is None or arm_range is None:
+        return straight_rod_stability(rod, near_eigenvalues)
+    leading_w = follow_leader_in_range(
+        rod, near_eigenvalues, STRAIGHT_ROD_SETTINGS.accuracy, parameter_name, arm_range
+    )
+    if leading_w is None:
+        failed_range = arm_range._replace(failures=arm_range.failures + 1)
+        return replace(straight_rod_stability(rod, near_eigenvalues), arm_range=failed_range)
+    return StraightRodStability(
+        leading_w.w,
+        leading_w.error,
+        followed_eigenvalues=leading_w.eigenvalues,
+        arm_range=arm_range._replace(failures=0.0),
+    )
 
 
 def eigenvalues_to_follow(rod: Rod, stability: StraightRodStability) -> Complex:

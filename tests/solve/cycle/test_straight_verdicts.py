@@ -182,7 +182,7 @@ def test_on_either_side_of_a_hopf_point_the_verdict_agrees_with_the_spectrum(rod
 def test_a_growth_rate_that_is_0_within_its_error_leaves_it_open(start, monkeypatch):
     """Far below the Hopf point the motion decays; the spectrum is made to say that it does not know."""
     monkeypatch.setattr(
-        limit_cycle, "straight_rod_stability", lambda rod, near: StraightRodStability(-1e-13 + 60j, 1e-13)
+        limit_cycle, "straight_rod_stability", lambda rod: StraightRodStability(-1e-13 + 60j, 1e-13)
     )
     c = ended(Rod(F=20.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0), start=start)
     assert (c.status, c.second_state) == (CycleStatus.not_settled, SecondState.not_known)

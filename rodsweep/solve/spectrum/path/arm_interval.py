@@ -192,20 +192,24 @@ def family_and_hulls(
         hulls = hulls_along(path, low, high, ARM_FOLLOWING_SETTINGS.hulls_per_interval)
         W = ARM_FOLLOWING_SETTINGS.w_bound_ratio * float(np.abs(first_eigenvalues).max())
         line = min(ARM_FOLLOWING_SETTINGS.w_bound_ratio * float(first_eigenvalues[mode_count - 1].real), 0.0)
-        # The propagators of a family must reach as far as the proof for its worst arm.
-        largest_hull = max(zip(hulls.a.tolist(), hulls.c.tolist(), strict=True))
-        proof_w = [
-            points[-1]
-            for point_count in COMPLETENESS_SETTINGS.point_counts
-            if len(points := points_right_of_hull(line, *largest_hull, point_count))
-        ]
-        near_ends = [
-            largest_w for largest_w in proof_w if largest_w <= ARM_FOLLOWING_SETTINGS.w_bound_ratio * W
-        ]
-        family = interpolated_family(path, low, high, max([W, *near_ends]))
+        family = family_with_proofs(path, hulls, W, line)
     except (ValueError, FloatingPointError):
         return None
     return None if family is None else (family, hulls)
+
+
+def family_with_proofs(path: ParameterPath, hulls: PathHulls, W: float, line: float) -> ArmFamily | None:
+    """The family of all arms of `hulls`, for |w| <= W and for the proofs without a count of its worst arm, if
+    these need hardly larger |w|; None if the arms are not smooth in p. line: Re w of the line of the proofs.
+    Raises ValueError at a p without a valid arm, and FloatingPointError if no elements resolve an arm."""
+    largest_hull = max(zip(hulls.a.tolist(), hulls.c.tolist(), strict=True))
+    proof_w = [
+        points[-1]
+        for point_count in COMPLETENESS_SETTINGS.point_counts
+        if len(points := points_right_of_hull(line, *largest_hull, point_count))
+    ]
+    near_ends = [w for w in proof_w if w <= ARM_FOLLOWING_SETTINGS.w_bound_ratio * W]
+    return interpolated_family(path, float(hulls.p[0]), float(hulls.p[-1]), max([W, *near_ends]))
 
 
 def _eigenvalues_of_previous_interval(

@@ -23,16 +23,19 @@ from ....determinant.roots.roots import root_error_and_scales
 from ....model.rod import Rod
 from ..candidates import CANDIDATE_SETTINGS, line_for_proof
 from .following import are_distinct_roots
+from .leader_in_range import ArmRange, leader_in_range
 from .prediction import KnownRoots
 
 
 class LeadingEigenvalue(NamedTuple):
     """The leading eigenvalue w of a rod, in 1/tau2, with Im w >= 0, and its absolute error. eigenvalues: all
-    followed eigenvalues of the rod with Im w >= 0, (n,), the leading eigenvalue first."""
+    followed eigenvalues of the rod with Im w >= 0, (n,), the leading eigenvalue first. is_counted: whether
+    the proof that w leads needed a count of the eigenvalues of an arm."""
 
     w: complex
     error: float
     eigenvalues: Complex
+    is_counted: bool = False
 
 
 def follow_leading_eigenvalue(rod: Rod, guesses: Complex, accuracy: float) -> LeadingEigenvalue | None:
@@ -56,6 +59,22 @@ def follow_leading_eigenvalue(rod: Rod, guesses: Complex, accuracy: float) -> Le
         return _follow_leader_of_arm(rod, guesses, accuracy)
     except FloatingPointError:  # D needs too many elements
         return None
+
+
+def follow_leader_in_range(
+    rod: Rod, guesses: Complex, accuracy: float, parameter_name: str, arm_range: ArmRange
+) -> LeadingEigenvalue | None:
+    """The result of `follow_leading_eigenvalue` for a nonuniform arm of a chain, from propagators
+    interpolated over a range of arms; None also outside the range. guesses: eigenvalues of the previous arm,
+    (n,), as there. parameter_name: the varied parameter."""
+    roots = leader_in_range(rod, parameter_name, arm_range, guesses)
+    if roots is None:
+        return None
+    w, error = roots
+    leading_w = complex(w[0])
+    if not _is_accurate_and_real_like_neighbour(leading_w, float(error[0]), complex(guesses[0]), accuracy):
+        return None
+    return LeadingEigenvalue(leading_w, float(error[0]), w)
 
 
 def _follow_leader_of_uniform(rod: Rod, guess: complex, accuracy: float) -> LeadingEigenvalue | None:
@@ -101,7 +120,9 @@ def _follow_leader_of_arm(rod: Rod, guesses: Complex, accuracy: float) -> Leadin
         count_of_arm(line, determinant, hull, *known_roots).number == (known_roots.w.real > line).sum()
         for line in _lines_for_count(leading_w)
     )
-    return LeadingEigenvalue(leading_w, float(error[0]), w) if is_leading else None
+    if not is_leading:
+        return None
+    return LeadingEigenvalue(leading_w, float(error[0]), w, is_counted=not is_complete)
 
 
 def _refined_eigenvalues(

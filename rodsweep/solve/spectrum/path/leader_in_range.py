@@ -1,0 +1,135 @@
+"""The leading eigenvalue of an arm of a chain, from propagators that are interpolated over a range of arms.
+
+A chain solves rods one after another, in steps of one parameter. As soon as the step is known, a range of the
+parameter is chosen that contains many further arms of the chain. The propagators of all arms of the range
+follow from those of a few arms, and so do the hulls of their spectra; an eigenvalue and the proof that it
+leads then take a fraction of the time that a single arm takes. Results depend on the range and on the
+eigenvalues of the neighbouring arm only, so that an interrupted chain resumes with the same results.
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from math import floor, inf, nan
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+
+from ....arrays import Array, Complex
+from ....determinant.arm.arm_family import ArmFamily
+from ....determinant.arm.hull.hull import hulls_along
+from ....determinant.arm.hull.region import PathHulls
+from ....determinant.parameter_path import ParameterPath
+from ....model.rod import Rod
+from ..candidates import line_for_proof
+from .arm_following import follow_eigenvalues_of_arms
+from .arm_following_settings import ARM_FOLLOWING_SETTINGS
+from .arm_interval import family_with_proofs
+from .carried_count import leading_eigenvalues_of_track
+from .prediction import new_track
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ArmRangeSettings:
+    """Settings for the ranges of arms of a chain."""
+
+    max_relative_length: float = 0.2
+    """Length of a range of the parameter coordinate, divided by the coordinate at its start: at most this,
+    the change after which a chain of cycles measures its errors again."""
+    min_steps: int = 8
+    """No range is chosen for fewer steps of the chain: the propagators of a range take the time of about five
+    single arms."""
+    hull_count: int = 5
+    """Number of arms of a range, both ends included, whose hulls are computed."""
+    max_failures: int = 2
+    """Number of successive arms without a proof after which a range is given up. A single failure, as where a
+    pair of eigenvalues becomes real, does not last."""
+    max_cached_ranges: int = 2
+    """Maximum number of ranges whose propagators are cached; a chain needs one at a time."""
+    field_ranges: ClassVar = {"hull_count": (2, inf), "min_steps": (1, inf), "max_failures": (1, inf)}
+
+
+ARM_RANGE_SETTINGS = ArmRangeSettings()
+
+
+class ArmRange(NamedTuple):
+    """Range of a parameter that contains the next arms of a chain. low, high: coordinates of the parameter.
+    largest_w: largest |w| of the eigenvalues that are followed. line: real part <= 0 of a line left of the
+    leading eigenvalue, for the proof that it leads. Both belong to the arm at which the range begins.
+    failures: number of successive last arms at which the range gave no proof."""
+
+    low: float
+    high: float
+    largest_w: float
+    line: float
+    failures: float = 0.0
+
+    @property
+    def is_usable(self) -> bool:
+        """Whether the range is tried at further arms."""
+        return self.failures < ARM_RANGE_SETTINGS.max_failures
+
+
+NO_RANGE = ArmRange(nan, nan, nan, nan)
+"""Range of an arm whose proof needs a count: a range would be of no use at the next arm."""
+
+
+def next_range(
+    rod: Rod, previous_rod: Rod, name: str, current: ArmRange | None, eigenvalues: Complex
+) -> ArmRange | None:
+    """The range that contains the next arm of a chain: `current` if possible; None for uniform rods and for
+    steps that are too long.
+
+    rod, previous_rod: the last two rods of the chain. name: the varied parameter. current: range of `rod`,
+    `NO_RANGE` or None. eigenvalues: those of `rod` that are followed, (n,), the leading eigenvalue first."""
+    start = rod.coordinate(name)
+    step = start - previous_rod.coordinate(name)
+    if current is not None and (current is NO_RANGE or current.low <= start + step <= current.high):
+        return None if current is NO_RANGE else current
+    max_length = ARM_RANGE_SETTINGS.max_relative_length * abs(start)
+    is_long = abs(step) * ARM_RANGE_SETTINGS.min_steps > max_length
+    if rod.is_uniform or step == 0 or is_long or not np.isfinite(eigenvalues).all():
+        return None
+    low, high = sorted((start, start + floor(max_length / abs(step)) * step))
+    line = line_for_proof(complex(eigenvalues[0]), 0.0)
+    return ArmRange(low, high, float(np.abs(eigenvalues).max()), line)
+
+
+def leader_in_range(
+    rod: Rod, name: str, arm_range: ArmRange, guesses: Complex
+) -> tuple[Complex, Array] | None:
+    """Returns (w, errors), (m,) each: the eigenvalues of `rod` with Im w >= 0 near `guesses`, (n,), by
+    descending real part, and their errors; None if one of them is not found, or if the first is not proved to
+    lead. name: the varied parameter of the chain. guesses: eigenvalues with Im w >= 0 of the previous rod,
+    the leading eigenvalue first."""
+    p = rod.coordinate(name)
+    if not (arm_range.low <= p <= arm_range.high and arm_range.is_usable and np.isfinite(guesses).all()):
+        return None
+    family_data = _family_and_hulls(rod.with_coordinate(name, arm_range.low), name, arm_range)
+    if family_data is None:
+        return None
+    pairs = guesses[guesses.imag != 0]
+    first_w = np.append(guesses, pairs.conj())
+    track = new_track(first_w[np.lexsort((-first_w.imag, -first_w.real))], 1)
+    proved_counts = np.zeros(1, np.int64)
+    mode_count = 2 if guesses[0].imag else 1
+    reached = follow_eigenvalues_of_arms(track, *family_data, np.array([p]), mode_count, proved_counts)
+    if not reached or proved_counts[0] < mode_count:
+        return None
+    w, error = leading_eigenvalues_of_track(track, len(first_w))
+    is_upper = w[0].imag >= 0
+    return w[0][is_upper], error[0][is_upper]
+
+
+@lru_cache(maxsize=ARM_RANGE_SETTINGS.max_cached_ranges)
+def _family_and_hulls(first_rod: Rod, name: str, arm_range: ArmRange) -> tuple[ArmFamily, PathHulls] | None:
+    """(family of the arms of a range, hulls that contain their spectra), cached; None if the arms are not
+    smooth in the parameter, or if no elements resolve an arm. first_rod: arm at `arm_range.low`. name: the
+    varied parameter."""
+    path = ParameterPath(first_rod, name)
+    W = ARM_FOLLOWING_SETTINGS.w_bound_ratio * arm_range.largest_w
+    try:
+        hulls = hulls_along(path, arm_range.low, arm_range.high, ARM_RANGE_SETTINGS.hull_count)
+        family = family_with_proofs(path, hulls, W, arm_range.line)
+    except (ValueError, FloatingPointError):
+        return None
+    return None if family is None else (family, hulls)
