@@ -11,6 +11,7 @@ from ..model.crushing import uncrushed_interval
 from ..model.material.rod_material import RodMaterial
 from ..results.file.view import ResultView
 from .branch_curves import branch_ends, followed_parameter
+from .plane_curves import PlaneParameters
 from .range_unions import ParameterRange
 
 
@@ -35,14 +36,10 @@ def uncrushed_ranges(view: ResultView, rods: Iterable[int]) -> list[ParameterRan
     return [uncrushed_interval(material, rod, (parameter, range_start, range_end)) for rod in rods_values]
 
 
-def crushing_ratio(view: ResultView, line_parameter: str, row_parameter: str, x: Array, y: Array) -> Array:
+def crushing_ratio(view: ResultView, parameters: PlaneParameters, x: Array, y: Array) -> Array:
     """Force divided by the crushing force (zero stretch), at the points x, y of the plane of a phase diagram;
-    0 if no force crushes the rod.
-
-    line_parameter, row_parameter: parameters along a row, and constant on a row. x, y: their values, of
-    shapes that broadcast.
-    """
+    0 if no force crushes the rod. x, y: values of the parameters, of shapes that broadcast."""
     fixed = {name: np.asarray(values[0]) for name, values in view.parameter_values.items()}
-    values = {"taper": np.asarray(1.0)} | fixed | {line_parameter: x, row_parameter: y}
+    values = {"taper": np.asarray(1.0)} | fixed | {parameters.line: x, parameters.row: y}
     force_per_k1 = material_of_rods(view).relative_crushing_forces(values["taper"])
     return np.asarray(values["F"] / (values["k1"] * force_per_k1) + 0 * (x + y))

@@ -35,6 +35,7 @@ from rodsweep.post.figures.stability.regions import (
 from rodsweep.post.figures.stability.row_classes import pixel_classes_of_row
 from rodsweep.post.figures.stability.threshold_lines import _groups_of_equal_lines
 from rodsweep.post.figures.style import INVERSE_DRAG_LABEL, LABELS, number_in_tex, scale_axis
+from rodsweep.post.plane_curves import PlaneParameters
 from rodsweep.post.summary import SUMMARIES
 from rodsweep.results.file.view import ResultView, read_view
 from rodsweep.results.layouts.phase_diagram import STABILITY_CLASSES
@@ -162,7 +163,12 @@ def test_a_stretch_of_a_row_without_a_computed_point_is_undecided():
     attributes = {"task": "phase_diagram", "config_resolved": json.dumps(resolved)}
     view = ResultView(Path("f.h5"), attributes, variables, ("k1",), {0: "ok"}, 0)
     edges = np.array([0.0, 50.0, 199.0, 200.0, 220.0])
-    assert pixel_classes_of_row(view, "stable_states", "F", "k1", 0, edges).tolist() == [1, 2, 4, 5]
+    assert pixel_classes_of_row(view, "stable_states", PlaneParameters("F", "k1"), 0, edges).tolist() == [
+        1,
+        2,
+        4,
+        5,
+    ]
 
 
 def test_rows_that_make_no_plane_are_bars(command, drawn):
@@ -699,10 +705,10 @@ def test_folds_of_rows_are_marked_where_no_curve_goes_through_them():
     }
     view = ResultView(Path("f.h5"), {"task": "phase_diagram"}, variables, ("k1",), {0: "ok"}, 0)
     axes = Figure().subplots()
-    (folds,) = mark_cycles_on_rows(axes, view, "F", "k1")
+    (folds,) = mark_cycles_on_rows(axes, view, PlaneParameters("F", "k1"))
     assert folds.get_xydata().tolist() == [[70.0, 150.0]]
     bare = {name: values for name, values in variables.items() if not name.startswith("cycle_curve")}
-    (folds,) = mark_cycles_on_rows(axes, replace(view, variables=bare), "F", "k1")
+    (folds,) = mark_cycles_on_rows(axes, replace(view, variables=bare), PlaneParameters("F", "k1"))
     assert len(folds.get_xydata()) == 3
 
 
@@ -721,7 +727,7 @@ def test_a_fold_beside_an_extremum_of_its_curve_lies_on_it():
         "cycle_curve_k1": 133 + 0.051 * ((F - 79) / 4) ** 2,
     }
     view = ResultView(Path("f.h5"), {"task": "phase_diagram"}, variables, ("k1",), {0: "ok"}, 0)
-    assert mark_cycles_on_rows(Figure().subplots(), view, "F", "k1") == []
+    assert mark_cycles_on_rows(Figure().subplots(), view, PlaneParameters("F", "k1")) == []
 
 
 def figure_of(task, **words):

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from rodsweep.post.figures.stability.class_bars import draw_class_bars
-from rodsweep.post.figures.stability.diagram_curves import masks_of_labelled_curves, plane_force_text
+from rodsweep.post.figures.stability.diagram_curves import labelled_curve_paths, plane_force_text
+from rodsweep.post.plane_curves import PlaneParameters
 from rodsweep.post.stability_curves import is_stability_boundary_by_curve
 from rodsweep.results.file.view import ResultView
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS
@@ -36,14 +37,14 @@ def diagram():
 
 def test_the_boundary_is_the_curve_on_which_the_rows_change_their_stability():
     view = diagram()
-    assert is_stability_boundary_by_curve(view, "k1", "k2") == {1: False, 2: True}
-    (named,) = masks_of_labelled_curves(view, 1, "k1", "k2")
-    assert (view.variables["curve_number"][named] == 2).all()
+    assert is_stability_boundary_by_curve(view, PlaneParameters("k1", "k2")) == {1: False, 2: True}
+    (named,) = labelled_curve_paths(view, 1, PlaneParameters("k1", "k2"))
+    assert named[:, 0].tolist() == view.variables["curve_k1"][21:].tolist()
 
 
 def test_a_plane_without_force_names_the_force_at_which_it_lies():
-    assert plane_force_text(diagram(), "k1", "k2") == " = 50"
-    assert plane_force_text(diagram(), "F", "k2") == ""
+    assert plane_force_text(diagram(), PlaneParameters("k1", "k2")) == " = 50"
+    assert plane_force_text(diagram(), PlaneParameters("F", "k2")) == ""
 
 
 @pytest.mark.parametrize("further", [0, 2])

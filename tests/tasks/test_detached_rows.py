@@ -13,6 +13,7 @@ import rodsweep as rs
 from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
+from rodsweep.post.plane_curves import PlaneParameters
 from rodsweep.post.summary.detached_branches import detached_branch_lines
 from rodsweep.results.run.checkpoints import ItemResults
 from rodsweep.solve.branch.special.detached_rows import DetachedRows, DiagramStages
@@ -357,9 +358,10 @@ def test_curves_are_followed_beyond_the_range_after_all_other_stages():
     assert stages.lost_beyond_count(results | {3: TracedHalfCurve(None).arrays()}) == 1
     ((variable, count),) = curves_lost_beyond_values(2)
     view = SimpleNamespace(variables={variable.name: count})
-    (line,) = detached_branch_lines(view, "k1")
+    (line,) = detached_branch_lines(view, PlaneParameters("F", "k1"))
     assert line.startswith("ends of curves of folds lost beyond the range: 2; rows whose branches")
-    assert curves_lost_beyond_values(0) == detached_branch_lines(SimpleNamespace(variables={}), "k1") == []
+    bare = SimpleNamespace(variables={})
+    assert curves_lost_beyond_values(0) == detached_branch_lines(bare, PlaneParameters("F", "k1")) == []
     assert [curve.points[0].parameter_value for curve in stages.curves(results).curves] == [0.2]
     # A row that could not be solved again has no folds.
     assert stages.stages({**{i: results[i] for i in (0, 1)}, 2: {}})[-1] == folds

@@ -15,9 +15,9 @@ from surveyed import few
 
 import rodsweep as rs
 from rodsweep.discretization.elements.resolution import Resolution
+from rodsweep.post.plane_curves import PlaneParameters
 from rodsweep.post.summary import POINT_NOUNS, show_summary
-from rodsweep.post.summary.curve_extrema import fold_curve_extremum_lines
-from rodsweep.post.summary.diagram_curves import cycle_curve_lines
+from rodsweep.post.summary.diagram_curves import cycle_curve_lines, fold_curve_extremum_lines
 from rodsweep.results.file.creation import FilePlan, FinalVariables
 from rodsweep.results.file.store import ResultFileWriter
 from rodsweep.results.file.view import read_view
@@ -58,6 +58,7 @@ DIMENSIONS = {
     ("modes", "transient_growth"): ("F", "k1", "k2", "gamma3"),
 }
 TASKS = list(CONFIGS)
+PLANE = PlaneParameters("F", "k1")
 
 
 def job_of(tmp_path, task, *overrides):
@@ -356,10 +357,10 @@ def test_a_curve_of_one_point_has_the_reasons_of_both_ends():
         (None, None),
     )
     filled = fold_and_torus_curve_values(
-        TracedCurves((curve,), max_seed_distance_in_rows=0.0, untraced_count=0), ("F", "k1")
+        TracedCurves((curve,), max_seed_distance_in_rows=0.0, untraced_count=0), PLANE
     )
     view = SimpleNamespace(variables={variable.name: values for variable, values in filled})
-    (line,) = cycle_curve_lines(view, "F", "k1")
+    (line,) = cycle_curve_lines(view, PLANE)
     first, last = (
         f"k1 = 150, F = 60.0000000 (+- 1e-07) ({why})"
         for why in ("edge of the diagram", "no further point found")
@@ -385,7 +386,7 @@ def test_an_extremum_of_the_row_parameter_along_a_curve_of_folds_is_stored_and_s
     curves = [SpecialPointCurve(SpecialKind.fold, points[2:], (CurveEndReason.edge,) * 2, (None, None))]
     curves.append(replace(curves[0], points=points))
     traced = TracedCurves(tuple(curves), max_seed_distance_in_rows=0.0, untraced_count=0)
-    filled = fold_curve_extremum_values(traced, ("F", "k1"))
+    filled = fold_curve_extremum_values(traced, PLANE)
     view = SimpleNamespace(variables={variable.name: values for variable, values in filled})
     assert {name: values.tolist() for name, values in view.variables.items()} == {
         "cycle_extremum_curve": [2],
@@ -394,18 +395,18 @@ def test_an_extremum_of_the_row_parameter_along_a_curve_of_folds_is_stored_and_s
         "cycle_extremum_F_error": [1e-6],
         "cycle_extremum_k1_error": [4e-7],
     }
-    (line,) = fold_curve_extremum_lines(view, "F", "k1")
+    (line,) = fold_curve_extremum_lines(view, PLANE)
     assert line.startswith(
         "extremum of k1 along curve 2 of folds of cycles: k1 = 133.0145143 (+- 4e-07), "
         "F = 79.004070 (+- 1e-06); "
     )
-    assert fold_curve_extremum_values(replace(traced, curves=(curves[0],)), ("F", "k1")) == []
+    assert fold_curve_extremum_values(replace(traced, curves=(curves[0],)), PLANE) == []
     unlocated = replace(curves[0], points=(points[0], replace(points[2], row_extremum_error=np.nan)))
-    ((variable, count),) = fold_curve_extremum_values(replace(traced, curves=(unlocated,) * 2), ("F", "k1"))
+    ((variable, count),) = fold_curve_extremum_values(replace(traced, curves=(unlocated,) * 2), PLANE)
     assert (variable.name, int(count)) == ("cycle_extrema_unlocated", 2)
-    (line,) = fold_curve_extremum_lines(SimpleNamespace(variables={variable.name: count}), "F", "k1")
+    (line,) = fold_curve_extremum_lines(SimpleNamespace(variables={variable.name: count}), PLANE)
     assert line.startswith("extrema of k1 along curves of folds of cycles that could not be located: 2;")
-    assert fold_curve_extremum_lines(SimpleNamespace(variables={}), "F", "k1") == []
+    assert fold_curve_extremum_lines(SimpleNamespace(variables={}), PLANE) == []
 
 
 def test_a_row_that_a_curve_of_folds_meets_without_a_fold_of_its_own_is_named():
@@ -415,7 +416,7 @@ def test_a_row_that_a_curve_of_folds_meets_without_a_fold_of_its_own_is_named():
     )
     curve = SpecialPointCurve(SpecialKind.fold, points, (CurveEndReason.edge,) * 2, (None, None))
     filled = fold_and_torus_curve_values(
-        TracedCurves((curve,), max_seed_distance_in_rows=0.0, untraced_count=0), ("F", "k1")
+        TracedCurves((curve,), max_seed_distance_in_rows=0.0, untraced_count=0), PLANE
     )
     nan = float("nan")
     rows = {
@@ -428,7 +429,7 @@ def test_a_row_that_a_curve_of_folds_meets_without_a_fold_of_its_own_is_named():
         status_names=np.array(["ok", "ok", "failed", "ok", "ok"]),
         by_point=rows.__getitem__,
     )
-    _, line = cycle_curve_lines(view, "F", "k1")
+    _, line = cycle_curve_lines(view, PLANE)
     assert line.startswith("this curve crosses the row k1 = 175 between F = 60 and 70, but no branch of")
 
 

@@ -1,5 +1,5 @@
 """Phase diagrams, as in the paper's Fig. 4: stability class of the rod over two parameters, and boundary
-curves. line_parameter, row_parameter: parameters along a row, and constant on a row."""
+curves."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -11,11 +11,11 @@ from matplotlib.lines import Line2D
 
 from ...arrays import Array
 from ...config.parameters_section import DEFAULT_VALUES_OF_PARAMETERS
-from ...model.parameters import NON_OPTIONAL_LINEAR_PARAMETERS
 from ...results.file.view import ResultView
 from ...results.layouts import lacks_sweep_wide_variables
 from ...results.layouts.variables import flag_number
 from ..crushing import crushing_ratio
+from ..plane_curves import PlaneParameters, curve_paths, plane_parameters
 from . import style
 from .arm.quantities import set_heading
 from .arm.validity_hatches import hatch_compressed
@@ -56,8 +56,8 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     Returns a sentence. Raises InputError for options that the task does not have, and if nothing can be
     drawn."""
     view = request.only_view()
-    line = next(name for name in NON_OPTIONAL_LINEAR_PARAMETERS if name not in view.parameters)
-    row = next((name for name in view.parameters if len(view.parameter_values[name]) > 1), view.parameters[0])
+    parameters = plane_parameters(view)
+    line, row = parameters
     palette = STATE_PALETTE if STATE_PALETTE.variable in view.variables else CLASS_PALETTE
     values = view.variables[palette.variable]
     style.require_content(view, (values >= 0).any(), "computed row")
@@ -67,15 +67,15 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     if is_finite.sum() < 2:
         rows = f", for each {row}" if len(y) > 1 else ""
         caption = f"behaviour of the rod over {line}{rows}"
-        return request.write(_draw_rows(view, palette, line, row), caption, BAR_ASPECT * len(y))
+        return request.write(_draw_rows(view, palette, parameters), caption, BAR_ASPECT * len(y))
     table = values.reshape(len(y), len(x))[is_finite]
     y = y[is_finite]
     plane = DrawnPlane(x, y)
     pixel_coordinates = (plane.pixel_centres(x), plane.pixel_centres(y))
-    ratio = crushing_ratio(view, line, row, pixel_coordinates[0], pixel_coordinates[1][:, None])
+    ratio = crushing_ratio(view, parameters, pixel_coordinates[0], pixel_coordinates[1][:, None])
     figure = Figure(figsize=(5.8, 4.6), layout="constrained")
     axes = figure.subplots()
-    pixels = _class_of_pixels(view, palette, line, row, ClassMap(plane, table, ratio))
+    pixels = _class_of_pixels(view, palette, parameters, ClassMap(plane, table, ratio))
     unit: dict[str, Any] = {"extent": (0, 1, 0, 1), "transform": axes.transAxes, "aspect": "auto"}
     axes.imshow(pixels, interpolation="nearest", origin="lower", **unit, **palette.colour_keywords)
     style.scale_axis(axes, "x", x)
@@ -83,10 +83,10 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     boundaries: list[Any] = [*_draw_crushing(axes, ratio, *pixel_coordinates)]
     boundaries += hatch_compressed(axes, view, ratio, *pixel_coordinates)
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), xlabel=style.LABELS[line], ylabel=style.LABELS[row])
-    curves = _draw_stored_curves(axes, view, palette, line, row)
+    curves = _draw_stored_curves(axes, view, palette, parameters)
     handles = [*palette.legend_entries(pixels), *curves, *boundaries]
     style.draw_legend_below(figure, handles, column_count=2 if "bautin_curve" in view.variables else 3)
-    set_heading(figure, view, _constant_parameters_text(view, line, row), unstored_crossings_text(view))
+    set_heading(figure, view, _constant_parameters_text(view, parameters), unstored_crossings_text(view))
     lacks_curves = lacks_sweep_wide_variables(view.attributes)
     missing_clause = "; curves are missing, the file is not finished" if lacks_curves else ""
     infinite_clause = infinite_values_clause(view.parameter_values, [row])
@@ -96,28 +96,24 @@ def draw_phase_diagram(request: FigureRequest) -> str:
 
 
 def _draw_stored_curves(
-    axes: Axes, view: ResultView, palette: Palette, line_parameter: str, row_parameter: str
+    axes: Axes, view: ResultView, palette: Palette, parameters: PlaneParameters
 ) -> list[Any]:
     """Draws the boundary curves, curves of cycles and special points of rows that a file contains; returns
-    their legend entries. line_parameter, row_parameter: parameters along a row, and constant on a row."""
+    their legend entries."""
     handles: list = []
     if "curve_number" in view.variables:
-        handles += draw_boundary_curves(axes, view, line_parameter, row_parameter, palette is STATE_PALETTE)
+        handles += draw_boundary_curves(axes, view, parameters, palette is STATE_PALETTE)
     if "cycle_curve_number" in view.variables:
-        handles += draw_cycle_curves(axes, view, line_parameter, row_parameter)
+        handles += draw_cycle_curves(axes, view, parameters)
     if "cycle_special_kind" in view.variables:
-        handles += mark_cycles_on_rows(axes, view, line_parameter, row_parameter)
+        handles += mark_cycles_on_rows(axes, view, parameters)
     return handles
 
 
-def _constant_parameters_text(view: ResultView, line_parameter: str, row_parameter: str) -> str:
+def _constant_parameters_text(view: ResultView, parameters: PlaneParameters) -> str:
     """Text of the constant parameters. gamma1 is included only if the figure shows cycles or their
-    criticality. line_parameter, row_parameter: parameters on the axes."""
-    fixed = {
-        name: values[0]
-        for name, values in view.parameter_values.items()
-        if name not in (line_parameter, row_parameter)
-    }
+    criticality. parameters: parameters on the axes."""
+    fixed = {name: values[0] for name, values in view.parameter_values.items() if name not in parameters}
     if "curve_gamma1" in view.variables:
         fixed["gamma1"] = float(view.variables["curve_gamma1"])
     elif "gamma1" in view.attributes or ("stable_states" in view.variables and not view.quantities):
@@ -134,16 +130,16 @@ def _draw_crushing(axes: Axes, ratio: Array, x: Array, y: Array) -> list[Line2D]
     return [Line2D([], [], color="0.4", lw=1.2, label="crushing force")]
 
 
-def _draw_rows(view: ResultView, palette: Palette, line_parameter: str, row_parameter: str) -> Figure:
+def _draw_rows(view: ResultView, palette: Palette, parameters: PlaneParameters) -> Figure:
     """Figure with a bar for each row of a diagram, used if fewer than two rows have a finite value of the row
-    parameter. line_parameter, row_parameter: parameters along a row, and constant on a row."""
-    x = view.variables[line_parameter]
-    y = view.parameter_values[row_parameter]
+    parameter."""
+    x = view.variables[parameters.line]
+    y = view.parameter_values[parameters.row]
     figure = Figure(figsize=(5.8, 1.6 + 0.5 * len(y)), layout="constrained")
     axes = figure.subplots()
     edges = DrawnPlane.positions(x, np.linspace(0, 1, PIXEL_COUNT + 1))
     rows = [
-        pixel_classes_of_row(view, palette.variable, line_parameter, row_parameter, row_index, edges)
+        pixel_classes_of_row(view, palette.variable, parameters, row_index, edges)
         for row_index in range(len(y))
     ]
     table: Array = np.array(rows)
@@ -152,21 +148,20 @@ def _draw_rows(view: ResultView, palette: Palette, line_parameter: str, row_para
     for separator in np.arange(len(y) - 1) + 0.5:
         axes.axhline(separator, color="white", lw=4)
     style.scale_axis(axes, "x", x)
-    texts = [f"${style.TEX_SYMBOLS[row_parameter]} = {style.number_in_tex(value)}$" for value in y]
+    texts = [f"${style.TEX_SYMBOLS[parameters.row]} = {style.number_in_tex(value)}$" for value in y]
     axes.set_yticks(np.arange(len(y)), texts)
     axes.tick_params("y", length=0)
-    axes.set(xlim=(x[0], x[-1]), xlabel=style.LABELS[line_parameter])
+    axes.set(xlim=(x[0], x[-1]), xlabel=style.LABELS[parameters.line])
     style.draw_legend_below(figure, palette.legend_entries(table), column_count=3)
-    set_heading(figure, view, _constant_parameters_text(view, line_parameter, row_parameter))
+    set_heading(figure, view, _constant_parameters_text(view, parameters))
     return figure
 
 
 def _class_of_pixels(
-    view: ResultView, palette: Palette, line_parameter: str, row_parameter: str, map_: ClassMap
+    view: ResultView, palette: Palette, parameters: PlaneParameters, map_: ClassMap
 ) -> Array:
     """Class of every pixel of the plane, (pixels, pixels). The regions of equal class are bounded by the
-    curves of the file and by the crushing force. line_parameter, row_parameter: parameters along a row, and
-    constant on a row."""
+    curves of the file and by the crushing force."""
     plane = map_.plane
     crushed_class = flag_number("crushed", palette.words)
     columns, rows = np.meshgrid(plane.x, plane.y)
@@ -175,20 +170,14 @@ def _class_of_pixels(
     computed = ClassifiedPoints(places, map_.classes[is_known])
     row_points = ClassifiedPoints(np.zeros((0, 2)), np.zeros(0, int))
     if palette is CLASS_PALETTE:
-        x, row_values, row_classes = classes_between_crossings(view, line_parameter, row_parameter)
+        x, row_values, row_classes = classes_between_crossings(view, parameters)
         row_points = ClassifiedPoints(plane.fractions_of_axes(x, row_values), row_classes)
     curves = []
-    variables = view.variables
-    for kind in (kind for kind in ("curve", "cycle_curve") if f"{kind}_number" in variables):
-        number = variables[f"{kind}_number"]
-        if kind == "curve" and palette is not CLASS_PALETTE:  # double eigenvalues bound no stable state
-            number = np.where(variables["curve_kind"] == 1, number, 0)
-        for mask in (number == curve for curve in np.unique(number[number > 0])):
-            curves.append(
-                plane.fractions_of_axes(
-                    variables[f"{kind}_{line_parameter}"][mask], variables[f"{kind}_{row_parameter}"][mask]
-                )
-            )
+    for kind in (kind for kind in ("curve", "cycle_curve") if f"{kind}_number" in view.variables):
+        # Double eigenvalues bound no stable state.
+        code = 1 if kind == "curve" and palette is not CLASS_PALETTE else None
+        paths = curve_paths(view, parameters, kind, code).values()
+        curves += [plane.fractions_of_axes(*path.T) for path in paths]
     undecided = flag_number("undecided", palette.words)
     pixels = pixel_classes(
         computed, row_points, curves, map_.crushing_ratio > CURVE_END_CRUSHING_RATIO, undecided

@@ -1,15 +1,14 @@
-"""Phase diagrams in `rodsweep show`: fraction of the plane in each class, and changes along the rows.
-line_parameter: parameter that varies along a row. row_parameter: parameter that is constant on a row."""
+"""Phase diagrams in `rodsweep show`: fraction of the plane in each class, and changes along the rows."""
 
 import numpy as np
 
-from ...model.parameters import NON_OPTIONAL_LINEAR_PARAMETERS
 from ...results.file.view import ResultView
 from ...results.layouts.phase_diagram import STABILITY_CLASSES
 from ...results.layouts.rods import has_standard_rods
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...results.layouts.variables import flag_number
 from ...wording import count_of_total, counted
+from ..plane_curves import PlaneParameters, plane_parameters
 from .arm.arm import load_range_text
 from .diagram_curves import (
     criticality_lines,
@@ -40,28 +39,27 @@ COMPARED_GRID_SPACING = 1e-8
 def phase_diagram_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
     """Summary of a phase diagram. computed: mask of the computed rows, of the shape of the rows."""
     variables = view.variables
-    line_parameter = next(name for name in NON_OPTIONAL_LINEAR_PARAMETERS if name not in view.parameters)
-    row_parameter = next(name for name in view.parameters if len(view.parameter_values[name]) > 1)
+    parameters = plane_parameters(view)
     answer = [
         *class_fraction_lines(variables["class"][computed]),
-        *lines_about_rows(view, computed, line_parameter, row_parameter),
+        *lines_about_rows(view, computed, parameters),
     ]
     if "stable_states" in variables:
-        answer += stable_state_lines(view, computed, line_parameter, row_parameter)
+        answer += stable_state_lines(view, computed, parameters)
     reliability = search_lines(view, computed, "row")
     if "stable_states" in variables:
-        followed_text = followed_beyond_range_text(view, computed, line_parameter, "cycle_followed_")
+        followed_text = followed_beyond_range_text(view, computed, parameters.line, "cycle_followed_")
         reliability.append(f"{followed_text}, unless a curve of folds or torus points crosses the row there")
     details = [
         *class_count_lines(variables["class"][computed]),
         *cost_lines(view, computed),
-        *cost_saving_lines(view, computed, line_parameter),
+        *cost_saving_lines(view, computed, parameters),
     ]
     if "curve_number" in variables:
-        answer += diagram_curve_lines(view, line_parameter, row_parameter)
+        answer += diagram_curve_lines(view, parameters)
         reliability += [
-            *curve_count_lines(view, line_parameter),
-            *incomplete_curve_lines(view, line_parameter, row_parameter),
+            *curve_count_lines(view, parameters),
+            *incomplete_curve_lines(view, parameters),
         ]
     if "curve_criticality" in variables:
         details += criticality_lines(view)
@@ -76,7 +74,7 @@ def class_count_lines(classes: np.ndarray) -> list[str]:
     return [f"of {counted(classes.size, 'grid point')} on the rows: {texts}"]
 
 
-def cost_saving_lines(view: ResultView, computed: np.ndarray, line_parameter: str) -> list[str]:
+def cost_saving_lines(view: ResultView, computed: np.ndarray, parameters: PlaneParameters) -> list[str]:
     """List with a line that compares the cost of the rows with the cost of a uniform grid; empty if the cost
     is not stored.
 
@@ -88,10 +86,10 @@ def cost_saving_lines(view: ResultView, computed: np.ndarray, line_parameter: st
     row_count = int(computed.sum())
     solve_count = int(variables["solves"][computed].sum())
     boxes = int(variables["boxes"][computed].sum())
-    uniform = float(np.ptp(variables[line_parameter])) / COMPARED_GRID_SPACING * row_count
+    uniform = float(np.ptp(variables[parameters.line])) / COMPARED_GRID_SPACING * row_count
     return [
         f"in all {counted(solve_count, 'eigenproblem')} and {counted(boxes, 'evaluation')} of D; a uniform "
-        f"grid that resolves {line_parameter} to {COMPARED_GRID_SPACING:g} on these rows has {uniform:.2g} "
+        f"grid that resolves {parameters.line} to {COMPARED_GRID_SPACING:g} on these rows has {uniform:.2g} "
         f"points, {float(f'{uniform / max(solve_count + boxes, 1):.1g}'):g} times as many"
     ]
 
@@ -104,7 +102,7 @@ def class_fraction_lines(classes: np.ndarray) -> list[str]:
     return [f"behaviour of the straight rod, in % of the grid points: {texts}"]
 
 
-def row_start_lines(view: ResultView, computed: np.ndarray, line_parameter: str) -> list[str]:
+def row_start_lines(view: ResultView, computed: np.ndarray, parameters: PlaneParameters) -> list[str]:
     """List with a line on the classes at the starts of the rows; empty if all these classes are monotone.
     computed: mask of the computed rows, (...,)."""
     start_classes = view.variables["class"][computed][:, 0]
@@ -115,32 +113,31 @@ def row_start_lines(view: ResultView, computed: np.ndarray, line_parameter: str)
     ]
     if texts == [f"monotone on {len(start_classes)}"]:
         return []
-    place_text = f"{line_parameter} = {view.variables[line_parameter][0]:.6g}, where the rows begin"
+    place_text = f"{parameters.line} = {view.variables[parameters.line][0]:.6g}, where the rows begin"
     return [f"the straight rod at {place_text}: {', '.join(texts)} of {counted(len(start_classes), 'row')}"]
 
 
-def lines_about_rows(
-    view: ResultView, computed: np.ndarray, line_parameter: str, row_parameter: str
-) -> list[str]:
+def lines_about_rows(view: ResultView, computed: np.ndarray, parameters: PlaneParameters) -> list[str]:
     """Lines about the rows in the mask `computed`, (...,): states at their starts, crossings by kind,
     undecided ranges, rows with and without flutter."""
     variables = view.variables
     stored = (variables["crossing_kind"] > 0).sum(axis=-1)
     is_incomplete = computed & ((variables["crossing_count"] != stored) | np.isfinite(variables["open_from"]))
     return [
-        *row_start_lines(view, computed, line_parameter),
-        *_crossing_lines(view, computed, is_incomplete, line_parameter, row_parameter),
-        *_undecided_and_flutter_lines(view, computed, is_incomplete, line_parameter, row_parameter),
+        *row_start_lines(view, computed, parameters),
+        *_crossing_lines(view, computed, is_incomplete, parameters),
+        *_undecided_and_flutter_lines(view, computed, is_incomplete, parameters),
     ]
 
 
 def _crossing_lines(
-    view: ResultView, computed: np.ndarray, unknown: np.ndarray, line_parameter: str, row_parameter: str
+    view: ResultView, computed: np.ndarray, unknown: np.ndarray, parameters: PlaneParameters
 ) -> list[str]:
     """Lines about the crossings of each kind on the rows in the mask `computed`; `unknown`: mask of rows with
     further crossings that are not known."""
     variables = view.variables
-    row_values = view.point_columns[row_parameter].reshape(computed.shape)
+    line, row = parameters
+    row_values = view.point_columns[row].reshape(computed.shape)
     lines = []
     for number, word in enumerate(CROSSING_KINDS):
         of_kind = (variables["crossing_kind"] == number) & computed[..., np.newaxis]
@@ -153,41 +150,35 @@ def _crossing_lines(
             )
             bound = "at least " * bool((unknown & ~has_kind).any())
             rows_text = f"on {bound}{count_of_total(has_kind.sum(), computed.sum(), 'row')}"
-            text = (
-                f"{word}{CROSSING_KIND_REMARKS.get(word, '')}: {rows_text}, {line_parameter} = {first_text}"
-            )
-            text += f", {row_parameter} = {axis_values_text(row_values[has_kind])}"
+            text = f"{word}{CROSSING_KIND_REMARKS.get(word, '')}: {rows_text}, {line} = {first_text}"
+            text += f", {row} = {axis_values_text(row_values[has_kind])}"
             if is_later.any():
                 bound = "at least " * bool(unknown.any())
                 later_rows_text = f"{bound}{int(is_later.any(axis=-1).sum())} of these rows"
-                text += (
-                    f"; again further along the row on {later_rows_text}, at {line_parameter} = {later_text}"
-                )
+                text += f"; again further along the row on {later_rows_text}, at {line} = {later_text}"
             lines.append(text)
     return lines
 
 
 def _undecided_and_flutter_lines(
-    view: ResultView, computed: np.ndarray, unknown: np.ndarray, line_parameter: str, row_parameter: str
+    view: ResultView, computed: np.ndarray, unknown: np.ndarray, parameters: PlaneParameters
 ) -> list[str]:
     """Lines about undecided ranges, and about the rows with and without flutter. The masks as in
     `_crossing_lines`."""
     variables = view.variables
-    row_values = view.point_columns[row_parameter].reshape(computed.shape)
+    line, row = parameters
+    row_values = view.point_columns[row].reshape(computed.shape)
     lines = []
     flutter, unknown_class = (flag_number(word, STABILITY_CLASSES) for word in ("flutter", "undecided"))
     undecided = (variables["class"] == unknown_class) & computed[..., np.newaxis]
     if undecided.any():
         has_undecided = undecided.any(axis=-1)
-        values = np.broadcast_to(variables[line_parameter], undecided.shape)[undecided]
+        values = np.broadcast_to(variables[line], undecided.shape)[undecided]
         rows_text = (
-            f"on {count_of_total(has_undecided.sum(), computed.sum(), 'row')}, {line_parameter} "
-            f"= {span_text(values)}"
+            f"on {count_of_total(has_undecided.sum(), computed.sum(), 'row')}, {line} = {span_text(values)}"
         )
-        lines.append(
-            f"behaviour undecided: {rows_text}, {row_parameter} = "
-            f"{axis_values_text(row_values[has_undecided])}"
-        )
+        values_text = axis_values_text(row_values[has_undecided])
+        lines.append(f"behaviour undecided: {rows_text}, {row} = {values_text}")
     # A window of flutter may lie between two grid points: the located crossings show it.
     flutters = (variables["class"] == flutter).any(axis=-1) | (variables["unstable_after"] > 0).any(axis=-1)
     never_flutters = ~flutters & ~unknown & (variables["class"] != unknown_class).all(axis=-1)
@@ -197,10 +188,7 @@ def _undecided_and_flutter_lines(
         with_flutter, without = (axis_values_text(row_values[mask]) for mask in (flutters, never_flutters))
         count_text = count_of_total(flutters.sum(), computed.sum(), "row")
         none = int(never_flutters.sum())
-        lines.append(
-            f"flutter: on {count_text}, {row_parameter} = {with_flutter}; none on {none}, {row_parameter} = "
-            f"{without}"
-        )
+        lines.append(f"flutter: on {count_text}, {row} = {with_flutter}; none on {none}, {row} = {without}")
     return lines
 
 

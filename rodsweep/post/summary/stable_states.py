@@ -1,5 +1,4 @@
-"""Stable states of a phase diagram with cycles in `rodsweep show`: straight rod, cycle, or both.
-line_parameter: parameter that varies along a row. row_parameter: parameter that is constant on a row."""
+"""Stable states of a phase diagram with cycles in `rodsweep show`: straight rod, cycle, or both."""
 
 import numpy as np
 
@@ -9,6 +8,7 @@ from ...results.layouts.phase_diagram import STABLE_STATES
 from ...results.layouts.thresholds import HOPF_CROSSING_CODES
 from ...results.layouts.variables import flag_number
 from ...wording import count_of_total, counted
+from ..plane_curves import PlaneParameters
 from .diagram_curves import CYCLE_CHANGE_WORDS
 from .number_texts import axis_values_text, span_text
 
@@ -29,16 +29,15 @@ KINDS_WITHOUT_CYCLE_CHANGE = tuple(map(SPECIAL_KINDS.index, ("none", "hopf")))
 """Stored numbers of special points that are no change of cycles beside the changes of the straight rod."""
 
 
-def stable_state_lines(
-    view: ResultView, computed: np.ndarray, line_parameter: str, row_parameter: str
-) -> list[str]:
+def stable_state_lines(view: ResultView, computed: np.ndarray, parameters: PlaneParameters) -> list[str]:
     """Lines about the fraction of the grid with each stable state, the ranges of some states, and the special
     points of cycles. computed: mask of the computed rows, (...,)."""
     variables = view.variables
-    row_values = view.point_columns[row_parameter].reshape(computed.shape)
+    line, row = parameters
+    row_values = view.point_columns[row].reshape(computed.shape)
     states = variables["stable_states"]
     kinds = variables["cycle_special_kind"]
-    positions = variables[f"cycle_special_{line_parameter}"]
+    positions = variables[f"cycle_special_{line}"]
     shares = (
         (float((states[computed] == number).mean()), STABLE_STATE_WORDS.get(state_word, state_word))
         for number, state_word in STABLE_STATES
@@ -49,27 +48,23 @@ def stable_state_lines(
         in_state = (states == flag_number(state, STABLE_STATES)) & computed[..., np.newaxis]
         if in_state.any():
             at_points = in_state.any(axis=-1)
-            lines.append(
-                f"{phrase}: at grid points of {count_of_total(at_points.sum(), computed.sum(), 'row')}, "
-                f"{line_parameter} = "
-                f"{span_text(np.broadcast_to(variables[line_parameter], in_state.shape)[in_state])}, "
-                f"{row_parameter} = {axis_values_text(row_values[at_points])}"
-            )
-        is_hidden = computed & ~in_state.any(axis=-1) & _is_both_only_between_points(view, line_parameter)
+            rows_text = f"at grid points of {count_of_total(at_points.sum(), computed.sum(), 'row')}"
+            values_text = span_text(np.broadcast_to(variables[line], in_state.shape)[in_state])
+            rows = axis_values_text(row_values[at_points])
+            lines.append(f"{phrase}: {rows_text}, {line} = {values_text}, {row} = {rows}")
+        is_hidden = computed & ~in_state.any(axis=-1) & _is_both_only_between_points(view, line)
         if state == "both" and is_hidden.any():
             rows = counted(int(is_hidden.sum()), "row")
             hidden_values = axis_values_text(row_values[is_hidden])
-            lines.append(f"{phrase}: only between grid points on {rows}, {row_parameter} = {hidden_values}")
+            lines.append(f"{phrase}: only between grid points on {rows}, {row} = {hidden_values}")
     for kind, phrase in CYCLE_CHANGE_WORDS.items():
         is_of_kind = (kinds == SPECIAL_KINDS.index(kind)) & computed[..., np.newaxis]
         has_kind = is_of_kind.any(axis=-1)
         if has_kind.any():
             rows_text = f"on {count_of_total(has_kind.sum(), computed.sum(), 'row')}"
             rows = axis_values_text(row_values[has_kind])
-            lines.append(
-                f"{phrase}: {rows_text}, {line_parameter} = {span_text(positions[is_of_kind])}, "
-                f"{row_parameter} = {rows}"
-            )
+            values_text = span_text(positions[is_of_kind])
+            lines.append(f"{phrase}: {rows_text}, {line} = {values_text}, {row} = {rows}")
     return lines
 
 

@@ -14,6 +14,7 @@ from rodsweep.determinant.parameter_plane import ParameterPlane, PlaneAxis
 from rodsweep.errors import InputError
 from rodsweep.model.rod import Rod
 from rodsweep.post.figures.stability.criticality_curves import parts_of_equal_criticality
+from rodsweep.post.plane_curves import PlaneParameters
 from rodsweep.results.file.view import read_view
 from rodsweep.solve.changes.diagram.boundary_curves import trace_boundary
 from rodsweep.solve.hopf import bautin_curves, bautin_points
@@ -191,7 +192,7 @@ def test_a_diagram_tells_shows_and_draws_it(command):
     assert "generalised Hopf point (Re c = 0) on curve 2: k1 = 149.6168916" in told
     assert "supercritical" in told
     view = read_view(command.directory / "generalised_hopf.h5")
-    (one, before), (other, beyond) = parts_of_equal_criticality(view, 2, "F", "k1")
+    (one, before), (other, beyond) = parts_of_equal_criticality(view, 2, PlaneParameters("F", "k1"))
     assert {one, other} == {-1, 1}
     assert before[-1] == pytest.approx((F, k1), rel=1e-8)
     assert before[-1].tolist() == beyond[0].tolist()

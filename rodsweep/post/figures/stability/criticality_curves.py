@@ -1,5 +1,4 @@
-"""Hopf curves of a phase diagram with styles by criticality, and generalised Hopf points. line_parameter,
-row_parameter: parameters along a row, and constant on a row."""
+"""Hopf curves of a phase diagram with styles by criticality, and generalised Hopf points."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -7,6 +6,7 @@ from matplotlib.lines import Line2D
 
 from ....model.parameters import NON_OPTIONAL_LINEAR_PARAMETERS
 from ....results.file.view import ResultView
+from ...plane_curves import PlaneParameters
 from ..style import TEX_SYMBOLS
 from ..style import number_in_tex as number_text
 
@@ -19,16 +19,14 @@ CRITICALITY_LOOKS = {
 
 
 def draw_hopf_curves_by_criticality(
-    axes: Axes, view: ResultView, line_parameter: str, row_parameter: str
+    axes: Axes, view: ResultView, parameters: PlaneParameters
 ) -> list[Line2D]:
     """Draws Hopf curves with line styles by criticality, and generalised Hopf points; returns legend
     entries."""
     variables = view.variables
     drawn_criticalities = set()
     for curve in np.unique(variables["curve_number"][variables["curve_kind"] == 1]):
-        for criticality, points in parts_of_equal_criticality(
-            view, int(curve), line_parameter, row_parameter
-        ):
+        for criticality, points in parts_of_equal_criticality(view, int(curve), parameters):
             _, width, style = CRITICALITY_LOOKS[criticality]
             axes.plot(*points.T, style, color="k", lw=width)
             drawn_criticalities.add(criticality)
@@ -38,30 +36,23 @@ def draw_hopf_curves_by_criticality(
         if criticality in drawn_criticalities
     ]
     for i in range(len(variables["bautin_curve"])):
-        x = variables[f"bautin_{line_parameter}"][i]
-        y = variables[f"bautin_{row_parameter}"][i]
-        symbols = TEX_SYMBOLS[line_parameter], TEX_SYMBOLS[row_parameter]
+        x, y = (variables[f"bautin_{name}"][i] for name in parameters)
+        symbols = [TEX_SYMBOLS[name] for name in parameters]
         label = rf"generalised Hopf point: ${symbols[0]}$ = {x:.6g}, ${symbols[1]}$ = {y:.6g}"
         handles += axes.plot(x, y, "kD", mfc="white", ls="", ms=5, label=label)
-    return handles + (
-        _draw_bautin_curves(axes, view, line_parameter, row_parameter)
-        if "bautin_along_curve" in variables
-        else []
-    )
+    if "bautin_along_curve" in variables:
+        handles += _draw_bautin_curves(axes, view, parameters)
+    return handles
 
 
-def _draw_bautin_curves(
-    axes: Axes, view: ResultView, line_parameter: str, row_parameter: str
-) -> list[Line2D]:
-    """Draws curves of generalised Hopf points; returns legend entries. line_parameter, row_parameter: see the
-    module."""
+def _draw_bautin_curves(axes: Axes, view: ResultView, parameters: PlaneParameters) -> list[Line2D]:
+    """Draws curves of generalised Hopf points; returns legend entries."""
     variables = view.variables
     curves = []
     third = next(
         parameter_name
         for parameter_name in NON_OPTIONAL_LINEAR_PARAMETERS
-        if f"bautin_along_{parameter_name}" in variables
-        and parameter_name not in (line_parameter, row_parameter)
+        if f"bautin_along_{parameter_name}" in variables and parameter_name not in parameters
     )
     for number in np.unique(variables["bautin_along_curve"]):
         mask = variables["bautin_along_curve"] == number
@@ -70,20 +61,20 @@ def _draw_bautin_curves(
             number_text(float(end), 3) for end in (third_values.min(), third_values.max())
         )
         label = rf"generalised Hopf points, ${TEX_SYMBOLS[third]}$ = ${lowest_text}$ to ${highest_text}$"
-        x, y = (variables[f"bautin_along_{name}"][mask] for name in (line_parameter, row_parameter))
+        x, y = (variables[f"bautin_along_{name}"][mask] for name in parameters)
         curves += axes.plot(x, y, "-.", color="tab:red", lw=1.2, label=label)
     return curves
 
 
 def parts_of_equal_criticality(
-    view: ResultView, curve: int, line_parameter: str, row_parameter: str
+    view: ResultView, curve: int, parameters: PlaneParameters
 ) -> list[tuple[int, np.ndarray]]:
     """(sign of Re c, points, (n, 2)) of parts of a Hopf curve between generalised Hopf points."""
     variables = view.variables
     indices = np.flatnonzero(variables["curve_number"] == curve)
     bautin = np.flatnonzero(variables["bautin_curve"] == curve)
     places = np.searchsorted(indices, variables["bautin_curve_point"][bautin] - 1, side="right")
-    names = ((f"curve_{name}", f"bautin_{name}") for name in (line_parameter, row_parameter))
+    names = ((f"curve_{name}", f"bautin_{name}") for name in parameters)
     points = np.column_stack(
         [
             np.insert(variables[curve_name][indices], places, variables[bautin_name][bautin])

@@ -13,6 +13,7 @@ from ....results.layouts.phase_diagram import STABILITY_CLASSES, STABLE_STATES
 from ....results.layouts.thresholds import CROSSING_KINDS, HOPF_CROSSING_CODES
 from ....results.layouts.variables import flag_number
 from ...crushing import material_of_rods
+from ...plane_curves import PlaneParameters
 
 CLASS_WORDS = {"class": STABILITY_CLASSES, "stable_states": STABLE_STATES}
 """(code, word) of the values of the variables `class` and `stable_states`, by variable."""
@@ -32,26 +33,25 @@ STABLE_CLASS_ABOVE = {
 
 
 def classes_between_crossings(
-    view: ResultView, line_parameter: str, row_parameter: str
+    view: ResultView, parameters: PlaneParameters
 ) -> tuple[Array, Array, NDArray[np.intp]]:
     """Returns (x, y, classes), (n,) each, of the midpoints between neighbouring crossings on rows, and of
     the midpoints of the two outer parts, which end at the ends of the row or where the force crushes the rod.
 
-    line_parameter, row_parameter: parameters along a row, and constant on a row. x: value of
-    `line_parameter`. y: value of `row_parameter`. The class of a midpoint is known even if the crossings are
-    close. The first part has a midpoint only before an onset of a stable rod, and the last part only if all
-    crossings are stored. Rows at infinity are left out.
+    x, y: values of the parameters along a row, and constant on a row. The class of a midpoint is known even
+    if the crossings are close. The first part has a midpoint only before an onset of a stable rod, and the
+    last part only if all crossings are stored. Rows at infinity are left out.
     """
     names = ("crossing_kind", "unstable_after", "crossing_at", "crossing_count", "open_from")
     kinds, unstable_counts, positions, counts, undecided_from = map(view.by_point, names)
-    values = view.point_columns[row_parameter]
+    values = view.point_columns[parameters.row]
     material = material_of_rods(view)
     rows: list[tuple[float, float, int]] = []
     for index in np.flatnonzero(np.isfinite(values)):
         stored_indices = np.flatnonzero(kinds[index] > 0)
         if not len(stored_indices):
             continue
-        low, high = _uncrushed_row(view, material, line_parameter, int(index))
+        low, high = _uncrushed_row(view, material, parameters, int(index))
         ends = [low, *positions[index, stored_indices].tolist(), high]
         crossings = [(int(kinds[index, i]), int(unstable_counts[index, i])) for i in stored_indices]
         curve_words = ["monotone" if crossings[0] == (ONSET_CODE, 0) else ""]
@@ -66,12 +66,12 @@ def classes_between_crossings(
 
 
 def _uncrushed_row(
-    view: ResultView, material: RodMaterial, line_parameter: str, index: int
+    view: ResultView, material: RodMaterial, parameters: PlaneParameters, index: int
 ) -> tuple[float, float]:
-    """First and last value of `line_parameter` on a row at which the force does not crush the rod."""
+    """First and last value on a row at which the force does not crush the rod."""
     rod = {name: float(column[index]) for name, column in view.point_columns.items()}
-    row_start, row_end = view.variables[line_parameter][[0, -1]].tolist()
-    return uncrushed_interval(material, rod, (line_parameter, row_start, row_end))
+    row_start, row_end = view.variables[parameters.line][[0, -1]].tolist()
+    return uncrushed_interval(material, rod, (parameters.line, row_start, row_end))
 
 
 def class_above_crossing(kind: int, unstable: int) -> str:
@@ -84,20 +84,20 @@ def class_above_crossing(kind: int, unstable: int) -> str:
 
 
 def pixel_classes_of_row(
-    view: ResultView, variable: str, line_parameter: str, row_parameter: str, index: int, pixel_edges: Array
+    view: ResultView, variable: str, parameters: PlaneParameters, index: int, pixel_edges: Array
 ) -> NDArray[np.intp]:
-    """Class of each pixel of a row of a diagram, (n,). variable: `class` or `stable_states`. line_parameter,
-    row_parameter: parameters along a row, and constant on a row. pixel_edges: edges of the pixels, (n + 1,).
+    """Class of each pixel of a row of a diagram, (n,). variable: `class` or `stable_states`. pixel_edges:
+    edges of the pixels, (n + 1,).
 
     A pixel has the class of the nearest computed point between the same two changes of class; "undecided" if
     there is no such point.
     """
-    x = view.variables[line_parameter]
+    x = view.variables[parameters.line]
     classes = view.by_point(variable)[index]
-    changes = _class_changes(view, variable, line_parameter, index)
+    changes = _class_changes(view, variable, parameters, index)
     if variable == "class":
-        positions, rows, classified = classes_between_crossings(view, line_parameter, row_parameter)
-        is_in_row = rows == view.parameter_values[row_parameter][index]
+        positions, rows, classified = classes_between_crossings(view, parameters)
+        is_in_row = rows == view.parameter_values[parameters.row][index]
         x = np.append(x, positions[is_in_row])
         classes = np.append(classes, classified[is_in_row])
     decided = np.abs(x[:, None] - changes).min(axis=1, initial=np.inf) > MIN_DISTANCE_FROM_CHANGE * np.abs(x)
@@ -114,10 +114,10 @@ def pixel_classes_of_row(
     return classified
 
 
-def _class_changes(view: ResultView, variable: str, line_parameter: str, index: int) -> Array:
+def _class_changes(view: ResultView, variable: str, parameters: PlaneParameters, index: int) -> Array:
     """Positions of the changes of class along a row, in increasing order, (m,). variable: `class` or
     `stable_states`."""
-    names = ("crossing_at", "crossing_kind", f"cycle_special_{line_parameter}")
+    names = ("crossing_at", "crossing_kind", f"cycle_special_{parameters.line}")
     values_by_name = {name: view.by_point(name)[index] for name in names if name in view.variables}
     positions = values_by_name["crossing_at"]
     kinds = values_by_name["crossing_kind"]
@@ -126,9 +126,9 @@ def _class_changes(view: ResultView, variable: str, line_parameter: str, index: 
     else:
         change_positions = [
             positions[np.isin(kinds, HOPF_CROSSING_CODES)],
-            values_by_name[f"cycle_special_{line_parameter}"],
+            values_by_name[f"cycle_special_{parameters.line}"],
         ]
-    row_ends = view.variables[line_parameter][[0, -1]]
-    ends = np.array(_uncrushed_row(view, material_of_rods(view), line_parameter, index))
+    row_ends = view.variables[parameters.line][[0, -1]]
+    ends = np.array(_uncrushed_row(view, material_of_rods(view), parameters, index))
     changes = np.concatenate([*change_positions, ends[ends != row_ends]])
     return np.unique(changes[np.isfinite(changes)])
