@@ -15,10 +15,15 @@ from ..results.file.view import ResultView
 from ..solve.backend.availability import require_solvers
 from ..solve.backend.solver_pools import destroy_pooled_solvers
 from ..solve.solve_lock import exclusive_solve
-from ..solve_progress import SolvePosition, reporting_to, solve_part
+from ..solve_progress import reporting_to, solve_part
 from ..sweep.points.groups import PointGroups, SolveGroup
-from ..sweep.progress import ProgressReporter, SilentProgress, can_show_notebook_bar
-from ..sweep.stop import RankListener, SingleRankCommunication, StopRequest
+from ..sweep.progress import (
+    Display,
+    ProgressReporter,
+    SilentProgress,
+    can_show_notebook_bar,
+    display_listener,
+)
 from ..tasks.protocol import NamedArrays, Solver, SweepWideResult, SweepWideSolver
 from ..tasks.running.failures import FailureReasons, failure_reasons_of_changed_points, parameters_text
 from ..tasks.running.in_memory import blas_pool, view_in_memory
@@ -27,8 +32,6 @@ from ..tasks.running.unforeseen_exceptions import PointExceptionNote, guarded_so
 from .keyword_arguments import plain_keyword
 from .solved import SolvedPoints
 
-Display = ProgressReporter | SilentProgress
-"""Progress display, or its silent substitute."""
 _compiled_tasks: set[str] = set()
 """Names of the tasks whose solvers are already compiled in this process."""
 
@@ -214,13 +217,3 @@ def progress_display(progress: bool | None, total: int | None, title: str) -> Di
         raise InputError(f"progress = {progress!r} is not allowed; it should be True, False or None")
     is_shown = sys.stderr.isatty() or can_show_notebook_bar() if progress is None else progress
     return ProgressReporter(total, title, is_bar=True) if is_shown else SilentProgress()
-
-
-def display_listener(display: Display, name: str) -> RankListener:
-    """Listener that shows the progress of the solve `name` in the display `display`. Ctrl-C still raises
-    KeyboardInterrupt."""
-
-    def show(position: SolvePosition) -> None:
-        display.show_position(position.text, position.completed_fraction or 0.0)
-
-    return RankListener(SingleRankCommunication(show), StopRequest(), lambda: name)

@@ -16,11 +16,12 @@ import xarray as xr
 from ..config.document.call_arguments import refusing_wrong_arguments
 from ..config.document.reading import tree_yaml
 from ..errors import EnvironmentIncomplete, InputError, short_repr
+from ..sweep.progress import Display
 from ..tasks.running.unforeseen_exceptions import describe_exception, log_file
 from ..wording import counted
 from .dataset import open_result
 from .keyword_arguments import ConfigTree, config_tree, job_of_tree, plain_keyword, validated_point_count
-from .solving_in_process import Display, progress_display, solve_in_process
+from .solving_in_process import progress_display, solve_in_process
 
 COMPLETE_STATUSES = (0, 1)
 """Exit statuses of a complete run: 0 if all points succeeded, 1 if some points failed."""

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import InputError
 from ..model.arm.quantities import LOADS
 from ..model.parameters import PARAMETERS
-from ..solve_progress import SolvePosition, reporting_to
-from ..sweep.stop import RankListener, SingleRankCommunication, StopRequest
+from ..solve_progress import reporting_to
 
 if TYPE_CHECKING:
     from ..post.rod_portrait.results import DescribedRod
@@ -99,14 +98,13 @@ def _options_that_are_set(options: Mapping[str, Any]) -> dict[str, Any]:
 @contextmanager
 def solve_with_progress(reporter: "ProgressReporter", solve: "SolveJob") -> "Iterator[SolveJob]":
     """Yields `solve` with a progress display: number of solved jobs, and position of a long solve."""
-    job_numbers = count(1)
+    from ..sweep.progress import display_listener
 
-    def show(position: SolvePosition) -> None:
-        reporter.show_position(position.text, position.completed_fraction or 0.0)
+    job_numbers = count(1)
 
     def solve_and_show(job: "Job") -> "ResultView":
         name = job.config.task.replace("_", " ")
-        with reporting_to(RankListener(SingleRankCommunication(show), StopRequest(), lambda: name)):
+        with reporting_to(display_listener(reporter, name)):
             view = solve(job)
         reporter(next(job_numbers))
         return view

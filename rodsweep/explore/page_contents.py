@@ -104,9 +104,8 @@ class PageContents:
 
     def move_load_lines(self, state: PageState, F: float) -> None:
         """Marks the load of `state` in the pictures over the load. F: the load, in k3/L^2."""
-        axis = load_axis(state)
-        self.growth.move_load_line(F * axis.factor)
-        self.branches.move_load_line(F * axis.factor)
+        for picture in (self.growth, self.branches):
+            picture.load_line.location = F * load_axis(state).factor
 
     def show_solved_load(self, answer: dict[str, Any], state: PageState) -> None:
         """Marks the load of `state` in all pictures. answer: answer to the request "load"."""

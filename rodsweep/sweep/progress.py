@@ -10,7 +10,9 @@ from typing import Any
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
+from ..solve_progress import SolvePosition
 from .remaining_time import RemainingTimeEstimator, duration_text, rate_in_words
+from .stop import RankListener, SingleRankCommunication, StopRequest
 
 QUIET_SECONDS = 1.0
 """Seconds before progress is shown for the first time; a shorter sweep shows no progress."""
@@ -125,6 +127,20 @@ class ProgressReporter:
     def close(self) -> None:
         if self.bar is not None:
             self.bar.stop()
+
+
+Display = ProgressReporter | SilentProgress
+"""Progress display, or its silent substitute."""
+
+
+def display_listener(display: Display, name: str) -> RankListener:
+    """Listener that shows the progress of the solve `name` in the display `display`. Ctrl-C still raises
+    KeyboardInterrupt."""
+
+    def show(position: SolvePosition) -> None:
+        display.show_position(position.text, position.completed_fraction or 0.0)
+
+    return RankListener(SingleRankCommunication(show), StopRequest(), lambda: name)
 
 
 def _bar(title: str) -> Progress:

@@ -48,7 +48,7 @@ class BranchPicture:
             }
             legend_items.append(LegendItem(label=text, renderers=[figure.line([nan], [nan], **look)]))
         figure.add_layout(Legend(items=legend_items, location="top_left"))
-        self.load_line = card.vertical_line(0, card.POINT_COLOUR)
+        self.load_line = card.vertical_line(card.POINT_COLOUR)
         figure.add_layout(self.load_line)
         self.card = card.Card("branches", figure)
         self.card.set_title("")
@@ -82,7 +82,3 @@ class BranchPicture:
         self.special_point_source.data = {name: [row[i] for row in special_points] for i, name in names}
         self.card.set_title(answer["sentence"] if answer["status"] != "ok" else answer.get("source", ""))
         self.card.show_figure()
-
-    def move_load_line(self, F: float) -> None:
-        """Moves the vertical line that marks the load of the page. F: load, in the unit of the axis."""
-        self.load_line.location = F

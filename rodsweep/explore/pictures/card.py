@@ -54,11 +54,11 @@ def new_figure(x_label: str, y_label: str, tooltips: Any = None, **options: Any)
     return plot
 
 
-def vertical_line(position: float, colour: str, dash: str = "solid") -> Span:
-    """Vertical line at x = `position` over the whole height of a figure. When the line moves, Bokeh redraws
+def vertical_line(colour: str, dash: str = "solid") -> Span:
+    """Vertical line at x = 0 over the whole height of a figure. When the line moves, Bokeh redraws
     only the top canvas."""
     look: dict[str, Any] = {"line_color": colour, "line_dash": dash, "line_width": 1.5}
-    return Span(location=position, dimension="height", level="overlay", **look)
+    return Span(location=0, dimension="height", level="overlay", **look)
 
 
 def empty_source(names: Sequence[str], name: str | None = None) -> ColumnDataSource:

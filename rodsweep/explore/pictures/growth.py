@@ -42,7 +42,7 @@ class GrowthPicture:
         figure.add_tools(HoverTool(renderers=[spans], tooltips=tooltips))
         look = {"line_color": card.NEUTRAL_COLOUR, "line_dash": "dashed"}
         figure.add_layout(Span(location=0, dimension="width", **look))
-        self.load_line = card.vertical_line(0, card.POINT_COLOUR)
+        self.load_line = card.vertical_line(card.POINT_COLOUR)
         self.load_line.line_width = 3
         figure.add_layout(self.load_line)
         self.card = card.Card("growth", figure, title_lines=2)
@@ -74,10 +74,6 @@ class GrowthPicture:
         names = ("F", "kind", "colour", "frequency")
         self.threshold_source.data = {name: [row[i] for row in rows] for i, name in enumerate(names)}
         self.card.set_title(threshold_title(answer, load))
-
-    def move_load_line(self, F: float) -> None:
-        """Moves the thick line that marks the load of the page. F: load, in the unit of the axis."""
-        self.load_line.location = F
 
 
 def threshold_title(answer: dict[str, Any], load: PictureAxis) -> str:

@@ -20,7 +20,7 @@ class SpectrumPicture:
             x_range=Range1d(-1, 1), y_range=Range1d(-1, 1),
         )  # fmt: skip
         self.source = card.empty_source(("growth", "frequency", "colour"), "spectrum_source")
-        figure.add_layout(card.vertical_line(0, card.NEUTRAL_COLOUR, "dashed"))
+        figure.add_layout(card.vertical_line(card.NEUTRAL_COLOUR, "dashed"))
         figure.scatter("growth", "frequency", size=11, color="colour", source=self.source)
         self.card = card.Card("spectrum", figure)
         self.card.set_title("")

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...wording import counted
 from ..branch_curves import RodBranches
-from ..summary.thresholds import later_flutter_changes
+from ..summary.thresholds import FIRST_CROSSING_WORDS, LATER_CROSSING_WORDS, later_flutter_changes
 from .one_rod import SingleRodResult
 
 
@@ -52,17 +52,12 @@ def threshold_sentence(rod: SingleRodResult) -> str:
     """Sentence on the first force of each kind of threshold; empty if the count of crossings is unknown."""
     if rod.count("crossing_count") is None:
         return ""
-    verbs = {
-        "onset": "decaying oscillation from",
-        "hopf": "flutter from",
-        "restabilization": "stable again from",
-    }
     clauses = []
-    for event, verb in verbs.items():
+    for event, phrase in FIRST_CROSSING_WORDS.items():
         column = rod.column(f"F_{event}")
         if column is not None:
             name = column.name.removesuffix(f"_{event}")
-            clauses.append(f"{verb} {name} = {rod.text(f'F_{event}')}")
+            clauses.append(f"{phrase} {name} = {rod.text(f'F_{event}')}")
     clauses += _later_flutter_clauses(rod)
     none_text = "" if rod.count("crossing_count") else f"no threshold up to {_search_end_text(rod)}"
     return (", ".join(clauses) or none_text) + _early_end_clause(rod)
@@ -70,13 +65,13 @@ def threshold_sentence(rod: SingleRodResult) -> str:
 
 def _later_flutter_clauses(rod: SingleRodResult) -> list[str]:
     """Clauses on the starts and ends of all windows of flutter after the first."""
-    verbs = {"hopf": "flutter again from", "restabilization": "stable again from"}
     crossings = rod.list_texts["crossings"]
     kinds = rod.words("crossings", "crossing_kind")
     name = rod.preferred_name(crossings, "crossing_F")
     load = name.removeprefix("crossing_")
     return [
-        f"{verbs[kinds[i]]} {load} = {crossings.short_text(name, i)}" for i in later_flutter_changes(kinds)
+        f"{LATER_CROSSING_WORDS[kinds[i]]} {load} = {crossings.short_text(name, i)}"
+        for i in later_flutter_changes(kinds)
     ]
 
 

@@ -81,7 +81,7 @@ def first_threshold_line(view: ResultView, computed: np.ndarray, event: str) -> 
     unknown_text = unknown_clause(int((computed.ravel() & ~mask & ~decided).sum()))
     if not mask.any():
         return f"{phrase}: at none of {counted(rods, 'rod')}{unknown_text}"
-    errors = crossing_errors(view, F, "crossing_F")
+    errors = crossing_errors(view, F)
     ends = (int(np.nanargmin(F)), int(np.nanargmax(F)))
     extremes = [f"{rounded_text(F[i], errors[i])}{in_brackets(point_text(view, i))}" for i in ends]
     forces_text = " to ".join(extremes if extremes[0] != extremes[1] else extremes[:1])
@@ -98,11 +98,11 @@ def unknown_beyond_clause(view: ResultView, F: float) -> str:
     return clause if view.has_status(ENDED_EARLY).all() else ""
 
 
-def crossing_errors(view: ResultView, F: np.ndarray, force_name: str) -> np.ndarray:
+def crossing_errors(view: ResultView, F: np.ndarray) -> np.ndarray:
     """Absolute errors of one crossing per point, (points,), from the list of crossings; 0 for a force that is
-    not in the list of its point. F: force of the crossing, (points,); NaN for a point without this crossing.
-    force_name: variable with the forces of the list."""
-    table, errors = map(view.by_point, (force_name, "crossing_error"))
+    not in the list of its point. F: force of the crossing, (points,); NaN for a point without this
+    crossing."""
+    table, errors = map(view.by_point, ("crossing_F", "crossing_error"))
     return np.where(table == F[:, None], errors, 0.0).max(axis=1)
 
 
@@ -148,14 +148,11 @@ def completeness_lines(view: ResultView) -> list[str]:
     the only rod in a file."""
     variables = view.point_values(0)
     unlisted = int(variables["crossing_count"]) - int((variables["crossing_kind"] > 0).sum())
-    proof_text = (
-        "proved complete" if has_standard_rods(view.config) else "confirmed by counts of unstable modes"
-    )
-    proof_text = proof_text if variables["certified"] else f"not {proof_text}"
+    proof_text = proof_clause(view)
+    if not variables["certified"]:
+        proof_text = proof_text.replace("is ", "is not ", 1)
     search_text = f"searched up to F = {variables['F_end']:.15g}; " if np.isfinite(variables["F_end"]) else ""
-    lines = [
-        f"{search_text}the list of crossings is {proof_text}{unstored_crossings_clause(max(unlisted, 0))}"
-    ]
+    lines = [f"{search_text}the list of crossings {proof_text}{unstored_crossings_clause(max(unlisted, 0))}"]
     if np.isfinite(variables["open_from"]):
         lines.append(
             f"undecided from F = {variables['open_from']:.9g} to {variables['open_to']:.9g}: this range may "

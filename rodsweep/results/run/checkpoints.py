@@ -7,14 +7,13 @@ file, or a file of another run, is ignored: the chain starts again, the work ite
 
 import io
 import os
-import zlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import ClassVar, Protocol
 
 import numpy as np
 
-from .journal import delete_matching_files
+from .journal import CHECKSUM_BYTES, delete_matching_files, with_checksum
 
 CHECKPOINT_GLOB = "chain-*"
 """Pattern of the file names of checkpoints of chains of points, including files that a kill left
@@ -26,8 +25,6 @@ CHECKPOINT_HEAD = b"rodsweep checkpoint 8\n"
 number are ignored."""
 RESULT_HEAD = b"rodsweep unit 2\n"
 """First line of the file of an item's result; the number grows when items or results change in meaning."""
-CHECKSUM_BYTES = 4
-"""Length of the checksum at the end of a checkpoint file, in bytes."""
 Arrays = dict[str, np.ndarray]
 STATE_PREFIX = "state_"
 """Prefix of the names of a solver state's arrays in a checkpoint file."""
@@ -61,7 +58,7 @@ class ArrayStore:
         self.directory.mkdir(parents=True, exist_ok=True)  # the directory may have been moved or deleted
         # Ranks of a killed run live on for a moment and must not write to the same file.
         copy = path.with_name(f"{path.name}-{os.getpid()}-{os.urandom(4).hex()}")
-        copy.write_bytes(content + _checksum(content))
+        copy.write_bytes(with_checksum(content))
         # Atomic, so that a reader finds the old or the new state, never a part.
         os.replace(copy, path)
 
@@ -71,8 +68,7 @@ class ArrayStore:
             return None
         data = self._path(number).read_bytes()
         content = data[:-CHECKSUM_BYTES]
-        checksum = data[-CHECKSUM_BYTES:]
-        if not content.startswith(self.header) or _checksum(content) != checksum:
+        if not content.startswith(self.header) or with_checksum(content) != data:
             return None
         # Without pickles a damaged or foreign file cannot run code.
         with np.load(io.BytesIO(content[len(self.header) :]), allow_pickle=False) as arrays:
@@ -138,7 +134,3 @@ class ItemResults(ArrayStore):
     def remove_all(self) -> None:
         """Deletes the results of all items."""
         delete_matching_files(self.directory, ITEM_RESULT_GLOB)
-
-
-def _checksum(content: bytes) -> bytes:
-    return zlib.crc32(content).to_bytes(CHECKSUM_BYTES, "little")

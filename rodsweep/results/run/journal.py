@@ -61,7 +61,7 @@ class Journal:
         # One assignment, because assigning single fields takes three times as long.
         self.record[()] = (index, *(values[name] for name in self.variable_names))
         # One call for all, so that a kill mostly leaves whole records behind.
-        self._write(b"".join(map(_with_checksum, (*self._text_records(reasons), self.record.tobytes()))))
+        self._write(b"".join(map(with_checksum, (*self._text_records(reasons), self.record.tobytes()))))
 
     def append_all(
         self, index: np.ndarray, values: dict[str, np.ndarray], reasons: Sequence[str] = ()
@@ -75,7 +75,7 @@ class Journal:
         data = records.tobytes()
         size = records.itemsize
         chunks = (data[offset : offset + size] for offset in range(0, len(data), size))
-        self._write(b"".join(map(_with_checksum, (*self._text_records(reasons), *chunks))))
+        self._write(b"".join(map(with_checksum, (*self._text_records(reasons), *chunks))))
 
     def _text_records(self, lines: Sequence[str]) -> Iterator[bytes]:
         """Yields records that hold lines of text instead of the values of a point."""
@@ -184,8 +184,8 @@ def _header_if_points(path: Path) -> bytes:
         return header if file.read(1) else b""
 
 
-def _with_checksum(record: bytes) -> bytes:
-    """The bytes of a record followed by its checksum."""
+def with_checksum(record: bytes) -> bytes:
+    """The bytes of a record followed by their checksum."""
     return record + zlib.crc32(record).to_bytes(CHECKSUM_BYTES, "little")
 
 
