@@ -175,7 +175,7 @@ class PhaseDiagramTask(CertifiedTask):
         rod = self.rod_of_row(index)
         if rod is None:
             return crushed_coexistence_row(self.line_values)
-        return solve_coexistence(rod, self.row_request(), MAX_CYCLE_SPECIAL_POINTS, workspace, starts)
+        return solve_coexistence(rod, self.row_request(), workspace, starts)
 
     def row_record(self, result: "DiagramRow") -> dict[str, Any]:
         """Variables of the file for a row without cycles."""
@@ -207,6 +207,7 @@ class PhaseDiagramTask(CertifiedTask):
             certify=options.certify,
             max_thresholds=options.crossings,
             cycle_accuracy=options.cycle_accuracy,
+            max_special_points=MAX_CYCLE_SPECIAL_POINTS,
         )
 
 

@@ -59,17 +59,13 @@ class BranchSearch:
     def follow_all(self, starts: Iterable[SpecialPoint]) -> None:
         """Follows the branches within the range, then those from beyond the range, then those through the
         special points `starts`."""
-        self.follow_within_range()
+        self.follow_from_hopf_points()
+        self.follow_from_symmetry_breakings()
         self.follow_into_range()
         # Before the given starts, which may lie on the same branches.
         self.follow_through(self._folds_passed_into_range())
         self.follow_through(starts)
         self._add_messages_on_shared_range_ends()
-
-    def follow_within_range(self) -> None:
-        """Follows the branches from all Hopf points and symmetry breakings of the range, within the range."""
-        self.follow_from_hopf_points()
-        self.follow_from_symmetry_breakings()
 
     def follow_into_range(self) -> None:
         """Follows branches beyond the range, in `regions`, and branches that enter the range from there."""
@@ -94,8 +90,10 @@ class BranchSearch:
                 self.failures.append(f"{same}: two branches nearly touch")
 
     def _limits_left(self) -> BranchLimits:
+        """Limits of the next branch, with the symmetry breakings on the branches so far."""
         cycles_left = self.limits.max_cycles - sum(len(curve.points) for curve in self.curves)
-        return replace(self.limits, max_cycles=cycles_left)
+        breakings = symmetry_breakings_in([curve.special_points for curve in self.curves])
+        return replace(self.limits, max_cycles=cycles_left, breakings=breakings)
 
     def follow_from_hopf_points(self) -> None:
         """Follows the branches from all Hopf points; a branch between two Hopf points only once."""
@@ -116,13 +114,12 @@ class BranchSearch:
     def follow_from_symmetry_breakings(self) -> None:
         """Follows the branches of asymmetric cycles from all symmetry breakings on the branches so far; a
         branch between two symmetry breakings only once."""
-        breakings = symmetry_breakings_in([curve.special_points for curve in self.curves])
-        for index, breaking in enumerate(breakings):
+        for index, breaking in enumerate(self._limits_left().breakings):
             if breaking in self.followed_breakings:
                 continue
             with solve_part(f"branch {len(self.curves) + 1}, of asymmetric cycles"):
-                limits = replace(self._limits_left(), breakings=breakings)
-                curve = follow_asymmetric_branch(index, self.name, limits)
+                # A branch of asymmetric cycles adds no symmetry breaking, so the indices stay.
+                curve = follow_asymmetric_branch(index, self.name, self._limits_left())
             self.followed_breakings += filter(None, [breaking, curve.end_breaking])
             self.curves.append(curve)
 
@@ -153,7 +150,8 @@ class BranchSearch:
         it continues as a further branch. Then follows the branches from symmetry breakings on further
         branches."""
         # The list grows inside the loop: a branch that enters may leave again.
-        while (passage := next(self._passages_to_follow(), None)) is not None:
+        while unfollowed := [place for place in self._passages() if place not in self.followed_passages]:
+            passage = unfollowed[0]
             self.followed_passages.append(passage)
             for region in self.regions:
                 entry = region.entry_after(passage) if region.index == passage.index else None
@@ -167,9 +165,6 @@ class BranchSearch:
         for region in self.regions:
             for entry in region.entries_from_symmetry_breakings():
                 self._follow_entering(entry, region)
-
-    def _passages_to_follow(self) -> Iterator[RangePassage]:
-        return (place for place in self._passages() if place not in self.followed_passages)
 
     def _passages(self) -> Iterator[RangePassage]:
         """Places at which the branches so far leave or enter the range."""
@@ -190,7 +185,6 @@ class BranchSearch:
             # A branch that enters was found but not followed, so nothing beyond counts as searched.
             region.stop_at(region.range_end)
             return
-        limits = replace(limits, breakings=symmetry_breakings_in([c.special_points for c in self.curves]))
         with solve_part(f"branch {len(self.curves) + 1}, from beyond the range"):
             curve = follow_from_range_end(entry, limits)
         self.followed_breakings += filter(None, [curve.end_breaking])
@@ -212,8 +206,7 @@ class BranchSearch:
         artefact of the mesh of its curve of special points. Such an artefact lies, for example, beyond the
         end of a curve of folds at a symmetry breaking, where a mesh rounds off the corner between two
         branches. Raises Unsolvable if no branch passes `start`."""
-        breakings = symmetry_breakings_in([curve.special_points for curve in self.curves])
-        limits = replace(self._limits_left(), breakings=breakings)
+        limits = self._limits_left()
         if limits.max_cycles < 1:
             raise Unsolvable("the branches of the rod have the maximum number of cycles; shorten the range")
         curve = complete_branch_through(start, self.name, limits, self._is_known)

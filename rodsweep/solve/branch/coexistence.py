@@ -61,19 +61,17 @@ class CoexistenceRow:
 def solve_coexistence(
     rod: Rod,
     request: RowRequest,
-    max_special_points: int,
     workspace: NewtonWorkspace | None = None,
     starts: Sequence[SpecialPoint] = (),
 ) -> CoexistenceRow:
     """Stable states along one row of a phase diagram; a failure becomes a status, never an exception. At F =
     0 there is no cycle.
 
-    max_special_points: maximum number of stored special points. workspace: memory of Newton's
-    matrices. starts: special points from which further branches are followed.
+    workspace: memory of Newton's matrices. starts: special points from which further branches are followed.
     """
     row = solve_row(rod, request)
     start = _first_searched_value(row, request)
-    branches = solve_branches(rod, _branch_request(start, request, max_special_points), workspace, starts)
+    branches = solve_branches(rod, _branch_request(start, request), workspace, starts)
     cycles = stable_cycles_at(request.values, branches, request.certify)
     cycles[request.values < start] = -1
     forces = request.values if request.parameter_name == "F" else np.full(len(request.values), rod.F)
@@ -81,7 +79,7 @@ def solve_coexistence(
     cycles[forces == 0] = 0
     states = stable_states(row.rod_class, cycles)
     undecided = request.values[(states == StableStates.undecided) & (row.rod_class != RodClass.undecided)]
-    status, message = _status_and_message_of_row(row, branches, max_special_points, undecided)
+    status, message = _status_and_message_of_row(row, branches, request.max_special_points, undecided)
     return CoexistenceRow(
         straight_rod_row=row,
         stable_states=states,
@@ -105,17 +103,15 @@ def crushed_coexistence_row(values: Array) -> CoexistenceRow:
 def row_branches(
     rod: Rod,
     request: RowRequest,
-    max_special_points: int,
     workspace: NewtonWorkspace | None = None,
     starts: Sequence[SpecialPoint] = (),
 ) -> BranchesOfRod:
     """All branches of cycles that start at Hopf points of a row, and the branches through the special points
-    `starts`. max_special_points: maximum number of stored special points. workspace: memory of Newton's
-    matrices."""
+    `starts`. workspace: memory of Newton's matrices."""
     start = float(request.values[0])
     if request.parameter_name == "F" and start < 0:
         start = _first_searched_value(solve_row(rod, request), request)
-    return solve_branches(rod, _branch_request(start, request, max_special_points), workspace, starts)
+    return solve_branches(rod, _branch_request(start, request), workspace, starts)
 
 
 def _first_searched_value(row: DiagramRow, request: RowRequest) -> float:
@@ -126,9 +122,8 @@ def _first_searched_value(row: DiagramRow, request: RowRequest) -> float:
     return float(first if starts_late else request.values[0])
 
 
-def _branch_request(start: float, request: RowRequest, max_special_points: int) -> BranchRequest:
-    """Request for the branches of a row from the parameter value `start` on. max_special_points: maximum
-    number of stored special points."""
+def _branch_request(start: float, request: RowRequest) -> BranchRequest:
+    """Request for the branches of a row from the parameter value `start` on."""
     return BranchRequest(
         along=request.parameter_name,
         start=start,
@@ -136,7 +131,7 @@ def _branch_request(start: float, request: RowRequest, max_special_points: int) 
         accuracy=request.cycle_accuracy,
         certify=request.certify,
         cycles=BRANCH_SETTINGS.max_cycles_per_diagram_row,
-        special=max_special_points,
+        special=request.max_special_points,
     )
 
 

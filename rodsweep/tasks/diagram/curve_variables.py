@@ -22,13 +22,11 @@ from ...results.layouts.phase_diagram import (
     cycle_variables,
 )
 from ...results.layouts.variables import FilledVariable, Variable, outcome_values, value_lists
-from .detached_branches import followed_special_points
 
 if TYPE_CHECKING:
     from ...determinant.parameter_plane import ParameterPlane
     from ...solve.branch.coexistence import CoexistenceRow
     from ...solve.branch.special.special_curves import SpecialPointCurve
-    from ...solve.branch.special.special_point import RowSpecialPoint
     from ...solve.changes.diagram.boundary_curves import BoundaryCurve
     from ...solve.continuation.curve_search import TracedCurves
     from ...solve.hopf.bautin_curves import BautinCurve
@@ -115,12 +113,10 @@ def fold_and_torus_curve_values(
     """
     rows: list[tuple[Any, ...]] = []
     for number, curve in enumerate(traced.curves, 1):
-        start, end = ([({"tip_y_max": 0.0}, point)] if point else [] for point in curve.hopf_ends)
-        points: list[tuple[dict[str, float], Any]] = [*start, *(({}, point) for point in curve.points), *end]
-        for (further, point), reasons in zip(points, _end_reasons(curve.ends, len(points)), strict=True):
-            columns = (
-                dict(zip(plane, (point.parameter_value, point.row_value), strict=True)) | further | reasons
-            )
+        start, end = ([point] if point else [] for point in curve.hopf_ends)
+        points: list[Any] = [*start, *curve.points, *end]
+        for point, reasons in zip(points, _end_reasons(curve.ends, len(points)), strict=True):
+            columns = dict(zip(plane, (point.parameter_value, point.row_value), strict=True)) | reasons
             rows.append((SimpleNamespace(number=number, kind=int(curve.kind), **columns), point))
     variables = cycle_curve_variables(*plane)
     values = _values_along_dimension(variables, "cycle_curve_point", "cycle_curve_", rows)
@@ -192,33 +188,6 @@ def cycles_record(result: "CoexistenceRow", line_parameter: str) -> dict[str, An
     values |= {"cycle_special_count": len(result.special_points), "stable_states": result.stable_states}
     values["cycle_followed_from"], values["cycle_followed_to"] = result.followed_range
     return values | {"seconds": result.seconds, "status": int(result.status)}
-
-
-def special_points_of_rows(
-    view: ResultView, line_parameter: str, rows: np.ndarray
-) -> "list[RowSpecialPoint]":
-    """Folds and torus points of all rows of the file with a finite parameter value. line_parameter: parameter
-    along the rows. rows: parameter value of every row, (rows,).
-    """
-    names = (f"cycle_special_{name}" for name in ("kind", line_parameter, "period", "tip_y_max"))
-    kinds, *columns = map(view.by_point, names)
-    return [
-        point
-        for i in np.flatnonzero(np.isfinite(rows))
-        for point in followed_special_points(
-            kinds[i], [column[i] for column in columns], int(i), float(rows[i])
-        )
-    ]
-
-
-def special_points_of_row(
-    values: Mapping[str, np.ndarray], line_parameter: str, row_index: int, row_value: float
-) -> "list[RowSpecialPoint]":
-    """Folds and torus points of a row from its variables, by name, (special points,) each. line_parameter:
-    parameter along the row. row_index, row_value: index of the row, and value of its parameter."""
-    names = (f"cycle_special_{name}" for name in ("kind", line_parameter, "period", "tip_y_max"))
-    kinds, *columns = (values[name] for name in names)
-    return followed_special_points(kinds, columns, row_index, row_value)
 
 
 def unstored_special_count(view: ResultView, finite: np.ndarray) -> int:

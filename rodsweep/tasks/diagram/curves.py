@@ -10,7 +10,6 @@ import numpy as np
 from ...model.parameters import FORCE_AND_STRETCH_STIFFNESS
 from ...model.rod import Rod
 from ...results.file.view import ResultView
-from ...results.layouts.phase_diagram import MAX_CYCLE_SPECIAL_POINTS
 from ..protocol import NamedArrays, SweepWideResult
 from .boundary_curves import boundary_curves, criticality_along, generalised_hopf_curves
 from .curve_extrema import fold_curve_extremum_values
@@ -18,8 +17,6 @@ from .curve_variables import (
     boundary_curve_values,
     criticality_and_bautin_record,
     fold_and_torus_curve_values,
-    special_points_of_row,
-    special_points_of_rows,
     unstored_special_count,
     with_ends_on_hopf_curves,
 )
@@ -31,6 +28,8 @@ from .detached_branches import (
     row_result,
     rows_changed_when_solved_again,
     rows_with_branches_across_limits,
+    special_points_of_row,
+    special_points_of_rows,
 )
 
 if TYPE_CHECKING:
@@ -237,7 +236,6 @@ class DiagramCurves:
             rod = self.task.rod_of_row(number)
             if rod is None:
                 return ()
-            request = self.task.row_request()
-            branches = row_branches(rod, request, MAX_CYCLE_SPECIAL_POINTS, self.workspace, starts)
+            branches = row_branches(rod, self.task.row_request(), self.workspace, starts)
             return special_points_of(branches) + branches.folds_beyond
         return self.special_points_by_row[number, len(starts)]

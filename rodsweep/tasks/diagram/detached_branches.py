@@ -1,7 +1,7 @@
-"""Rows of a phase diagram whose stable states change because curves of folds or torus points lead to further
-branches of cycles, and the corresponding variables of the file."""
+"""Special points on the rows of a phase diagram, rows whose stable states change because curves of folds or
+torus points lead to further branches of cycles, and the corresponding variables of the file."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -33,15 +33,31 @@ def row_message(result: NamedArrays) -> str:
     return result[ROW_MESSAGE].tobytes().decode()
 
 
-def followed_special_points(
-    kinds: np.ndarray, columns: Sequence[np.ndarray], row_index: int, row_value: float
+def special_points_of_rows(
+    view: ResultView, line_parameter: str, rows: np.ndarray
 ) -> "list[RowSpecialPoint]":
-    """Folds and torus points of a row, from the list of its special points. kinds: kind of each point, (n,).
-    columns: parameter along the row, period, and largest tip y of each point, (n,) each."""
+    """Folds and torus points of all rows of the file with a finite parameter value. line_parameter: parameter
+    along the rows. rows: parameter value of every row, (rows,).
+    """
+    columns = {name: view.by_point(name) for name in _special_point_names(line_parameter)}
+    return [
+        point
+        for i in np.flatnonzero(np.isfinite(rows))
+        for point in special_points_of_row(
+            {name: column[i] for name, column in columns.items()}, line_parameter, int(i), float(rows[i])
+        )
+    ]
+
+
+def special_points_of_row(
+    values: Mapping[str, np.ndarray], line_parameter: str, row_index: int, row_value: float
+) -> "list[RowSpecialPoint]":
+    """Folds and torus points of a row from its variables, by name, (special points,) each. line_parameter:
+    parameter along the row. row_index, row_value: index of the row, and value of its parameter."""
     from ...solve.branch.special.special_curve_tracer import FOLLOWED_KINDS
     from ...solve.branch.special.special_point import RowSpecialPoint, SpecialKind
 
-    positions, period, height = columns
+    kinds, positions, period, height = (values[name] for name in _special_point_names(line_parameter))
     return [
         RowSpecialPoint(
             row_index=row_index,
@@ -53,6 +69,11 @@ def followed_special_points(
         )
         for item in np.flatnonzero(np.isin(kinds, tuple(FOLLOWED_KINDS)))
     ]
+
+
+def _special_point_names(line_parameter: str) -> list[str]:
+    """Names of the variables with kind, parameter, period and largest tip y of the special points of rows."""
+    return [f"cycle_special_{name}" for name in ("kind", line_parameter, "period", "tip_y_max")]
 
 
 def rows_with_branches_across_limits(

@@ -40,7 +40,7 @@ def kinds(curve):
 
 
 def states(rod, values):
-    row = solve_coexistence(rod, RowRequest("F", np.array(values), 1e-8, False, 16, ACCURACY), 64)
+    row = solve_coexistence(rod, RowRequest("F", np.array(values), 1e-8, False, 16, ACCURACY, 64))
     assert row.status == CoexistenceStatus.ok
     return row.stable_states.tolist()
 

@@ -55,13 +55,13 @@ FOLD_AT_150 = 85.6055767349
 
 
 def request(values, certify=True):
-    return RowRequest("F", np.array(values, dtype=float), 1e-10, certify, 16)
+    return RowRequest("F", np.array(values, dtype=float), 1e-10, certify, 16, max_special_points=64)
 
 
 @pytest.fixture(scope="module")
 def fig_2c():
     values = [40, 100, 150, 155.6, 155.6002, 180, 199.16, 199.1602, 199.9, 205]
-    return solve_coexistence(FIG_2C, request(values), 64)
+    return solve_coexistence(FIG_2C, request(values))
 
 
 @pytest.mark.long
@@ -76,7 +76,7 @@ def test_fig_2c_has_two_stable_states_from_the_restabilization_to_the_fold(fig_2
 
 
 def test_a_cycle_on_the_last_value_of_a_row_counts():
-    row = solve_coexistence(FIG_2C, request([40, 60, 70]), 64)
+    row = solve_coexistence(FIG_2C, request([40, 60, 70]))
     assert row.stable_states.tolist() == [StableStates.straight, StableStates.cycle, StableStates.cycle]
 
 
@@ -87,7 +87,7 @@ def test_what_a_branch_that_stopped_leaves_open_is_undecided(monkeypatch):
         return replace(real(rod, asked, workspace), status=BranchStatus.stopped, message="no further cycle")
 
     monkeypatch.setattr(coexistence, "solve_branches", stopped)
-    row = solve_coexistence(FIG_2C, request([0, 40, 60, 70]), 64)
+    row = solve_coexistence(FIG_2C, request([0, 40, 60, 70]))
     assert row.status == CoexistenceStatus.branches_stopped
     assert "no further cycle" in row.message
     nothing_beats_without_a_force = StableStates.straight
@@ -103,7 +103,7 @@ def test_what_a_branch_that_stopped_leaves_open_is_undecided(monkeypatch):
 def test_cycles_whose_multipliers_are_lost_to_rounding_but_for_their_size_are_unstable():
     """From the sixth Hopf point of a rod, at F = 98.698, with multipliers of 1e13 to 1e16."""
     rod = Rod(F=0.0, k1=1844.51, k2=7.75717, gamma3=0.3, gamma1=0.602896)
-    row = solve_coexistence(rod, replace(request([95, 100, 103]), cycle_accuracy=6e-4), 64)
+    row = solve_coexistence(rod, replace(request([95, 100, 103]), cycle_accuracy=6e-4))
     assert row.status == CoexistenceStatus.ok
     assert row.stable_states.tolist() == [StableStates.neither_known] * 3
 
@@ -118,7 +118,7 @@ def test_states_that_multipliers_on_the_circle_leave_undecided_have_a_status(mon
         return branches
 
     monkeypatch.setattr(coexistence, "solve_branches", on_the_circle)
-    row = solve_coexistence(FIG_2C, request([40, 60, 70]), 64)
+    row = solve_coexistence(FIG_2C, request([40, 60, 70]))
     assert row.stable_states.tolist() == [
         StableStates.straight,
         StableStates.undecided,
@@ -129,13 +129,13 @@ def test_states_that_multipliers_on_the_circle_leave_undecided_have_a_status(mon
 
 
 def test_a_list_of_special_points_that_is_full_is_told():
-    row = solve_coexistence(FIG_2C, request([40, 60, 70]), 1)
+    row = solve_coexistence(FIG_2C, replace(request([40, 60, 70]), max_special_points=1))
     assert row.status == CoexistenceStatus.special_full
 
 
 def test_a_curve_of_folds_leads_into_the_generalised_hopf_point():
     """From the row k1 = 149.9 down, and up to the edge of the plane, where AUTO-07p has the fold."""
-    row = solve_coexistence(FIG_2C.with_values(k1=149.9), request([60, 110]), 64)
+    row = solve_coexistence(FIG_2C.with_values(k1=149.9), request([60, 110]))
     (fold,) = [point for point in row.special_points if point.kind == SpecialKind.fold]
     plane = PlaneAxis("F", 60.0, 110.0), PlaneAxis("k1", 149.5, 150.0)
     halves = []
@@ -159,7 +159,7 @@ def test_a_curve_of_folds_leads_into_the_generalised_hopf_point():
 
 
 def test_rise_along_a_branch_is_known_with_the_factors_of_a_cycle_near_by():
-    row = solve_coexistence(FIG_2C.with_values(k1=149.9), request([60, 110]), 64)
+    row = solve_coexistence(FIG_2C.with_values(k1=149.9), request([60, 110]))
     (fold,) = [point for point in row.special_points if point.kind == SpecialKind.fold]
     scale = ArcLengthScale.at_orbit(fold.orbit, "F", 0.0)
     own = BorderedMatrix(fold.orbit, scale, NewtonWorkspace())
@@ -316,7 +316,7 @@ def test_two_stable_states_between_two_grid_points_are_told(command):
 
 def test_states_of_a_row_are_known_from_the_pull_on_from_which_it_is_searched():
     rod = Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4)
-    row = solve_coexistence(rod, request(np.array([-1e6, -1e3, 0.0, 39.0])), 8)
+    row = solve_coexistence(rod, request(np.array([-1e6, -1e3, 0.0, 39.0])))
     assert row.status == CoexistenceStatus.ended_early
     assert (
         "the search begins at F = -1000, because a search from F = -1000000 fails: no a-priori bound"

@@ -29,13 +29,13 @@ FIRST, LAST = 76.4534854361, 81.7039922768
 
 
 def request(*values):
-    return RowRequest("F", np.array(values, dtype=float), 1e-10, True, 16)
+    return RowRequest("F", np.array(values, dtype=float), 1e-10, True, 16, max_special_points=64)
 
 
 @pytest.fixture(scope="module")
 def beside():
     """Special points of the branch between the two Hopf points at k1 = 133.072."""
-    return special_points_of(row_branches(BESIDE, request(60, 86), 64))
+    return special_points_of(row_branches(BESIDE, request(60, 86)))
 
 
 @pytest.fixture(scope="module")
@@ -66,7 +66,7 @@ def starts(half):
 @pytest.fixture(scope="module")
 def closed(starts):
     """All branches at k1 = 133.03."""
-    return row_branches(ROD, request(60, 86), 64, starts=starts)
+    return row_branches(ROD, request(60, 86), starts=starts)
 
 
 @pytest.mark.long
@@ -104,7 +104,7 @@ def test_a_closed_branch_is_followed_once_around_from_either_fold(closed, starts
     assert sorted(point.parameter_value for point in folds) == pytest.approx([FIRST, LAST], abs=1e-8)
     assert all(point.error <= 1e-9 * point.parameter_value for point in folds)
     low = min(starts, key=lambda start: start.parameter_value)
-    other = special_points_of(row_branches(ROD, request(60, 86), 64, starts=[low]))
+    other = special_points_of(row_branches(ROD, request(60, 86), starts=[low]))
     assert sorted(point.parameter_value for point in other) == pytest.approx([FIRST, LAST], abs=1e-8)
 
 
@@ -122,7 +122,7 @@ def test_cycles_of_a_closed_branch_are_stable_on_one_side_of_both_folds(closed):
 @pytest.mark.long
 def test_a_branch_that_leaves_the_range_has_both_ends_there(starts):
     low = min(starts, key=lambda start: start.parameter_value)
-    found = row_branches(ROD, request(60, 79), 64, starts=[low])
+    found = row_branches(ROD, request(60, 79), starts=[low])
     assert found.status == BranchStatus.ok
     (curve,) = found.curves
     assert not curve.closed
@@ -155,7 +155,7 @@ def test_a_branch_that_leaves_the_range_has_both_ends_there(starts):
 
 @pytest.mark.long
 def test_a_closed_branch_beyond_the_range_is_followed_once_around_and_left_out(starts):
-    found = row_branches(ROD, request(88, 100), 64, starts=starts)
+    found = row_branches(ROD, request(88, 100), starts=starts)
     assert (found.status, found.message, found.curves) == (BranchStatus.ok, "", ())
     places = [fold.parameter_value for fold in found.folds_beyond]
     assert sorted(places) == pytest.approx([FIRST, LAST], abs=1e-7)
@@ -164,7 +164,7 @@ def test_a_closed_branch_beyond_the_range_is_followed_once_around_and_left_out(s
 @pytest.mark.long
 def test_a_point_on_a_known_branch_starts_no_other(beside):
     folds = [point for point in beside if point.kind == SpecialKind.fold]
-    found = row_branches(BESIDE, request(60, 86), 64, starts=folds)
+    found = row_branches(BESIDE, request(60, 86), starts=folds)
     assert len(found.curves) == 1
     assert found.status == BranchStatus.ok
 
@@ -174,18 +174,18 @@ def test_a_point_that_a_known_branch_does_not_have_is_none(beside):
     """As the crossing of a curve that a coarse mesh displaces: the branch turns out to be known."""
     fold = next(point for point in beside if point.kind == SpecialKind.fold)
     displaced = replace(fold, parameter_value=fold.parameter_value + 0.01)
-    found = row_branches(BESIDE, request(60, 86), 64, starts=[displaced])
+    found = row_branches(BESIDE, request(60, 86), starts=[displaced])
     assert (len(found.curves), found.status, found.message) == (1, BranchStatus.ok, "")
 
 
 @pytest.mark.long
 def test_a_point_without_a_branch_is_said_and_leaves_the_row_undecided(starts):
     wrong = replace(starts[0], orbit=None, message="its cycle is lost")
-    found = row_branches(ROD, request(60, 86), 64, starts=[wrong])
+    found = row_branches(ROD, request(60, 86), starts=[wrong])
     assert found.status == BranchStatus.stopped
     where = f"the fold at F = {wrong.parameter_value:.9g}"
     assert found.message == f"no branch is followed through {where}: its cycle is lost"
     assert stable_cycles_at(np.array([79.0]), found, certify=True).tolist() == [-1]
     # Branches are followed beyond the range, up to F = 45 here, but not as far as this fold.
-    outside = row_branches(ROD, request(20, 30), 64, starts=starts[:1])
+    outside = row_branches(ROD, request(20, 30), starts=starts[:1])
     assert "the cycle found lies outside the range" in outside.message

@@ -32,13 +32,13 @@ from rodsweep.solve.unsolvable import Unsolvable
 
 ROD = Rod(F=60.0, k1=133.3, k2=1e4, gamma3=0.006)
 AXES = PlaneAxis("F", 50.0, 120.0), PlaneAxis("k1", 132.0, 136.0)
-REQUEST = RowRequest("F", np.array([50.0, 120.0]), 1e-10, True, 16)
+REQUEST = RowRequest("F", np.array([50.0, 120.0]), 1e-10, True, 16, max_special_points=64)
 SMALLEST = 79.0040695, 133.01451425
 """F and k1 at the smallest closed branch, by folds of branches along k1 at five forces."""
 
 
 def folds_of(rod, starts=()):
-    found = special_points_of(row_branches(rod, REQUEST, 64, starts=starts))
+    found = special_points_of(row_branches(rod, REQUEST, starts=starts))
     return [point for point in found if point.kind == SpecialKind.fold]
 
 
@@ -143,7 +143,7 @@ def test_a_tiny_closed_branch_is_followed(points, distance):
     ends = points[index - 1 : index + 1], points[index : index + 2]
     crossings = [problem.point_on_row(*pair, AXES[1].coordinate(row)) for pair in ends]
     starts = [RowCrossing.from_solved_point(0, SpecialKind.fold, c, 1e-4).special_point for c in crossings]
-    found = row_branches(replace(ROD, k1=row), REQUEST, 64, starts=starts)
+    found = row_branches(replace(ROD, k1=row), REQUEST, starts=starts)
     (curve,) = found.curves
     assert (found.status, curve.closed) == (BranchStatus.ok, True)
     low, high = sorted(fold.parameter_value for fold in special_points_of(found))

@@ -64,7 +64,7 @@ class BorderCondition:
         step = self._step(matrix, orbit)
         for _ in range(ORBIT_NEWTON_SETTINGS.max_iterations):
             report()
-            change = self._relative_change_within_limit(orbit, step)
+            change = self.relative_change_within_limit(orbit, step)
             orbit = moved_orbit(orbit, self.scale.parameter_name, step)
             matrix_distance = matrix_distance + change
             # There is no rate at the first step with a matrix.
@@ -99,7 +99,7 @@ class BorderCondition:
             return matrix.step(self.border, residual)
         return matrix.correction(orbit, self.border, residual)
 
-    def _relative_change_within_limit(self, orbit: Orbit, step: Array) -> float:
+    def relative_change_within_limit(self, orbit: Orbit, step: Array) -> float:
         """Relative change of orbit and parameter in Newton's `step`, (N + 1,); raises Unsolvable if this
         change is too large."""
         change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate_unit)

@@ -3,7 +3,7 @@
 from ....arrays import Array
 from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
-from ...orbit.orbit_mesh import OrbitMesh, mesh_of
+from ...orbit.orbit_mesh import mesh_of
 from ...unsolvable import Unsolvable
 from ..arc_length_step import BranchCycle, arc_length_between
 from ..bordered.condition import moved_orbit
@@ -16,11 +16,14 @@ from .special_point import SPECIAL_POINT_SETTINGS
 
 class BranchSegment:
     """Segment of a branch from the cycle `start` to the next cycle `end`, on which cycles are solved at any
-    arc length."""
+    arc length. mesh: mesh on which `cycle_at` solves cycles, at first the mesh of `end`; it may be changed.
+    The first cycle on a mesh is predicted from the last cycle on the mesh before; on the first mesh, by the
+    polynomial through the cycles up to `end`."""
 
     def __init__(self, start: BranchCycle, end: BranchCycle) -> None:
         self.start = start
         self.end = end
+        self.mesh = mesh_of(end.orbit)
         self.length = arc_length_between(start, end)
         self._length_along_end_tangent = float(
             end.unit_tangent @ (end.scale.components(end.orbit) - end.scale.components(start.orbit))
@@ -48,11 +51,6 @@ class BranchSegment:
         ratio = self._length_along_end_tangent / self.length
         slope = float(rate.deriv()(folds[0])) * ratio**2 / self.start.scale.coordinate_unit
         return self.length + float(folds[0]) / ratio, slope
-
-    def set_mesh(self, mesh: OrbitMesh) -> None:
-        """Sets the mesh on which `cycle_at` solves cycles. The first cycle on this mesh is predicted from the
-        last cycle on the mesh before; on the first mesh, by the polynomial."""
-        self.mesh = mesh
 
     def cycle_at(self, length: float) -> ConvergedOrbit:
         """The cycle at the arc length `length` from `start`, with the matrix of a nearby orbit; raises

@@ -11,6 +11,7 @@ from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of
 from ...unsolvable import Unsolvable
 from ..bordered.condition import require_equal_unknowns
+from .curve_ends import END_SETTINGS
 from .parameter_roles import ParameterRoles
 from .solved_curve_point import SolvedPoint, arc_lengths
 from .special_curves import CURVE_IDENTITY_SETTINGS, lagrange_weights
@@ -19,12 +20,12 @@ from .special_curves import CURVE_IDENTITY_SETTINGS, lagrange_weights
 def predicted_orbit(
     roles: ParameterRoles, points: Sequence[SolvedPoint], length: float
 ) -> tuple[Orbit, float]:
-    """Returns (orbit, row coordinate), predicted at the arc length `length` beyond the last point; raises
-    Unsolvable."""
+    """Returns (orbit, row coordinate), predicted at the arc length `length` beyond the last point, or before
+    the rod is crushed; raises Unsolvable."""
     last_points = points[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
-    return weighted_sum(
-        roles, last_points, lagrange_weights(arc_lengths(last_points), length), mesh_of(last_points[-1].orbit)
-    )
+    lengths = arc_lengths(last_points)
+    weights = lagrange_weights(lengths, _length_before_crushing(roles, last_points, lengths, length))
+    return weighted_sum(roles, last_points, weights, mesh_of(last_points[-1].orbit))
 
 
 def weighted_sum(
@@ -38,28 +39,25 @@ def weighted_sum(
     return orbit_with_parameters(orbit, parameters), row
 
 
-def length_before_crushing(
-    roles: ParameterRoles, points: Sequence[SolvedPoint], length: float, margin: float, tolerance: float
+def _length_before_crushing(
+    roles: ParameterRoles, points: Sequence[SolvedPoint], lengths: Array, length: float
 ) -> float:
     """The arc length `length`, shortened so that the rod predicted beyond `points` keeps half of the crushing
-    margin `margin`; unchanged if the last point has less than half of this margin. tolerance: relative
-    tolerance of the shortened length."""
+    margin; unchanged if the last point has less than half of this margin. lengths: arc lengths of the points,
+    (points,)."""
     from scipy.optimize import brentq  # slow import: 0.1 s, for few runs
 
-    last_points = points[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
-    lengths = arc_lengths(last_points)
-
     def distance(length: float) -> float:
-        rod = last_points[-1].orbit.form.rod
-        _, parameters = _parameters(roles, last_points, lagrange_weights(lengths, length))
+        rod = points[-1].orbit.form.rod
+        _, parameters = _parameters(roles, points, lagrange_weights(lengths, length))
         values = {**rod.values, **parameters}
         load = rod.material.crushing_ratio(values["F"], values["k1"], values["taper"])
-        return 1 - margin / 2 - load
+        return 1 - END_SETTINGS.crushing_margin / 2 - load
 
     # Both ends on one side of the limit: there is no root between them for brentq.
     if distance(length) >= 0 or distance(0.0) <= 0:
         return length
-    return float(brentq(distance, 0.0, length, rtol=tolerance))
+    return float(brentq(distance, 0.0, length, rtol=END_SETTINGS.crushing_tolerance))
 
 
 def orbit_with_parameters(orbit: Orbit, parameters: dict[str, float]) -> Orbit:

@@ -18,12 +18,7 @@ from ...unsolvable import Unsolvable, WorkLimitReached
 from ..bordered.matrix import BorderedMatrix
 from .augmented.fold_and_torus_functions import pair_nearest_unit_circle
 from .curve_ends import END_REASON_BY_MARGIN, END_SETTINGS, ROW_EDGE_MARGIN_INDICES
-from .curve_prediction import (
-    length_before_crushing,
-    orbit_with_parameters,
-    predicted_orbit,
-    weighted_sum,
-)
+from .curve_prediction import orbit_with_parameters, predicted_orbit, weighted_sum
 from .curve_start import first_point_of_curve
 from .cycle_family import CycleFamily
 from .parameter_roles import ParameterRoles
@@ -101,7 +96,7 @@ class SpecialCurveProblem:
         else:
             points = self._points_for_prediction(previous, length)
             last = points[-1]
-            start, row = predicted_orbit(self.roles, points, self._length_before_crushing(points, length))
+            start, row = predicted_orbit(self.roles, points, length)
             change = last.scale.components(start) - last.scale.components(last.orbit)
             line = line_across(np.append(change, row - last.row_coordinate), *points[-2:])
             rates = last.normal_derivatives
@@ -135,12 +130,6 @@ class SpecialCurveProblem:
         exchanged = self.roles.need_exchange_beyond(previous, length)
         last_points = previous[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
         return [self.roles.with_roles(point, exchanged) for point in last_points]
-
-    def _length_before_crushing(self, points: Sequence[SolvedPoint], length: float) -> float:
-        """The arc length `length`, shortened as in `length_before_crushing`."""
-        return length_before_crushing(
-            self.roles, points, length, END_SETTINGS.crushing_margin, END_SETTINGS.crushing_tolerance
-        )
 
     def margins(self, point: SolvedPoint) -> Array:
         """Margins, (7,); the curve ends where a margin becomes 0: distances from the four edges, 1 -

@@ -114,7 +114,7 @@ class SecantSearch:
             change = (current.null_vectors - self.previous.null_vectors) / (
                 current.distance - self.previous.distance
             )
-            self.nearby_solver.set_approximate_vectors(current.null_vectors + step * change)
+            self.nearby_solver.test_function.null_vectors = current.null_vectors + step * change
         if rates:
             self.orbit = self._predicted_orbit(step, rates)
         self.previous = current

@@ -16,7 +16,7 @@ from ....arrays import Array
 from ....determinant.parameter_plane import PlaneAxis
 from ...continuation.curve_search import TracedCurves
 from .curve_comparison import are_identical_curves
-from .folds_beyond import FoldsBeyondRange
+from .folds_beyond import FoldsBeyondRange, RowItems
 from .row_crossing import RowCrossing
 from .special_curve_tracer import SpecialCurveTracer
 from .special_curves import CurveEndReason, SpecialPointCurve
@@ -32,39 +32,18 @@ SpecialPointsOfRow = Callable[[int, dict[str, Array]], list[RowSpecialPoint]]
 
 
 @dataclass(frozen=True, slots=True)
-class DetachedRows:
-    """Rows that are solved again, as work items numbered from `first_item`. row_name, row_values: name of the
-    row parameter, and its value by index of the row. crossings: all points known so far at which curves cross
-    a row without a special point of its own, by index of the row."""
+class DetachedRows(RowItems):
+    """Rows that are solved again. crossings: all points known so far at which curves cross a row without a
+    special point of its own, by index of the row."""
 
     outcome: ClassVar[str] = "row solved again with branches found from curves of folds and torus points"
-    progress_noun: ClassVar[str] = "rows"
+    label: ClassVar[str] = "detached branches"
 
-    first_item: int
-    row_name: str
-    row_values: Mapping[int, float]
     crossings: Mapping[int, tuple[RowCrossing, ...]]
-
-    @property
-    def end_item(self) -> int:
-        """Number of rows plus `first_item`."""
-        return self.first_item + len(self.crossings)
-
-    def items_to_solve(self, results: Results) -> list[int]:
-        """Numbers of the rows that are not solved yet."""
-        return [item for item in range(self.first_item, self.end_item) if item not in results]
-
-    def row_of(self, item: int) -> int:
-        """Index of the row of a work item."""
-        return sorted(self.crossings)[item - self.first_item]
 
     def starts_of_row(self, row: int) -> tuple[SpecialPoint, ...]:
         """Special points from which branches of the row with the index `row` are followed."""
         return tuple(crossing.special_point for crossing in self.crossings[row])
-
-    def item_label(self, item: int) -> str:
-        """Text for a row in the progress display."""
-        return f"detached branches of {self.row_name} = {self.row_values[self.row_of(item)]:.5g}"
 
 
 Stage = SpecialCurveTracer | DetachedRows | FoldsBeyondRange
@@ -228,4 +207,5 @@ def _rows_after(tracer: SpecialCurveTracer, stages: Sequence[Stage], results: Re
             new_crossings[row] = (*row_crossings, crossing)
     if not new_crossings:
         return None
-    return DetachedRows(tracer.end_item, tracer.row_axis.name, tracer.complete_rows, new_crossings)
+    row_values = {row: tracer.complete_rows[row] for row in new_crossings}
+    return DetachedRows(tracer.end_item, tracer.row_axis.name, row_values, new_crossings)

@@ -15,13 +15,13 @@ FOLDS_ARRAY = "folds_beyond"
 
 
 @dataclass(frozen=True, slots=True)
-class FoldsBeyondRange:
-    """Rows whose branches leave the range or enter it, as work items numbered from `first_item`; the results
-    are the folds of these branches beyond the range. row_name, row_values: name of the row parameter, and its
+class RowItems:
+    """Rows as work items numbered from `first_item`. row_name, row_values: name of the row parameter, and its
     value by index of the row."""
 
-    outcome: ClassVar[str] = "row with branches that leave the range"
     progress_noun: ClassVar[str] = "rows"
+    label: ClassVar[str]
+    """Text before the row parameter in the progress display."""
 
     first_item: int
     row_name: str
@@ -33,22 +33,30 @@ class FoldsBeyondRange:
         return self.first_item + len(self.row_values)
 
     def items_to_solve(self, results: Mapping[int, dict[str, Array]]) -> list[int]:
-        """Numbers of the rows without a result. results: arrays with the name FOLDS_ARRAY, (folds, 3),
-        by number."""
+        """Numbers of the rows without a result. results: arrays, (...,) each, by name and number."""
         return [item for item in range(self.first_item, self.end_item) if item not in results]
 
     def row_of(self, item: int) -> int:
         """Index of the row of a work item."""
         return sorted(self.row_values)[item - self.first_item]
 
+    def item_label(self, item: int) -> str:
+        """Text for a row in the progress display."""
+        return f"{self.label} of {self.row_name} = {self.row_values[self.row_of(item)]:.5g}"
+
+
+@dataclass(frozen=True, slots=True)
+class FoldsBeyondRange(RowItems):
+    """Rows whose branches leave the range or enter it; the results are the folds of these branches beyond the
+    range."""
+
+    outcome: ClassVar[str] = "row with branches that leave the range"
+    label: ClassVar[str] = "folds beyond the range"
+
     def starts_of_row(self, row: int) -> tuple[SpecialPoint, ...]:
         """No special points: the branches of the row with the index `row` are the branches of the first
         stage."""
         return ()
-
-    def item_label(self, item: int) -> str:
-        """Text for a row in the progress display."""
-        return f"folds beyond the range of {self.row_name} = {self.row_values[self.row_of(item)]:.5g}"
 
     def solve(
         self, item: int, known_points: Callable[[int], tuple[SpecialPoint, ...]], limits: tuple[float, float]

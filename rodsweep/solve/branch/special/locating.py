@@ -14,7 +14,7 @@ from ...orbit.least_stretch import least_stretch
 from ...orbit.measures import CycleMotion
 from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
-from ...orbit.orbit_mesh import mesh_limit_error, mesh_of
+from ...orbit.orbit_mesh import mesh_limit_error
 from ...unsolvable import Unsolvable, WorkLimitReached
 from ..arc_length_step import BranchCycle
 from ..bordered.condition import moved_orbit
@@ -98,7 +98,6 @@ def special_point_between(
             except Unsolvable:
                 pass  # the fold is bracketed instead
         segment = BranchSegment(start, end)
-        segment.set_mesh(mesh_of(end.orbit))
         return _point_near(kind, segment, _bracketed_zero(kind, segment), required_accuracy)[0]
     except Unsolvable as reason:
         return unlocated_point(kind, start, end, f"the special point ({kind.name}) is not located: {reason}")
@@ -115,7 +114,7 @@ def _point_near(
     mesh = first_mesh(end.calibration, required_accuracy)
     point: SpecialPoint | None = None
     for comparison_index in range(SPECIAL_POINT_SETTINGS.max_mesh_comparisons + 1):
-        segment.set_mesh(mesh)
+        segment.mesh = mesh
         try:
             length, orbit, slope = _zero_by_secants(kind, segment, length, slope)
         except WorkLimitReached:

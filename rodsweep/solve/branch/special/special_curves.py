@@ -2,7 +2,7 @@
 the cycles vanish."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import astuple, dataclass, field, replace
 from enum import IntEnum
 
 import numpy as np
@@ -80,13 +80,14 @@ class HopfEnd:
     """A Hopf point at which a curve of special points ends because the cycles vanish.
 
     parameter_value: value of the parameter along a row, with the absolute error `error`. row_value: value of
-    the row parameter. period: period of the vanishing cycles, in tau2.
+    the row parameter. period: period of the vanishing cycles, in tau2. tip_y_max: their largest tip y, 0.
     """
 
     parameter_value: float
     row_value: float
     error: float
     period: float
+    tip_y_max: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,7 +149,7 @@ class TracedHalfCurve:
         """The result as named arrays: points (points, 7), the fields of `CurvePoint`; end (1,), the value of
         the `CurveEndReason`, 0 if `half` is None; distances (near, 2), index and distance of each
         nearby special point; and the arrays of `numbered_arrays` for the crossings."""
-        points = [] if self.half is None else [_point_numbers(point) for point in self.half.points]
+        points = [] if self.half is None else list(map(astuple, self.half.points))
         return {
             # A half without points still has columns, so that all results can be read alike.
             "points": np.array(points, dtype=float).reshape(-1, len(CurvePoint.__slots__)),
@@ -163,10 +164,6 @@ class TracedHalfCurve:
         half = HalfCurve(points, CurveEndReason(int(arrays["end"][0]))) if points else None
         distances = {int(index): float(distance) for index, distance in arrays["distances"]}
         return cls(half, distances, crossings_from_arrays(arrays))
-
-
-def _point_numbers(point: CurvePoint) -> list[float]:
-    return [getattr(point, name) for name in CurvePoint.__slots__]
 
 
 @dataclass(frozen=True, slots=True)

@@ -51,6 +51,8 @@ class RowRequest:
     """Maximum number of stored thresholds."""
     cycle_accuracy: float = 1e-6
     """Relative accuracy of the period and of the largest tip y of each cycle, if cycles are requested."""
+    max_special_points: int = 0
+    """Maximum number of stored special points of the branches of cycles, if cycles are requested."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

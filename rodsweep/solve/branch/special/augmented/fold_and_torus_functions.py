@@ -59,7 +59,8 @@ class FoldTestFunction:
     """Test function of folds: derivative of the scaled parameter coordinate with respect to the arc length in
     the direction `border`, (3,). matrix: matrix of a nearby cycle, whose factors are used. has_small_cycles:
     whether the derivative is divided by the deflection; without this division the derivative vanishes at a
-    Hopf point too. null_vectors: tangent of the branch, (N + 1,)."""
+    Hopf point too. null_vectors: approximate tangent of the branch, (N + 1,), which `correct_vectors`
+    improves."""
 
     def __init__(self, matrix: BorderedMatrix, border: Array, has_small_cycles: bool) -> None:
         self.matrix = matrix
@@ -78,10 +79,6 @@ class FoldTestFunction:
             else parameter_rate
         )
 
-    def set_approximate_vectors(self, tangent: Array) -> None:
-        """Sets the approximate tangent, (N + 1,), that the next call of `correct_vectors` improves."""
-        self.null_vectors = tangent
-
     def correct_vectors(self, orbit: Orbit) -> None:
         """Corrects the tangent at an orbit by one step of iterative refinement of its linear equation."""
         tangent = self.null_vectors
@@ -92,9 +89,9 @@ class FoldTestFunction:
 class TorusTestFunction:
     """Test function of torus points: |mu| - 1, mu: complex multiplier nearest to the unit circle, which is
     corrected together with its eigenvector. matrix: matrix of a nearby cycle, whose factors are used.
-    null_vectors: real and imaginary part of the eigenvector, (2, N + 1). shifted_propagator: P - (1 + shift)
-    mu S, the matrix of inverse iteration. bordered_propagator: P - mu S with the border of Newton's method
-    for mu. Raises Unsolvable if all multipliers of this cycle are real."""
+    null_vectors: real and imaginary part of the approximate eigenvector, (2, N + 1). shifted_propagator: P -
+    (1 + shift) mu S, the matrix of inverse iteration. bordered_propagator: P - mu S with the border of
+    Newton's method for mu. Raises Unsolvable if all multipliers of this cycle are real."""
 
     def __init__(self, matrix: BorderedMatrix) -> None:
         self.matrix = matrix
@@ -128,11 +125,6 @@ class TorusTestFunction:
     def value(self, orbit: Orbit) -> float:
         """The test function |mu| - 1, from the last corrected multiplier mu; `orbit` is not used."""
         return abs(self.multiplier) - 1
-
-    def set_approximate_vectors(self, parts: Array) -> None:
-        """Sets the approximate eigenvector that the next call of `correct_vectors` improves. parts: real and
-        imaginary part, (2, N + 1)."""
-        self.null_vectors = parts
 
     def correct_vectors(self, orbit: Orbit) -> None:
         """Corrects the multiplier and its eigenvector at an orbit by one approximate Newton step."""

@@ -1,51 +1,27 @@
 """Cycles near a cycle whose Newton matrix is factorised, corrected together with a test function from the
 module `fold_and_torus_functions`. A new matrix is assembled only if the corrections converge slowly."""
 
-from typing import Protocol
+from typing import TYPE_CHECKING
 
-from .....arrays import Array
 from .....solve_progress import report
-from ....orbit.matrix.workspace import NewtonWorkspace
-from ....orbit.newton import ORBIT_NEWTON_SETTINGS, relative_change
 from ....orbit.orbit import Orbit
 from ....unsolvable import Unsolvable
 from ...bordered.condition import BorderCondition, moved_orbit
 from ...bordered.matrix import BorderedMatrix
-from ...bordered.scale import ArcLengthScale
-from .fold_and_torus_functions import MINIMALLY_AUGMENTED_SETTINGS, FoldTestFunction, TorusTestFunction
+from .fold_and_torus_functions import MINIMALLY_AUGMENTED_SETTINGS
 
-
-class CycleFamilyInterface(Protocol):
-    """Two-parameter family of cycles near a curve of special points, as `NearbyCycleSolver` uses it.
-
-    border: direction of the branch in components (deflection, log period, parameter), (3,). has_small_cycles:
-    whether the cycles are so small that the fold function is divided by the deflection. workspace: memory of
-    Newton's matrices."""
-
-    @property
-    def scale(self) -> ArcLengthScale: ...
-    @property
-    def border(self) -> Array: ...
-    @property
-    def has_small_cycles(self) -> bool: ...
-    @property
-    def workspace(self) -> NewtonWorkspace: ...
-
-    def test_function(self, matrix: BorderedMatrix) -> "FoldTestFunction | TorusTestFunction":
-        """The test function that is zero on the curve of special points, for cycles near the orbit of
-        `matrix`."""
+if TYPE_CHECKING:
+    from ..cycle_family import CycleFamily  # for annotations only: the module imports this one
 
 
 class NearbyCycleSolver:
     """Solver for cycles of a family, with their test function, near a cycle whose Newton matrix is
     factorised."""
 
-    def __init__(self, family: CycleFamilyInterface, start: Orbit, contraction: float) -> None:
+    def __init__(self, family: "CycleFamily", start: Orbit, contraction: float) -> None:
         """family: family of the cycles. start: orbit at which the first matrix is assembled. contraction:
         initial value of `contraction_rate`, measured at earlier cycles of the family; inf if
         unknown."""
-        self.scale = family.scale
-        self.border = family.border
         self._family = family
         self.contraction_rate = contraction
         """Assumed contraction rate: ratio of successive corrections, divided by the relative distance of the
@@ -56,14 +32,9 @@ class NearbyCycleSolver:
     def _assemble_matrix(self, orbit: Orbit) -> None:
         """Assembles and factorises a new matrix at an orbit, with a new test function. Sets
         `matrix_distance`, the relative distance of the current cycle from this orbit, to 0."""
-        self.matrix = BorderedMatrix(orbit, self.scale, self._family.workspace)
+        self.matrix = BorderedMatrix(orbit, self._family.scale, self._family.workspace)
         self.matrix_distance = 0.0
         self.test_function = self._family.test_function(self.matrix)
-
-    def set_approximate_vectors(self, vectors: Array) -> None:
-        """Sets the approximate tangent, (N + 1,), or eigenvector, (2, N + 1), that the next correction of the
-        test function improves."""
-        self.test_function.set_approximate_vectors(vectors)
 
     def solve(
         self, orbit: Orbit, condition: BorderCondition, slope: float, tolerance: float
@@ -116,10 +87,7 @@ class NearbyCycleSolver:
     def _corrected_orbit(self, orbit: Orbit, condition: BorderCondition) -> tuple[Orbit, float]:
         """(orbit after one correction under `condition` with the current matrix, relative change of the
         orbit); raises Unsolvable."""
-        step = self.matrix.correction(orbit, self.border, condition.residual(orbit))
-        change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate_unit)
-        # Negated, so that a change of nan is refused too.
-        if not change <= ORBIT_NEWTON_SETTINGS.max_relative_step:
-            raise Unsolvable("Newton's method for the cycle finds no cycle of the branch near its start")
+        step = self.matrix.correction(orbit, condition.border, condition.residual(orbit))
+        change = condition.relative_change_within_limit(orbit, step)
         self.matrix_distance += change
-        return moved_orbit(orbit, self.scale.parameter_name, step), change
+        return moved_orbit(orbit, condition.scale.parameter_name, step), change
