@@ -59,7 +59,7 @@ from rodsweep.solve.cycle.straight_rod import (
     straight_rod_stability,
     straight_rod_stability_in_chain,
 )
-from rodsweep.solve.hopf.bautin_curves import BautinProblem, as_curve_point, bautin_curve
+from rodsweep.solve.hopf.bautin_curves import BautinProblem, bautin_curve
 from rodsweep.solve.hopf.bautin_points import curve_criticality
 from rodsweep.solve.hopf.hopf_coefficients import hopf_coefficients
 from rodsweep.solve.hopf.subcritical_hopf import subcritical_hopf_near
@@ -233,7 +233,7 @@ def curve_of_generalised_hopf(accuracy: float) -> Answer:
     (point,) = curve_criticality(plane, curve, 1e-10).points
     asked = np.array([8e3, 1.2e4, 1e4])
     space = BautinProblem(plane.rod, (*plane.axes, PlaneAxis("k2", 8e3, 1.2e4)), asked, accuracy)
-    found = bautin_curve(space, as_curve_point(point, 1e4))
+    found = bautin_curve(space, space.curve_point(point, 2, 1e4))
     answer = {}
     for value in asked[:2]:
         at = [each for each in found.points if abs(each.values[2] / value - 1) < 1e-12]

@@ -47,9 +47,11 @@ END_BY_STOP_REASON = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BautinCurvePoint:
-    """A generalised Hopf point over three parameters. values, errors: both parameters of the plane, then the
-    third parameter, (3,). frequency in 1/tau2, landau_imag = Im c in 1/(tau2 L^2)."""
+    """A generalised Hopf point over three parameters. v: continuation coordinates, (4,): three scaled
+    parameters, log frequency. values, errors: both parameters of the plane, then the third parameter, (3,).
+    frequency in 1/tau2, landau_imag = Im c in 1/(tau2 L^2)."""
 
+    v: Array
     values: Array
     errors: Array
     frequency: float
@@ -65,14 +67,6 @@ class BautinCurve:
 
 
 @dataclass(frozen=True, slots=True)
-class _CurvePoint:
-    """Generalised Hopf point. v: continuation coordinates, (4,): three scaled parameters, log frequency."""
-
-    v: Array
-    point: BautinCurvePoint
-
-
-@dataclass(frozen=True, slots=True)
 class BautinProblem:
     """Problem for `follow_curve`: generalised Hopf points over three parameters. axes: these parameters, with
     their ranges. rod: rod with all other parameters. requested_values: values of the third parameter of
@@ -85,12 +79,20 @@ class BautinProblem:
     accuracy: float
     direction_sign: float = 1.0
 
-    def scaled_coordinates(self, values: Array, frequency: float) -> Array:
-        """Coordinates v, (4,): the parameters `values`, (3,), scaled to [0, 1], and log `frequency`."""
-        coordinates = [axis.coordinate(float(value)) for axis, value in zip(self.axes, values, strict=True)]
-        return np.array([*coordinates, np.log(frequency)])
+    def curve_point(self, point: BautinPoint, index: int, value: float) -> BautinCurvePoint:
+        """`point` of the plane of both other parameters as a point of a curve. value: value of the parameter
+        of index `index`."""
+        values = np.insert(point.values, index, value)
+        coordinates = [axis.coordinate(float(each)) for axis, each in zip(self.axes, values, strict=True)]
+        return BautinCurvePoint(
+            v=np.array([*coordinates, np.log(point.frequency)]),
+            values=values,
+            errors=np.insert(point.errors, index, 0.0),
+            frequency=point.frequency,
+            landau_imag=point.landau_imag,
+        )
 
-    def solve_point(self, guess: Array, fixed_index: int) -> _CurvePoint:
+    def solve_point(self, guess: Array, fixed_index: int) -> BautinCurvePoint:
         """The generalised Hopf point near the coordinates `guess`, (4,), with the parameter of index
         `fixed_index` fixed; raises Unsolvable."""
         free = [i for i in range(3) if i != fixed_index]
@@ -101,17 +103,9 @@ class BautinProblem:
         curve = HopfNormalForms(boundary, np.empty((0, 3)), accuracy)  # finds Hopf points only near a guess
         start = guess[[*free, 3]]
         point = self._zero_by_secants(curve, start, boundary.tangent(start))
-        point_values = np.empty(3)
-        errors = np.zeros(3)
-        point_values[free] = point.values
-        errors[free] = point.errors
-        point_values[fixed_index] = values[self.axes[fixed_index].name]
-        solved_point = BautinCurvePoint(
-            values=point_values, errors=errors, frequency=point.frequency, landau_imag=point.landau_imag
-        )
-        return _CurvePoint(self.scaled_coordinates(point_values, point.frequency), solved_point)
+        return self.curve_point(point, fixed_index, values[self.axes[fixed_index].name])
 
-    def step(self, previous: Sequence[_CurvePoint], length: float) -> StepResult[_CurvePoint]:
+    def step(self, previous: Sequence[BautinCurvePoint], length: float) -> StepResult[BautinCurvePoint]:
         """The next point, predicted along the last chord, at first along the third parameter; raises
         Unsolvable. length: largest predicted change of a parameter, divided by its range."""
         v = previous[-1].v
@@ -128,7 +122,7 @@ class BautinProblem:
         # No prediction error for the first step, which has no chord, and for a step that an edge shortened.
         return StepResult(point, 0.0 if is_on_end or len(previous) == 1 else prediction_error, 1.0)
 
-    def _point_in_ranges(self, v: Array, change: Array) -> tuple[_CurvePoint, bool]:
+    def _point_in_ranges(self, v: Array, change: Array) -> tuple[BautinCurvePoint, bool]:
         """Returns (point near v + change, (4,), or on the end of a range that this step crosses; whether on
         such an end). Parameters outside the ranges may not be allowed. Raises Unsolvable."""
         predicted = (v + change)[:3]
@@ -142,17 +136,17 @@ class BautinProblem:
         guess[index] = range_ends[index]
         return self.solve_point(guess, index), True
 
-    def margins(self, point: _CurvePoint) -> Array:
+    def margins(self, point: BautinCurvePoint) -> Array:
         """Distances of a point from both ends of each of the three ranges, minus a tolerance, (6,)."""
         return np.ravel([point.v[:3], 1 - point.v[:3]], order="F") - BAUTIN_SETTINGS.edge_tolerance
 
     def located_zero(
-        self, previous: Sequence[_CurvePoint], outer: _CurvePoint, margin: int
-    ) -> _CurvePoint | None:
+        self, previous: Sequence[BautinCurvePoint], outer: BautinCurvePoint, margin: int
+    ) -> BautinCurvePoint | None:
         """The point `outer` itself: `_point_in_ranges` has shortened the step to the end of a range."""
         return outer
 
-    def is_closed_by(self, previous: Sequence[_CurvePoint], point: _CurvePoint) -> bool:
+    def is_closed_by(self, previous: Sequence[BautinCurvePoint], point: BautinCurvePoint) -> bool:
         """Whether the curve has more than `BAUTIN_SETTINGS.min_loop_points` points, and the first point of
         the curve lies between its last point and `point`."""
         first = previous[0].v
@@ -187,39 +181,29 @@ class BautinProblem:
 
 def bautin_curve(problem: BautinProblem, start: BautinCurvePoint) -> BautinCurve:
     """The curve of generalised Hopf points through `start`, followed in both directions."""
-    start_point = _CurvePoint(problem.scaled_coordinates(start.values, start.frequency), start)
-    backward, first_reason = _half_curve(replace(problem, direction_sign=-1.0), start_point)
+    backward, first_reason = _half_curve(replace(problem, direction_sign=-1.0), start)
     if first_reason is BautinEndReason.closed:
-        return BautinCurve(tuple(point.point for point in backward), (first_reason, first_reason))
-    forward, reason = _half_curve(problem, start_point)
+        return BautinCurve(tuple(backward), (first_reason, first_reason))
+    forward, reason = _half_curve(problem, start)
     # Both lists begin with the start, which is taken once.
-    return BautinCurve(tuple(point.point for point in [*backward[:0:-1], *forward]), (first_reason, reason))
+    return BautinCurve((*backward[:0:-1], *forward), (first_reason, reason))
 
 
-def as_curve_point(point: BautinPoint, value: float) -> BautinCurvePoint:
-    """A generalised Hopf point of a plane as a point of a curve. value: value of the third parameter."""
-    return BautinCurvePoint(
-        values=np.array([*point.values, value]),
-        errors=np.array([*point.errors, 0.0]),
-        frequency=point.frequency,
-        landau_imag=point.landau_imag,
-    )
-
-
-def lies_on_curve(problem: BautinProblem, point: BautinCurvePoint, curve: BautinCurve) -> bool:
+def lies_on_curve(point: BautinCurvePoint, curve: BautinCurve) -> bool:
     """Whether `point`, at a requested value of the third parameter, equals a point of `curve`."""
-    v = problem.scaled_coordinates(point.values, point.frequency)
-    v_of_points = [problem.scaled_coordinates(other.values, other.frequency) for other in curve.points]
-    return any(float(np.abs(v - other).max()) < BAUTIN_SETTINGS.same_point_distance for other in v_of_points)
+    distances = (float(np.abs(point.v - other.v).max()) for other in curve.points)
+    return any(distance < BAUTIN_SETTINGS.same_point_distance for distance in distances)
 
 
-def _half_curve(problem: BautinProblem, start: _CurvePoint) -> tuple[list[_CurvePoint], BautinEndReason]:
+def _half_curve(
+    problem: BautinProblem, start: BautinCurvePoint
+) -> tuple[list[BautinCurvePoint], BautinEndReason]:
     """Returns (points, end_reason). points: points of the curve from `start` on, at first in the direction
     `problem.direction_sign` of the third parameter, including points at its requested values."""
     if not 0 < start.v[2] + problem.direction_sign * BAUTIN_STEP_CONTROL.min_length < 1:
         return [start], BautinEndReason.range_end
 
-    def report_progress(points: Sequence[_CurvePoint]) -> None:
+    def report_progress(points: Sequence[BautinCurvePoint]) -> None:
         report(lambda: SolvePosition(f"curve of generalised Hopf points, {len(points)} points"))
 
     curve = follow_curve(problem, start, BAUTIN_STEP_CONTROL, report_progress)
@@ -235,7 +219,9 @@ def _half_curve(problem: BautinProblem, start: _CurvePoint) -> tuple[list[_Curve
     return points, END_BY_STOP_REASON[curve.end_reason]
 
 
-def _requested_points(problem: BautinProblem, first: _CurvePoint, second: _CurvePoint) -> list[_CurvePoint]:
+def _requested_points(
+    problem: BautinProblem, first: BautinCurvePoint, second: BautinCurvePoint
+) -> list[BautinCurvePoint]:
     """Points at the requested values of the third parameter between `first` and `second`; raises Unsolvable,
     ValueError."""
     a, b = first.v[2], second.v[2]

@@ -75,7 +75,6 @@ def generalised_hopf_curves(
     from ...solve.hopf.bautin_curves import (
         BautinCurve,
         BautinProblem,
-        as_curve_point,
         bautin_curve,
         lies_on_curve,
     )
@@ -87,8 +86,9 @@ def generalised_hopf_curves(
     all_values = np.append(values, value_in_plane)
     space = BautinProblem(plane.rod, (*plane.axes, plane_axis), all_values, accuracy)
     curves: list[BautinCurve] = []
-    for start in [as_curve_point(point, value_in_plane) for curve in criticalities for point in curve.points]:
+    points_of_plane = [point for curve in criticalities for point in curve.points]
+    for start in [space.curve_point(point, 2, value_in_plane) for point in points_of_plane]:
         # A curve may return to the plane: its further points need no curve of their own.
-        if not any(lies_on_curve(space, start, curve) for curve in curves):
+        if not any(lies_on_curve(start, curve) for curve in curves):
             curves.append(bautin_curve(space, start))
     return bautin_curve_values(curves, (plane.axes[0].name, plane.axes[1].name), name)

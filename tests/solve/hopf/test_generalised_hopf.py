@@ -315,14 +315,13 @@ def test_curve_that_turns_back_in_the_third_parameter_is_followed_through_it(mon
                 raise Unsolvable("beyond the turn")
             x = 0.5 + np.copysign(np.sqrt((0.8 - z) / 2), x - 0.5)
         v = np.array([x, 0.5, 0.8 - 2 * (x - 0.5) ** 2, h])
-        point = BautinCurvePoint(values=v[:3], errors=np.zeros(3), frequency=1.0, landau_imag=0.0)
-        return bautin_curves._CurvePoint(v, point)
+        return BautinCurvePoint(v=v, values=v[:3], errors=np.zeros(3), frequency=1.0, landau_imag=0.0)
 
     monkeypatch.setattr(BautinProblem, "solve_point", on_parabola)
     unit = tuple(PlaneAxis(name, 0.0, 1.0) for name in ("F", "k1", "gamma3"))
     space = BautinProblem(Rod(F=0.0, k1=2.0, k2=1.0, gamma3=1.0), unit, np.array([0.5, 0.6]), 1e-10)
     start = on_parabola(space, np.array([0.3, 0.5, 0.6, 0.0]), 2)
-    curve = bautin_curve(space, start.point)
+    curve = bautin_curve(space, start)
     assert (
         curve.end_reasons == (BautinEndReason.plane_edge, BautinEndReason.plane_edge)
         or curve.end_reasons[1] == BautinEndReason.range_end
@@ -333,7 +332,7 @@ def test_curve_that_turns_back_in_the_third_parameter_is_followed_through_it(mon
     assert z.max() == pytest.approx(0.8, abs=0.02)
     assert sum(abs(z - 0.6) < 1e-9) == 2
     beyond = on_parabola(space, np.array([0.7, 0.5, 0.6, 0.0]), 2)
-    assert lies_on_curve(space, beyond.point, curve)
+    assert lies_on_curve(beyond, curve)
 
 
 def test_a_closed_curve_over_three_parameters_is_followed_once(monkeypatch):
@@ -346,13 +345,12 @@ def test_a_closed_curve_over_three_parameters_is_followed_once(monkeypatch):
             raise Unsolvable("beyond the circle")
         x, z = (np.copysign(other, x), z) if held == 2 else (x, np.copysign(other, z))
         v = np.array([0.5 + x, 0.5, 0.5 + z, guess[3]])
-        point = BautinCurvePoint(values=v[:3], errors=np.zeros(3), frequency=1.0, landau_imag=0.0)
-        return bautin_curves._CurvePoint(v, point)
+        return BautinCurvePoint(v=v, values=v[:3], errors=np.zeros(3), frequency=1.0, landau_imag=0.0)
 
     monkeypatch.setattr(BautinProblem, "solve_point", on_circle)
     unit = tuple(PlaneAxis(name, 0.0, 1.0) for name in ("F", "k1", "gamma3"))
     space = BautinProblem(Rod(F=0.0, k1=2.0, k2=1.0, gamma3=1.0), unit, np.array([0.5]), 1e-10)
-    curve = bautin_curve(space, on_circle(space, np.array([0.7, 0.5, 0.7, 0.0]), 0).point)
+    curve = bautin_curve(space, on_circle(space, np.array([0.7, 0.5, 0.7, 0.0]), 0))
     assert curve.end_reasons == (BautinEndReason.closed, BautinEndReason.closed)
     x, _, z = np.array([point.values for point in curve.points]).T - 0.5
     turned = np.unwrap(np.arctan2(z, x))
