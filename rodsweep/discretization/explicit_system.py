@@ -15,7 +15,7 @@ import numpy as np
 from ..arrays import Array, Complex
 from ..model.balance import Values
 from .elements.mesh import shape_from_strains
-from .rod_on_mesh import RodOnMesh
+from .rod_on_mesh import RodOnMesh, broadcast_to_field
 from .stress.rates import write_rate_jacobians, write_rates
 
 
@@ -59,11 +59,11 @@ class ExplicitSystem(RodOnMesh):
 
     def stresses(self, z: Values) -> Values:
         scaled_stresses = self.layout.stresses(z)
-        return scaled_stresses / self._broadcast_sqrt_compliance(scaled_stresses)
+        return scaled_stresses / broadcast_to_field(self.sqrt_compliance, scaled_stresses)
 
     def state_of_stresses(self, S: Array) -> Array:
         """States z, (..., unknowns), of stresses S at all nodes, (3, ..., nodes + 1)."""
-        return self.layout.state(S * self._broadcast_sqrt_compliance(S), S)
+        return self.layout.state(S * broadcast_to_field(self.sqrt_compliance, S), S)
 
     def state_of_strains(self, strains: Array) -> Array:
         """The state z, (unknowns,), with the given strains (h1, h2, Pi) at all nodes, (3, nodes + 1). Strains
@@ -107,7 +107,3 @@ class ExplicitSystem(RodOnMesh):
         strain_rates = self.element_strain_rates(z, TIP_VELOCITY_SETTINGS.imaginary_step * direction)
         strains = self.element_strains(z) + 1j * strain_rates
         return shape_from_strains(self.mesh, strains, np.zeros(3)).astype(complex, copy=False)
-
-    def _broadcast_sqrt_compliance(self, values: Values) -> Array:
-        """`sqrt_compliance`, reshaped to broadcast against `values`, (3, ..., nodes + 1)."""
-        return self.sqrt_compliance.reshape(3, *(1,) * (values.ndim - 2), -1)

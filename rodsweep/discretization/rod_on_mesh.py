@@ -1,7 +1,8 @@
 """One nonlinear rod on one mesh: its strains, shape and energy, computed from its stresses.
 
-`RodOnMesh` is the base class of `StressForm`, whose unknowns are stresses, and of `ExplicitSystem`, whose
-unknowns are stresses times the square roots of the compliances.
+`RodOnMesh` is the base class of `StressForm`, whose unknowns are stresses, of `MixedForm`, whose unknowns are
+stresses and all velocities, and of `ExplicitSystem`, whose unknowns are stresses times the square roots of
+the compliances.
 """
 
 from abc import ABC, abstractmethod
@@ -36,10 +37,10 @@ class RodOnMesh(ABC):
     def unknown_velocities(self) -> tuple[int, ...]:
         """Indices of the components of V that are unknowns."""
 
-    @abstractmethod
     def stresses(self, x: Values) -> Values:
         """Stresses S of states x at all nodes, tip included, (3, ..., nodes + 1); the strain is E = E0 + C S.
         In a linear rod S is (n1 + F, n2, m3)."""
+        return self.layout.stresses(x)
 
     def with_coordinate(self, parameter_name: str, coordinate: float) -> Self:
         """The same rod on the same mesh with another coordinate of the parameter `parameter_name` (see

@@ -84,9 +84,9 @@ def diagram_cost(
     return replace(searches, seconds=searches.seconds + arm_seconds * is_varying)
 
 
-def criticality_cost(rod_count: int, certify: bool, is_varying: bool) -> CostEstimate:
-    """Estimated cost of the Hopf points and normal forms of `rod_count` rods. certify: whether each search is
-    certified. is_varying: whether any rod is not uniform."""
+def criticality_cost(points: Points, F_max: float, certify: bool, is_varying: bool) -> CostEstimate:
+    """Estimated cost of the Hopf points and normal forms of all rods in `points` for forces up to `F_max`.
+    certify: whether each search is certified. is_varying: whether any rod is not uniform."""
     search_ms = HOPF_SEARCH_MS + (HOPF_CERTIFICATE_MS if certify else 0)
     rod_ms = HOPF_POINTS_MS + (ARM_SEARCH_MS if is_varying else search_ms)
-    return CostEstimate(rod_count * 1e-3 * rod_ms)
+    return CostEstimate(points.count * 1e-3 * rod_ms + soft_searches_seconds(points, F_max, is_varying))

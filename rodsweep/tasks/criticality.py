@@ -1,6 +1,6 @@
 """The task criticality: the normal form of every Hopf point of every rod."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -9,7 +9,7 @@ from ..config.task.criticality import CriticalityConfig
 from ..results.layouts.criticality import ABSENT_FROM_HOPF_SEARCH, NORMAL_FORM_VARIABLES
 from ..results.layouts.variables import outcome_values, value_lists
 from ..sweep.cost_estimate import CostEstimate
-from ..sweep.search_cost import criticality_cost, soft_searches_seconds
+from ..sweep.search_cost import criticality_cost
 from .base_classes import HopfPointTask
 from .check_rows import points_clause, search_end_below_crushing_clause
 from .protocol import CheckRow, Solver
@@ -45,16 +45,16 @@ class CriticalityTask(HopfPointTask):
 
     def cost(self) -> CostEstimate:
         is_varying = not self.config.is_uniform_and_linear
-        search_estimate = criticality_cost(self.points.count, self.config.criticality.certify, is_varying)
-        soft_seconds = soft_searches_seconds(self.points, self.config.criticality.F_max, is_varying)
-        return replace(search_estimate, seconds=search_estimate.seconds + soft_seconds)
+        options = self.config.criticality
+        return criticality_cost(self.points, options.F_max, options.certify, is_varying)
 
     def solver(self) -> Solver:
-        from ..solve.hopf.criticality import CriticalityRequest, solve_criticality, warm_up
+        from ..solve.changes.thresholds import ThresholdsRequest
+        from ..solve.hopf.criticality import solve_criticality, warm_up
         from ..solve.hopf.status import CriticalityStatus
 
         options = self.config.criticality
-        request = CriticalityRequest(options.F_max, self.config.accuracy, options.certify, options.crossings)
+        request = ThresholdsRequest(options.F_max, self.config.accuracy, options.certify, options.crossings)
         return Solver(
             statuses=tuple(CriticalityStatus),
             warm_up=warm_up,

@@ -102,6 +102,17 @@ def first_excessive_element_count(max_order: int) -> int:
     return RESOLUTION_SETTINGS.max_unknowns // (3 * max_order) + 2
 
 
+def required_element_count(phase: float, accuracy: float, max_order: int) -> int:
+    """Number of elements of the order `max_order` that resolve an interval in which the phase of the wave
+    grows by `phase`, to the relative accuracy `accuracy`. At most `first_excessive_element_count`, with which
+    the mesh has too many unknowns."""
+    count = 1
+    max_count = first_excessive_element_count(max_order)
+    while count < max_count and required_order(phase / count, accuracy) > max_order:
+        count += 1
+    return count
+
+
 def resolution_for(wave_number: float, accuracy: float, max_order: int | None = None) -> Resolution:
     """The smallest number of elements, and then the lowest order (plus one for several elements), that
     resolve a wave to the relative accuracy `accuracy`.
@@ -111,11 +122,8 @@ def resolution_for(wave_number: float, accuracy: float, max_order: int | None = 
     `RESOLUTION_SETTINGS.max_order` by default.
     """
     max_order = max_order or RESOLUTION_SETTINGS.max_order
-    max_count = first_excessive_element_count(max_order)
-    element_count = 1
-    while element_count < max_count and required_order(wave_number / element_count, accuracy) > max_order:
-        element_count += 1
-    if element_count == max_count:
+    element_count = required_element_count(wave_number, accuracy, max_order)
+    if element_count == first_excessive_element_count(max_order):
         return Resolution(element_count, max_order)
     order = max(RESOLUTION_SETTINGS.min_order, ceil(required_order(wave_number / element_count, accuracy)))
     return Resolution(element_count, order + (1 if element_count > 1 else 0))

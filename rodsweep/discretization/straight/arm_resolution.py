@@ -10,7 +10,12 @@ from ...arrays import Array
 from ...model.dispersion import local_growths_and_wave_numbers, sampled_arm, wave_numbers_of_growth_at_ends
 from ...model.rod import Rod
 from ..elements.elements import ELEMENT_SETTINGS, Elements
-from ..elements.resolution import RESOLUTION_SETTINGS, first_excessive_element_count, required_order
+from ..elements.resolution import (
+    RESOLUTION_SETTINGS,
+    first_excessive_element_count,
+    required_element_count,
+    required_order,
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -121,7 +126,7 @@ def _elements_for_wave(
     is_too_fine = False
     for start, stop, phase in zip(breaks[:-1], breaks[1:], phases_between_breaks, strict=True):
         log_radius_ratio = abs(log(_relative_radius_at(rod, stop) / _relative_radius_at(rod, start)))
-        min_count = _element_count_for(float(phase), accuracy, max_order)
+        min_count = required_element_count(float(phase), accuracy, max_order)
         is_too_fine |= min_count == max_count
         element_count = max(
             1, ceil(log_radius_ratio / log(ARM_RESOLUTION_SETTINGS.max_radius_ratio)), min_count
@@ -144,17 +149,6 @@ def finer_arm_mesh(rod: Rod, mesh: ArmMesh) -> ArmMesh:
     for start, stop in zip(mesh.edges[:-1], mesh.edges[1:], strict=True):
         edges += _graded_edges(rod, start, stop, 2)
     return ArmMesh(tuple(edges), ceil(RESOLUTION_SETTINGS.finer_unknowns_ratio / 2 * mesh.order))
-
-
-def _element_count_for(phase: float, accuracy: float, max_order: int) -> int:
-    """Number of elements of the order `max_order` that resolve an interval in which the phase of the wave
-    grows by `phase`, to the relative accuracy `accuracy`. At most `first_excessive_element_count`, with which
-    the mesh has too many unknowns."""
-    count = 1
-    max_count = first_excessive_element_count(max_order)
-    while count < max_count and required_order(phase / count, accuracy) > max_order:
-        count += 1
-    return count
 
 
 def _relative_radius_at(rod: Rod, u: float) -> float:

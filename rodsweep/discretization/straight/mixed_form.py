@@ -26,12 +26,9 @@ import numpy as np
 
 from ...arrays import Array
 from ...model.balance import Values, ad, coad
-from ...model.rod import Rod
-from ..coefficients_on_mesh import balance_coefficients_at_nodes, jumps_on_mesh
 from ..elements.mesh import Mesh, shape_integration_matrices
-from ..nodal_rod import NodalRod, nodal_rod
-from ..rod_on_mesh import broadcast_to_field
-from ..state_layout import SE2_DIMENSION, StateLayout, plane_layout
+from ..rod_on_mesh import RodOnMesh, broadcast_to_field
+from ..state_layout import SE2_DIMENSION, plane_layout
 from .law_derivatives import LawDerivativesAtRest, law_derivatives_at_rest
 
 MIRROR_SIGNS = np.array([1.0, -1.0, -1.0])
@@ -39,7 +36,7 @@ MIRROR_SIGNS = np.array([1.0, -1.0, -1.0])
 
 
 @dataclass(frozen=True, eq=False)
-class MixedForm:
+class MixedForm(RodOnMesh):
     """One rod on one mesh in mixed form; k1, k2 may be inf and gamma3 may be 0.
 
     A state X has the shape (..., unknowns). With N = mesh.node_count, X contains N values of S1 and of S2
@@ -47,32 +44,14 @@ class MixedForm:
     Omega3 (1/tau2) at all nodes. X may be complex.
     """
 
-    rod: Rod
-    mesh: Mesh
-
-    @cached_property
-    def layout(self) -> StateLayout:
-        """Indices of the fields in X; all components of V are unknowns."""
-        return plane_layout(self.mesh.node_count, tuple(range(SE2_DIMENSION)))
+    @property
+    def unknown_velocities(self) -> tuple[int, ...]:
+        return tuple(range(SE2_DIMENSION))
 
     @property
     def unknown_stress_count(self) -> int:
         """Number of unknown stresses."""
         return plane_layout(self.mesh.node_count).unknown_count
-
-    @property
-    def unknown_count(self) -> int:
-        """Number of unknowns in a state X."""
-        return self.layout.unknown_count
-
-    @cached_property
-    def nodal_rod(self) -> NodalRod:
-        """The rod at all nodes of the mesh, with all components of V as unknowns."""
-        unknown_velocities = tuple(range(SE2_DIMENSION))
-        jumps = jumps_on_mesh(self.rod, self.mesh)
-        return nodal_rod(
-            balance_coefficients_at_nodes(self.rod, self.mesh), self.mesh, unknown_velocities, jumps=jumps
-        )
 
     @cached_property
     def law_derivatives(self) -> LawDerivativesAtRest:
@@ -132,7 +111,7 @@ class MixedForm:
     def stresses_and_velocities(self, X: Values) -> tuple[Values, Values]:
         """Returns (S, V), stresses and velocities of states X at all nodes, tip included, (3, ..., nodes + 1)
         each."""
-        return self.layout.stresses(X), self.layout.velocities(X)
+        return self.stresses(X), self.layout.velocities(X)
 
     def state(self, S: Values, V: Values) -> Values:
         """States X, (..., unknowns), from stresses S and velocities V at all nodes, (3, ..., nodes + 1) each.
@@ -158,7 +137,7 @@ class MixedForm:
 
     def trilinear(self, X: Values, Y: Values, Z: Values) -> Values:
         """The symmetric trilinear form C(X, Y, Z) of the cubic terms, (..., unknowns); 0 for a linear law."""
-        S, T, R = (self.stresses_and_velocities(state)[0] for state in (X, Y, Z))
+        S, T, R = (self.stresses(state) for state in (X, Y, Z))
         W = self.mesh.quadrature
         law = self.law_derivatives
         third_derivative = law.third_derivative_form(S, T, R)

@@ -62,18 +62,11 @@ class StressForm(RodOnMesh):
     drags can be compared."""
 
     @property
-    def is_omega_unknown(self) -> bool:
-        """Whether the angular velocity Omega is an unknown."""
-        return self.is_omega_always_unknown or has_small_rotational_drag(self.rod)
-
-    @property
     def unknown_velocities(self) -> tuple[int, ...]:
         is_axial_velocity_unknown = self.rod.least_axial_drag < STRESS_FORM_SETTINGS.min_eliminated_axial_drag
+        is_omega_unknown = self.is_omega_always_unknown or has_small_rotational_drag(self.rod)
         axial = AXIAL_COMPONENTS if is_axial_velocity_unknown else ()
-        return (*axial, *(OMEGA_COMPONENTS if self.is_omega_unknown else ()))
-
-    def stresses(self, x: Array) -> Array:
-        return self.layout.stresses(x)
+        return (*axial, *(OMEGA_COMPONENTS if is_omega_unknown else ()))
 
     def states_on_mesh(self, target: Mesh, x: Array) -> Array:
         """States x, (..., unknowns), interpolated to the mesh `target`, (..., unknowns on target)."""

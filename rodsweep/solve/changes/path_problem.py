@@ -49,10 +49,10 @@ class PathProblem(ABC):
         `high`; None if no such number is known."""
         return None
 
-    @abstractmethod
     def relaxation_time_and_slope(self, p: float) -> tuple[float, float]:
         """Returns (relaxation time of the rod at p, its derivative with respect to p); the time is smooth in
-        p."""
+        p. By default time is not rescaled."""
+        return 1.0, 0.0
 
 
 class UniformPath(PathProblem):

@@ -16,14 +16,15 @@ from .thresholds_along_path import ThresholdSearchResult, find_thresholds
 
 @dataclass(frozen=True, slots=True)
 class ThresholdsRequest:
-    """Request of the task thresholds, the same for each rod. F_max: largest force, in k3/L^2. accuracy:
-    relative accuracy of each threshold. certify: whether the list must be proved complete."""
+    """Request of the tasks thresholds and criticality, the same for each rod. F_max: largest force, in
+    k3/L^2. accuracy: relative accuracy of each threshold, or of the coefficients of each Hopf point. certify:
+    whether the list must be proved complete."""
 
     F_max: float
     accuracy: float
     certify: bool
     max_thresholds: int
-    """Maximum number of thresholds in the list."""
+    """Maximum number of thresholds in the list, or of Hopf points with coefficients."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

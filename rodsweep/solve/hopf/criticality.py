@@ -12,22 +12,11 @@ from ...determinant.parameter_path import ParameterPath
 from ...model.rod import Rod
 from ..changes.search_range import end_below_crushing
 from ..changes.threshold_kinds import Threshold
+from ..changes.thresholds import ThresholdsRequest
 from ..changes.thresholds_along_path import ThresholdSearchResult, find_axis_crossings
 from ..point_outcome import FAILURES, cause_of, outcome_or_failure
 from .hopf_coefficients import HOPF_COEFFICIENT_SETTINGS, HopfCoefficients, hopf_coefficients
 from .status import CriticalityStatus
-
-
-@dataclass(frozen=True, slots=True)
-class CriticalityRequest:
-    """Request of task `criticality` for each rod. F_max: largest force, in k3/L^2. accuracy: relative
-    accuracy of the coefficients. certify: whether the list of Hopf points must be proved complete."""
-
-    F_max: float
-    accuracy: float
-    certify: bool
-    max_hopf_points: int
-    """Maximum number of Hopf points with coefficients."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,19 +38,19 @@ class Criticality:
         return self.search_result.thresholds
 
 
-def solve_criticality(rod: Rod, request: CriticalityRequest) -> Criticality:
+def solve_criticality(rod: Rod, request: ThresholdsRequest) -> Criticality:
     """All Hopf points of `rod` for forces up to `request.F_max`, or to just below the crushing force if
-    smaller, and the coefficients of the first `request.max_hopf_points` of these points. The force of `rod`
+    smaller, and the coefficients of the first `request.max_thresholds` of these points. The force of `rod`
     is ignored; a failure is returned as a status, never raised."""
     end = end_below_crushing(rod, request.F_max)
 
     def search() -> Criticality:
         # Without gamma1 and the force: rods that differ only in these two share the search.
         path = ParameterPath(replace(rod.without_nonlinear_parameters, F=0.0), "F")
-        hopf_points = _hopf_points(path, end, request.certify, request.max_hopf_points)
+        hopf_points = _hopf_points(path, end, request.certify, request.max_thresholds)
         # The file has no room for further normal forms.
         coefficients = tuple(
-            _coefficients(rod, hopf, request) for hopf in hopf_points.thresholds[: request.max_hopf_points]
+            _coefficients(rod, hopf, request) for hopf in hopf_points.thresholds[: request.max_thresholds]
         )
         status, message = _status_and_message(hopf_points, coefficients, request)
         return Criticality(
@@ -87,7 +76,7 @@ def solve_criticality(rod: Rod, request: CriticalityRequest) -> Criticality:
 @cache
 def warm_up() -> None:
     """Solves one rod to load compiled code and to fill caches before a time is measured."""
-    solve_criticality(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), CriticalityRequest(40.0, 1e-8, True, 4))
+    solve_criticality(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), ThresholdsRequest(40.0, 1e-8, True, 4))
 
 
 @lru_cache(maxsize=HOPF_COEFFICIENT_SETTINGS.max_cached_searches)
@@ -95,7 +84,7 @@ def _hopf_points(path: ParameterPath, end: float, certify: bool, max_crossings: 
     return find_axis_crossings(path, 0.0, end, certify, max_crossings)
 
 
-def _coefficients(rod: Rod, hopf: Threshold, request: CriticalityRequest) -> HopfCoefficients:
+def _coefficients(rod: Rod, hopf: Threshold, request: ThresholdsRequest) -> HopfCoefficients:
     """Coefficients of the Hopf point `hopf`; NaN after a failure, with the cause as message."""
     try:
         return hopf_coefficients(replace(rod, F=hopf.value), hopf, request.accuracy)
@@ -106,7 +95,7 @@ def _coefficients(rod: Rod, hopf: Threshold, request: CriticalityRequest) -> Hop
 def _status_and_message(
     hopf_points: ThresholdSearchResult,
     coefficients: tuple[HopfCoefficients, ...],
-    request: CriticalityRequest,
+    request: ThresholdsRequest,
 ) -> tuple[CriticalityStatus, str]:
     """Returns (status, message) from the Hopf points `hopf_points` and their coefficients. status: the most
     serious problem, or ok. message: causes of failures, and why the list is not proved."""
@@ -120,7 +109,7 @@ def _status_and_message(
         CriticalityStatus.ended_early: hopf_points.ended_early,
         CriticalityStatus.coefficients_failed: bool(failures),
         CriticalityStatus.window_open: not math.isnan(hopf_points.open_range[0]),
-        CriticalityStatus.list_full: len(hopf_points.thresholds) > request.max_hopf_points,
+        CriticalityStatus.list_full: len(hopf_points.thresholds) > request.max_thresholds,
         CriticalityStatus.sign_undecided: any(c.criticality == 0 for c in known_coefficients),
         CriticalityStatus.accuracy_not_reached: is_inaccurate,
         CriticalityStatus.not_certified: request.certify and not hopf_points.proved,

@@ -68,19 +68,11 @@ class OutcomeOutsideModel:
 @dataclass(frozen=True, slots=True)
 class RepeatedOutcome:
     """Outcome of a point whose rod was already solved at an earlier point. outcome: outcome of the earlier
-    solve."""
+    solve, with its status and message."""
 
     outcome: Any
-
-    @property
-    def status(self) -> Any:
-        """Status of the earlier solve."""
-        return self.outcome.status
-
-    @property
-    def message(self) -> str:
-        """Message of the earlier solve."""
-        return str(self.outcome.message)
+    status: Any
+    message: str
 
 
 def rod_numbers(points: Points) -> NDArray[np.int64] | None:
@@ -118,7 +110,9 @@ def solver_with_outcome_cache(solver: Solver, points: Points, layout: Layout) ->
 
     def once(index: int, start: State, solve: Callable[[], tuple[Any, State]]) -> tuple[Any, State]:
         (outcome, state), is_repeated = memory.get_or_solve((int(rods[index]), start), solve)
-        return RepeatedOutcome(outcome) if is_repeated else outcome, state
+        if is_repeated:
+            outcome = RepeatedOutcome(outcome, outcome.status, outcome.message)
+        return outcome, state
 
     def record(index: int, outcome: Any) -> dict[str, Any]:
         if isinstance(outcome, RepeatedOutcome):

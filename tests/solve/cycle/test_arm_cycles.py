@@ -33,7 +33,7 @@ from rodsweep.solve.cycle.limit_cycle import solve_cycle
 from rodsweep.solve.cycle.neighbour import CycleStart
 from rodsweep.solve.cycle.straight_rod import straight_rod_stability
 from rodsweep.solve.cycle.transient.motion_mesh import coarse_mesh_along_branch
-from rodsweep.solve.hopf.criticality import CriticalityRequest, solve_criticality
+from rodsweep.solve.hopf.criticality import solve_criticality
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CycleMotion
 from rodsweep.solve.orbit.newton import newton
@@ -387,7 +387,7 @@ def test_the_normal_form_is_the_limit_of_cycles(material):
     The truncation error is of fourth order, at most 1e-9 here; the rest is the error of the cycles.
     """
     rod = Rod(F=0.0, k1=500.0, k2=1e3, gamma3=1e-3, gamma1=0.8, taper=0.8, material=material)
-    found = solve_criticality(rod, CriticalityRequest(60.0, 1e-9, True, 2))
+    found = solve_criticality(rod, ThresholdsRequest(60.0, 1e-9, True, 2))
     hopf, born = found.hopf_points[0], found.coefficients[0]
     assert found.status.name == "ok"
     ratios = []

@@ -19,11 +19,12 @@ from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.results.file.view import read_view
+from rodsweep.solve.changes.thresholds import ThresholdsRequest
 from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings, find_thresholds
 from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
 from rodsweep.solve.cycle.hopf_start import orbit_by_normal_form
 from rodsweep.solve.hopf import criticality
-from rodsweep.solve.hopf.criticality import CriticalityRequest, solve_criticality
+from rodsweep.solve.hopf.criticality import solve_criticality
 from rodsweep.solve.hopf.normal_form import normal_form, normal_form_by_mesh_rule
 from rodsweep.solve.hopf.status import CriticalityStatus
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
@@ -39,7 +40,7 @@ SUBCRITICAL = Rod(F=0.0, k1=108.0, k2=1e4, gamma3=0.1, gamma1=0.5)
 
 
 def solved(rod, accuracy=1e-10, F_max=160.0, most=16):
-    return solve_criticality(rod, CriticalityRequest(F_max, accuracy, True, most))
+    return solve_criticality(rod, ThresholdsRequest(F_max, accuracy, True, most))
 
 
 def hopf_points(rod, **asked):

@@ -17,7 +17,7 @@ from rodsweep.post.figures.stability.criticality_curves import parts_of_equal_cr
 from rodsweep.post.plane_curves import PlaneParameters
 from rodsweep.results.file.view import read_view
 from rodsweep.solve.changes.diagram.boundary_curves import trace_boundary
-from rodsweep.solve.hopf import bautin_curves, bautin_points
+from rodsweep.solve.hopf import bautin_points
 from rodsweep.solve.hopf.bautin_curves import (
     BautinCurvePoint,
     BautinEndReason,

@@ -225,9 +225,6 @@ class ArmPath(PathProblem):
         rod = self.path.rod_at(p)
         return modes_near_axis(arm_determinant(rod), min(max_frequency, hull_of(rod).box()[1]), known_w)
 
-    def relaxation_time_and_slope(self, p: float) -> tuple[float, float]:
-        return 1.0, 0.0
-
 
 def path_problem(path: ParameterPath) -> PathProblem:
     """The eigenvalue problem along `path`: `UniformPath` for uniform linear rods, else `ArmPath`."""
