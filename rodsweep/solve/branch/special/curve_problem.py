@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ....arrays import Array
-from ....determinant.parameter_plane import PlaneAxis
 from ....solve_progress import SolvePosition, report
 from ....wording import counted
 from ...continuation.curve import Curve, StepControl, StepResult, StopReason, follow_curve, zero_along_step
@@ -42,21 +41,12 @@ CURVE_STEP_CONTROL = StepControl(
 
 
 @dataclass(frozen=True, slots=True)
-class SpecialCurveProblem:
-    """Curves of folds or torus points in a plane, as a problem of `follow_curve`. line_axis, row_axis: axes
-    of the parameter along a row and of the row parameter. row_direction: 1 or -1, sign of the first step in
-    the row parameter."""
+class SpecialCurveProblem(ParameterRoles):
+    """Curves of folds or torus points in a plane, as a problem of `follow_curve`. row_direction: 1 or -1,
+    sign of the first step in the row parameter."""
 
-    kind: SpecialKind
-    line_axis: PlaneAxis
-    row_axis: PlaneAxis
     workspace: NewtonWorkspace
     row_direction: float = 1.0
-
-    @property
-    def roles(self) -> ParameterRoles:
-        """Roles of the two parameters at points of the curve."""
-        return ParameterRoles(self.kind, self.line_axis, self.row_axis)
 
     def follow_from(self, special: SpecialPoint, row: float) -> tuple[list[SolvedPoint], CurveEndReason]:
         """Returns (points of the curve from `special`, on the row with the parameter value `row`; reason for
@@ -96,7 +86,7 @@ class SpecialCurveProblem:
         else:
             points = self._points_for_prediction(previous, length)
             last = points[-1]
-            start, row = predicted_orbit(self.roles, points, length)
+            start, row = predicted_orbit(self, points, length)
             change = last.scale.components(start) - last.scale.components(last.orbit)
             line = line_across(np.append(change, row - last.row_coordinate), *points[-2:])
             rates = last.normal_derivatives
@@ -114,28 +104,28 @@ class SpecialCurveProblem:
 
     def family(self, point: SolvedPoint) -> CycleFamily:
         """The cycles near a point of the curve, with the roles of the parameters at this point."""
-        return CycleFamily.near_point(self.kind, self.roles.axes_of(point)[1], point, self.workspace)
+        return CycleFamily.near_point(self.kind, self.axes_of(point)[1], point, self.workspace)
 
     def _first_roles_and_direction(self, first: SolvedPoint) -> tuple[SolvedPoint, float]:
         """Returns (the point `first` with the roles of the first step, sign of this step)."""
         if self.kind != SpecialKind.fold:
             return first, self.row_direction
-        slope = self.roles.axis_slope_at(first, self.workspace)
-        if not self.roles.need_exchange_at(first, slope):
+        slope = self.axis_slope_at(first, self.workspace)
+        if not self.need_exchange_at(first, slope):
             return first, self.row_direction
-        return self.roles.with_roles(first, exchanged=True), self.row_direction * float(np.sign(slope))
+        return self.with_roles(first, exchanged=True), self.row_direction * float(np.sign(slope))
 
     def _points_for_prediction(self, previous: Sequence[SolvedPoint], length: float) -> list[SolvedPoint]:
         """The last points of `previous`, with the roles of a step of the arc length `length`."""
-        exchanged = self.roles.need_exchange_beyond(previous, length)
+        exchanged = self.need_exchange_beyond(previous, length)
         last_points = previous[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
-        return [self.roles.with_roles(point, exchanged) for point in last_points]
+        return [self.with_roles(point, exchanged) for point in last_points]
 
     def margins(self, point: SolvedPoint) -> Array:
         """Margins, (7,); the curve ends where a margin becomes 0: distances from the four edges, 1 -
         `RodMaterial.crushing_ratio` - `crushing`, smallest h1, largest tip y minus `min_amplitude`."""
         # The edges belong to the plane, whichever parameter varies along the branch.
-        plane_point = self.roles.in_plane(point)
+        plane_point = self.in_plane(point)
         x = self.line_axis.coordinate(plane_point.parameter)
         y = plane_point.row_coordinate
         rod = point.orbit.form.rod
@@ -150,7 +140,7 @@ class SpecialCurveProblem:
         this point is `previous[-1]` itself. For the margin of the amplitude: `outer`. Raises Unsolvable."""
         if END_REASON_BY_MARGIN[margin] is CurveEndReason.hopf:
             return outer  # no cycle exists at the Hopf point itself: the curve's end is extrapolated
-        inner = self.roles.with_roles(previous[-1], self.roles.are_exchanged_at(outer))
+        inner = self.with_roles(previous[-1], self.are_exchanged_at(outer))
         ends = float(self.margins(inner)[margin]), float(self.margins(outer)[margin])
         if ends[0] <= END_SETTINGS.max_edge_distance:
             return None
@@ -158,7 +148,7 @@ class SpecialCurveProblem:
             point = self.zero_between(inner, outer, lambda point: float(self.margins(point)[margin]), ends)
         else:
             point = self.point_on_row(inner, outer, float(margin - ROW_EDGE_MARGIN_INDICES[0]))
-            if self.roles.are_exchanged_at(outer):
+            if self.are_exchanged_at(outer):
                 # The error measured at `outer`, of the other parameter, does not apply.
                 return self.family(point).corrected_point_with_error(
                     point.orbit, point.row_coordinate, ALONG_BRANCH
@@ -186,8 +176,8 @@ class SpecialCurveProblem:
 
     def is_closed_by(self, previous: Sequence[SolvedPoint], point: SolvedPoint) -> bool:
         """Whether a curve, with more than `min_loop_points` points, passes its first point on this step."""
-        exchanged = self.roles.are_exchanged_at(point)
-        first, last = (self.roles.with_roles(previous[i], exchanged) for i in (0, -1))
+        exchanged = self.are_exchanged_at(point)
+        first, last = (self.with_roles(previous[i], exchanged) for i in (0, -1))
         step = point.step_from(last)
         step_from_first = point.step_from(first)
         projection = float(step_from_first @ step) / float(step @ step)
@@ -197,16 +187,16 @@ class SpecialCurveProblem:
     def point_near_chord(self, first: SolvedPoint, second: SolvedPoint, fraction: float) -> SolvedPoint:
         """Point of the curve near the fraction of the chord from `first` to `second`; raises Unsolvable."""
         weights = 1 - fraction, fraction
-        start, row = weighted_sum(self.roles, (first, second), weights, mesh_of(second.orbit))
+        start, row = weighted_sum(self, (first, second), weights, mesh_of(second.orbit))
         line = line_across(second.step_from(first), first, second)
         return self.family(second).corrected_point(start, row, line, second.normal_derivatives)
 
     def point_on_row(self, first: SolvedPoint, second: SolvedPoint, row: float) -> SolvedPoint:
         """Point of the curve between `first` and `second`. row: its row coordinate. Raises Unsolvable."""
-        inner, outer = map(self.roles.in_plane, (first, second))
+        inner, outer = map(self.in_plane, (first, second))
         length = outer.row_coordinate - inner.row_coordinate
         fraction = (row - inner.row_coordinate) / length if length else 0.0
-        if self.roles.need_exchange_between(inner, outer):
+        if self.need_exchange_between(inner, outer):
             near_point = self._point_near_row(inner, outer, row)
             try:
                 return self.family(near_point).corrected_point(near_point.orbit, row, ALONG_BRANCH)
@@ -214,21 +204,21 @@ class SpecialCurveProblem:
                 raise
             except Unsolvable:
                 return near_point  # the matrix of the correction is nearly singular beside an extremum
-        start, _ = weighted_sum(self.roles, (inner, outer), (1 - fraction, fraction), mesh_of(outer.orbit))
+        start, _ = weighted_sum(self, (inner, outer), (1 - fraction, fraction), mesh_of(outer.orbit))
         return self.family(outer).corrected_point(start, row, ALONG_BRANCH, outer.normal_derivatives)
 
     def _point_near_row(self, inner: SolvedPoint, outer: SolvedPoint, row: float) -> SolvedPoint:
         """Point of the curve between `inner` and `outer` at the row coordinate `row` within a tolerance,
         found with exchanged roles; raises Unsolvable."""
-        ends = [self.roles.with_roles(point, exchanged=True) for point in (inner, outer)]
+        ends = [self.with_roles(point, exchanged=True) for point in (inner, outer)]
 
         def distance(point: SolvedPoint) -> float:
-            return self.roles.in_plane(point).row_coordinate - row
+            return self.in_plane(point).row_coordinate - row
 
         point = self.zero_between(ends[0], ends[1], distance, (distance(ends[0]), distance(ends[1])))
         value = self.row_axis.value(row)
         orbit = orbit_with_parameters(point.orbit, {self.row_axis.name: value})
-        return replace(self.roles.in_plane(point), orbit=orbit, row_coordinate=row, row_parameter=value)
+        return replace(self.in_plane(point), orbit=orbit, row_coordinate=row, row_parameter=value)
 
     def _reason_for_loss(self, last: SolvedPoint) -> CurveEndReason:
         """Reason why a curve was lost beyond its last point: `resonance`, or `not_followed` if unknown."""

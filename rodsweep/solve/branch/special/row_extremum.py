@@ -38,20 +38,19 @@ def with_row_extrema(problem: "SpecialCurveProblem", points: Sequence[SolvedPoin
     """The points of a curve, in order, with the parameter along a row as the branch parameter, and further
     points at the extrema of the row parameter. points: points with errors and any roles of the parameters.
     An extremum that cannot be located is omitted; the point after it has a `row_extremum_error` of NaN."""
-    roles = problem.roles
     sloped_points = {}
     for i, point in enumerate(points):
         # The chords to and from points with exchanged roles.
-        if any(map(roles.are_exchanged_at, points[max(i - 1, 0) : i + 2])):
-            exchanged = roles.with_roles(point, exchanged=True)
-            sloped_points[i] = _SlopedPoint(exchanged, roles.axis_slope_at(exchanged, problem.workspace))
+        if any(map(problem.are_exchanged_at, points[max(i - 1, 0) : i + 2])):
+            exchanged = problem.with_roles(point, exchanged=True)
+            sloped_points[i] = _SlopedPoint(exchanged, problem.axis_slope_at(exchanged, problem.workspace))
     result: list[SolvedPoint] = []
     extremum_error = 0.0
     for i, point in enumerate(points):
         # The stored error belongs to the branch parameter, which is another one with exchanged roles.
-        has_plane_error = not roles.are_exchanged_at(point)
+        has_plane_error = not problem.are_exchanged_at(point)
         error = point.error if has_plane_error else _error_along_row(problem, sloped_points, i)
-        result.append(replace(roles.in_plane(point), error=error, row_extremum_error=extremum_error))
+        result.append(replace(problem.in_plane(point), error=error, row_extremum_error=extremum_error))
         extremum_error = 0.0
         if (
             i in sloped_points
@@ -94,12 +93,11 @@ def _located_extremum(
 ) -> SolvedPoint:
     """The extremum of the row parameter between two successive points of a curve, with the errors of both
     parameters; raises Unsolvable."""
-    roles = problem.roles
     slopes = first.slope, second.slope
     tolerance = ROW_EXTREMUM_SETTINGS.relative_slope_tolerance * abs(second.slope - first.slope)
 
     def slope(point: SolvedPoint) -> float:
-        return roles.axis_slope_at(point, problem.workspace)
+        return problem.axis_slope_at(point, problem.workspace)
 
     point = problem.zero_between(first.point, second.point, slope, slopes, tolerance)
     family = problem.family(point)
@@ -109,13 +107,13 @@ def _located_extremum(
         finer_mesh.interpolated_orbit(point.orbit), point.row_coordinate, ALONG_BRANCH
     )
     slope_error = CURVE_SECANT_SETTINGS.error_factor * abs(slope(fine) - slope(point)) + tolerance
-    line_axis = roles.line_axis
+    line_axis = problem.line_axis
     # An extremum is displaced by the error of the slope over its rate of change.
     distance = slope_error / abs(_slope_change_rate(first, second))
     # With exchanged roles `parameter` is the row parameter.
     difference = CURVE_SECANT_SETTINGS.error_factor * abs(fine.parameter - point.parameter)
     return replace(
-        roles.in_plane(point),
+        problem.in_plane(point),
         error=distance * abs(line_axis.parameter_per_coordinate(point.row_parameter)),
         row_extremum_error=difference + CURVE_SECANT_SETTINGS.min_error * abs(point.parameter),
     )

@@ -103,7 +103,7 @@ class SpecialCurveTracer:
         # Numbers run through all stages, but the seeds of this stage are counted from 0.
         own_results = {number - self.first_item: result for number, result in results.items()}
         for kind in FOLLOWED_KINDS:
-            curves = _CurvesOfKind(kind, self.line_axis, self.row_axis, self.special_points, own_results)
+            curves = _CurvesOfKind(kind, self, own_results)
             seeds = (i for i, point in enumerate(self.special_points) if point.kind == kind)
             yield curves, trace_all_curves(curves, seeds, CURVE_IDENTITY_SETTINGS.max_row_distance_fraction)
 
@@ -151,14 +151,11 @@ class _TracedCurve:
 
 @dataclass(frozen=True, slots=True)
 class _CurvesOfKind:
-    """Curves of one kind as a problem of `trace_all_curves`. line_axis, row_axis: axes of the parameter along
-    a row and of the row parameter. special_points: points through which curves are traced. results: arrays of
-    half curves, by number."""
+    """Curves of one kind as a problem of `trace_all_curves`. tracer: axes of the plane, and special points
+    through which curves are traced. results: arrays of half curves, by number."""
 
     kind: SpecialKind
-    line_axis: PlaneAxis
-    row_axis: PlaneAxis
-    special_points: Sequence[RowSpecialPoint]
+    tracer: SpecialCurveTracer
     results: Mapping[int, HalfCurveArrays]
 
     def next_seed(self, untraced: Sequence[int]) -> int:
@@ -181,10 +178,11 @@ class _CurvesOfKind:
     def possible_items(self, search: "CurveTracingState[_TracedCurve]") -> list[int]:
         """Numbers of half curves that may be needed later: from special points on no curve yet, on the rows
         where the half curves needed now start."""
-        rows = {self.special_points[item // 2].row_value for item in search.missing_items}
+        rows = {self.tracer.special_points[item // 2].row_value for item in search.missing_items}
         # On these rows the cycles are solved again for the needed half curves anyway.
         candidates = sorted(
-            (i for i in search.untried_seeds if self.special_points[i].row_value in rows), key=self._sort_key
+            (i for i in search.untried_seeds if self.tracer.special_points[i].row_value in rows),
+            key=self._sort_key,
         )
         return [item for i in candidates for item in self.missing_items(i)]
 
@@ -214,17 +212,17 @@ class _CurvesOfKind:
         # Between its last cycle and the Hopf point a curve is extrapolated: no cycle is solved there.
         return (
             0.0
-            if is_off_curve and self._lies_on_extrapolation(curve.curve, self.special_points[seed])
+            if is_off_curve and self._lies_on_extrapolation(curve.curve, self.tracer.special_points[seed])
             else distance
         )
 
     def are_identical(self, first: _TracedCurve, second: _TracedCurve) -> bool:
         """Whether two curves are identical: their ends coincide within a tolerance."""
-        return are_identical_curves(first.curve, second.curve, self.line_axis)
+        return are_identical_curves(first.curve, second.curve, self.tracer.line_axis)
 
     def _sort_key(self, i: int) -> tuple[float, float]:
         """Sort key of special point i: (value of the row parameter, value of the parameter along the row)."""
-        return self.special_points[i].row_value, self.special_points[i].parameter_value
+        return self.tracer.special_points[i].row_value, self.tracer.special_points[i].parameter_value
 
     def _lies_on_extrapolation(self, curve: SpecialPointCurve, special_point: RowSpecialPoint) -> bool:
         """Whether the special point `special_point` lies on the extrapolation of a curve to a Hopf point."""
@@ -234,14 +232,14 @@ class _CurvesOfKind:
         for end, last_point in zip(curve.hopf_ends, (curve.points[0], curve.points[-1]), strict=True):
             if end is None:
                 continue
-            x = self.line_axis.coordinate(end.parameter_value)
-            y = self.row_axis.coordinate(end.row_value)
+            x = self.tracer.line_axis.coordinate(end.parameter_value)
+            y = self.tracer.row_axis.coordinate(end.row_value)
             # On the straight chord from the Hopf point to the last cycle.
-            fraction = (self.row_axis.coordinate(special_point.row_value) - y) / (
+            fraction = (self.tracer.row_axis.coordinate(special_point.row_value) - y) / (
                 last_point.row_coordinate - y
             )
-            chord = x + fraction * (self.line_axis.coordinate(last_point.parameter_value) - x)
-            distance = abs(chord - self.line_axis.coordinate(special_point.parameter_value))
+            chord = x + fraction * (self.tracer.line_axis.coordinate(last_point.parameter_value) - x)
+            distance = abs(chord - self.tracer.line_axis.coordinate(special_point.parameter_value))
             if (
                 0 <= fraction <= 1
                 and distance <= CURVE_IDENTITY_SETTINGS.max_last_chord_distance_per_row_length
