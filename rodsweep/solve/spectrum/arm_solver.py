@@ -70,9 +70,5 @@ class ArmSolver(ShiftInvertSolver):
         return fields_of_vectors(vectors, self.matrices.displacement_factors)
 
 
-_arm_solvers = LruPool(ArmSolver, KRYLOV_SETTINGS.max_arm_solvers)
-
-
-def arm_solver(mesh: ArmMesh) -> ArmSolver:
-    """The Krylov-Schur solver for `mesh`; the solver is stored and reused for later arms on this mesh."""
-    return _arm_solvers.get(mesh)
+arm_solver = LruPool(ArmSolver, KRYLOV_SETTINGS.max_arm_solvers).get
+"""The Krylov-Schur solver for a mesh; the solver is stored and reused for later arms on this mesh."""

@@ -89,9 +89,5 @@ def _equivalent_filament_and_deflection_ratio(rod: Rod) -> tuple[Rod, float]:
     return rod, 1.0
 
 
-_uniform_solvers = LruPool(UniformSolver, KRYLOV_SETTINGS.max_uniform_solvers)
-
-
-def uniform_solver(resolution: Resolution) -> UniformSolver:
-    """The Krylov-Schur solver for a mesh `resolution`; the solver is stored and reused for later rods."""
-    return _uniform_solvers.get(resolution)
+uniform_solver = LruPool(UniformSolver, KRYLOV_SETTINGS.max_uniform_solvers).get
+"""The Krylov-Schur solver for a mesh; the solver is stored and reused for later rods."""
