@@ -1,17 +1,21 @@
-"""Base classes of tasks: `CertifiedTask` of tasks with a certificate, `HopfPointTask` of tasks on cycles."""
+"""Base classes of tasks: `CertifiedTask` of tasks with a certificate, `ModesOfPointsTask` of tasks on modes,
+`HopfPointTask` of tasks on cycles."""
 
 from abc import abstractmethod
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from ..discretization.elements.elements import Elements
 from ..discretization.elements.resolution import mesh_accuracy
 from ..model.rod import Rod
+from ..results.layouts.variables import FilledVariable
 from ..solve.changes.spectrum_samples import SPECTRUM_SAMPLE_SETTINGS
 from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
 from .check_rows import arms_line, stretch_shear_and_drag_rows, varying_arm_and_law_rows
+from .hopf.force_changes import force_change_variables
 from .protocol import CheckRow, Task
 
 
@@ -92,6 +96,19 @@ class CertifiedTask(Task):
             *self.requested_result_rows(),
         ]
         return [*rows, ("certificate", *self.certificate()), (quantity, False, reason)]
+
+
+@dataclass(frozen=True, slots=True)
+class ModesOfPointsTask(CertifiedTask):
+    """Base class of the tasks spectrum and modes, which compute the leading modes at every point."""
+
+    uncertified_risk: ClassVar[str] = "modes may be missed"
+    mode_count_location: ClassVar[str] = "point"
+
+    def variables_from_points(self, values: Mapping[str, Any]) -> tuple[FilledVariable, ...]:
+        """Thresholds of the rods along F; empty if any arm is not uniform or not of linear material. values:
+        variables of the points by name, shape (points, own dimensions), readable by slices."""
+        return force_change_variables(self.points, values) if self.config.is_uniform_and_linear else ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -69,7 +69,7 @@ def criticality_values(result: "Criticality", max_crossings: int) -> dict[str, A
     search = crossing_values(result, max_crossings, "F", "crossing_F")
     for name in ABSENT_FROM_HOPF_SEARCH:
         del search[name]
-    pairs = zip(result.coefficients, result.hopf_points, strict=False)
+    pairs = zip(result.coefficients, result.search_result.thresholds, strict=False)
     rows = [outcome_values(NORMAL_FORM_VARIABLES, *pair, prefix="crossing_") for pair in pairs]
     ends = {"F_end": result.end, "unstable_at_end": result.search_result.unstable_at_end}
     return search | ends | value_lists(NORMAL_FORM_VARIABLES, rows, max_crossings)

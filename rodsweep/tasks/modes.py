@@ -1,8 +1,7 @@
 """The task modes: leading modes with their adjoint modes, and transient growth of the non-normal operator."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,12 +12,11 @@ from ..discretization.elements.resolution import mesh_accuracy
 from ..model.rod import Rod
 from ..results.layouts.modes import GROWTH_VARIABLES, MODE_SCALAR_VARIABLES
 from ..results.layouts.spectrum import MODE_VARIABLES, POINT_VARIABLES
-from ..results.layouts.variables import FilledVariable, outcome_values
+from ..results.layouts.variables import outcome_values
 from ..sweep.cost_estimate import CostEstimate, modes_cost, spectra_cost
 from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
-from .base_classes import CertifiedTask
+from .base_classes import ModesOfPointsTask
 from .check_rows import points_text
-from .hopf.force_changes import force_change_variables
 from .protocol import CheckRow, Solver
 
 if TYPE_CHECKING:
@@ -26,22 +24,14 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class ModesTask(CertifiedTask):
+class ModesTask(ModesOfPointsTask):
     """The task modes: leading modes and transient growth at every point."""
 
     config: ModesConfig
 
-    uncertified_risk: ClassVar[str] = "modes may be missed"
-    mode_count_location: ClassVar[str] = "point"
-
     def coordinates(self) -> dict[str, np.ndarray]:
         """Material coordinates u of the nodes at which modes are stored, (nodes,), by dimension."""
         return {"u": lobatto_points(self.config.modes.nodes)}
-
-    def variables_from_points(self, values: Mapping[str, Any]) -> tuple[FilledVariable, ...]:
-        """Thresholds of the rods along F; empty if any arm is not uniform or not of linear material. values:
-        variables of the points by name, shape (points, own dimensions), readable by slices."""
-        return force_change_variables(self.points, values) if self.config.is_uniform_and_linear else ()
 
     def headline(self) -> str:
         options = self.config.modes

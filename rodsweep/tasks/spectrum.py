@@ -1,8 +1,7 @@
 """The task spectrum: the leading eigenvalues at every point."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,9 +26,8 @@ from ..results.layouts.variables import FilledVariable, outcome_values
 from ..sweep.cost_estimate import CostEstimate, followed_spectra_cost, spectra_cost, two_meshes_cost
 from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
 from ..sweep.points.groups import GroupResult, PointGroups, groups_along_longest_axis
-from .base_classes import CertifiedTask
+from .base_classes import ModesOfPointsTask
 from .check_rows import points_text
-from .hopf.force_changes import force_change_variables
 from .protocol import CheckRow, OrderedMap, Solver, solve_on_one_rank
 
 if TYPE_CHECKING:
@@ -37,13 +35,10 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class SpectrumTask(CertifiedTask):
+class SpectrumTask(ModesOfPointsTask):
     """The task spectrum: the leading eigenvalues of the straight rod at every point."""
 
     config: SpectrumConfig
-
-    uncertified_risk: ClassVar[str] = "modes may be missed"
-    mode_count_location: ClassVar[str] = "point"
 
     def __post_init__(self) -> None:
         if self.config.spectrum.longitudinal and np.isinf(self.points.columns_by_name["k1"]).any():
@@ -115,11 +110,6 @@ class SpectrumTask(CertifiedTask):
             dict(zip(names, (coordinate.ravel() for coordinate in grid), strict=True)),
         )
 
-    def variables_from_points(self, values: Mapping[str, Any]) -> tuple[FilledVariable, ...]:
-        """Thresholds of the rods along F; empty if any arm is not uniform or not of linear material. values:
-        variables of the points by name, shape (points, own dimensions), readable by slices."""
-        return force_change_variables(self.points, values) if self.config.is_uniform_and_linear else ()
-
     def headline(self) -> str:
         return f"{points_text(self.points)}, {self.config.spectrum.modes} leading modes each"
 
@@ -145,7 +135,7 @@ class SpectrumTask(CertifiedTask):
 
     def certificate(self) -> tuple[bool, str]:
         if self.config.spectrum.method == "determinant":
-            return CertifiedTask.certificate(self)
+            return ModesOfPointsTask.certificate(self)
         return False, f"spectrum.method: {self.config.spectrum.method}; {self.uncertified_risk}"
 
     def cost(self) -> CostEstimate:

@@ -21,9 +21,9 @@ from .status import CriticalityStatus
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Criticality:
-    """Result for one rod: all Hopf points up to the force `end`. search_result: result of the search for Hopf
-    points. coefficients: normal form coefficients of the first Hopf points, at most as many as requested.
-    seconds: computing time."""
+    """Result for one rod: all Hopf points up to the force `end`. search_result: all Hopf points, with or
+    without coefficients, by increasing force. coefficients: normal form coefficients of the first Hopf
+    points, at most as many as requested. seconds: computing time."""
 
     status: CriticalityStatus
     search_result: ThresholdSearchResult
@@ -31,11 +31,6 @@ class Criticality:
     end: float
     seconds: float = 0.0
     message: str = ""
-
-    @property
-    def hopf_points(self) -> tuple[Threshold, ...]:
-        """All Hopf points, with or without coefficients, by increasing force."""
-        return self.search_result.thresholds
 
 
 def solve_criticality(rod: Rod, request: ThresholdsRequest) -> Criticality:

@@ -388,7 +388,7 @@ def test_the_normal_form_is_the_limit_of_cycles(material):
     """
     rod = Rod(F=0.0, k1=500.0, k2=1e3, gamma3=1e-3, gamma1=0.8, taper=0.8, material=material)
     found = solve_criticality(rod, ThresholdsRequest(60.0, 1e-9, True, 2))
-    hopf, born = found.hopf_points[0], found.coefficients[0]
+    hopf, born = found.search_result.thresholds[0], found.coefficients[0]
     assert found.status.name == "ok"
     ratios = []
     for distance in (8e-3, 4e-3, 2e-3, 1e-3):

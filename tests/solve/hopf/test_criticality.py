@@ -47,7 +47,7 @@ def hopf_points(rod, **asked):
     """The rod at each of its Hopf points, the crossing there, and the coefficients."""
     found = solved(rod, **asked)
     assert found.status == CriticalityStatus.ok
-    for hopf, known in zip(found.hopf_points, found.coefficients, strict=True):
+    for hopf, known in zip(found.search_result.thresholds, found.coefficients, strict=True):
         yield Rod(F=hopf.value, k1=rod.k1, k2=rod.k2, gamma3=rod.gamma3), hopf, known
 
 
@@ -169,7 +169,7 @@ def test_errors_are_below_their_estimates_where_rounding_is_largest(k1, k2):
     """Of rods soft in stretch and shear, up to where they are nearly crushed."""
     rod = Rod(F=0.0, k1=k1, k2=k2, gamma3=0.0, gamma1=0.7)
     found = solved(rod, accuracy=1e-12, F_max=300.0, most=40)
-    for hopf, known in zip(found.hopf_points, found.coefficients, strict=True):
+    for hopf, known in zip(found.search_result.thresholds, found.coefficients, strict=True):
         at = Rod(F=hopf.value, k1=rod.k1, k2=rod.k2, gamma3=rod.gamma3)
         finer = mixed_form(at.with_values(gamma1=rod.gamma1), known.elements, known.order + 8)
         off = abs(normal_form(finer, 1j * hopf.frequency).landau / known.landau - 1)
@@ -235,7 +235,7 @@ def test_sign_within_its_error_is_undecided():
     assert (rough.status, fine.status) == (CriticalityStatus.sign_undecided, CriticalityStatus.ok)
     assert [known.criticality for known in rough.coefficients] == [-1, 0]
     assert [known.criticality for known in fine.coefficients] == [-1, 1]
-    hopf, known = fine.hopf_points[1], fine.coefficients[1]
+    hopf, known = fine.search_result.thresholds[1], fine.coefficients[1]
     c, _ = coefficients((hopf.value, rod.k1, rod.k2, rod.gamma3, rod.gamma1), 1j * hopf.frequency, 34)
     assert known.landau.real == pytest.approx(c.real, rel=1e-3)
     assert known.landau.real < 3e-6 * abs(c)
@@ -281,7 +281,7 @@ def test_list_that_is_full_says_so():
     found = solved(STRETCHABLE, most=1)
     assert found.status == CriticalityStatus.list_full
     assert len(found.coefficients) == 1
-    assert len(found.hopf_points) == 2
+    assert len(found.search_result.thresholds) == 2
 
 
 # --- as a user sees it ------------------------------------------------------------------------------------
