@@ -99,10 +99,12 @@ class ParameterPlane:
     def determinant(self, w: complex, x: float, y: float) -> ValueOnPlane:
         """D and the derivatives of D by w, x and y, at w, for the rod at scaled coordinates (x, y)."""
         rod = self.rod_at(x, y)
-        if not self.are_rods_uniform_and_linear:
-            return self._determinant_of_arms(w, x, y)
-        (D, D_w, _, log_scale, rounding_error), D_x = self._determinant_along_axis(w, rod, self.axes[0])
-        _, D_y = self._determinant_along_axis(w, rod, self.axes[1])
+        if self.are_rods_uniform_and_linear:
+            (D, D_w, _, log_scale, rounding_error), D_x = self._determinant_along_axis(w, rod, self.axes[0])
+            _, D_y = self._determinant_along_axis(w, rod, self.axes[1])
+        else:
+            D, D_w, log_scale, rounding_error = self.determinant_value(w, x, y)
+            D_x, D_y = self._slopes_of_arms(w, x, y, log_scale)
         # The rounding errors of w, x and y add to the rounding error of D.
         rounding = rounding_error + MACHINE_EPSILON * (abs(D_x) + abs(D_y) + abs(w * D_w))
         return ValueOnPlane(D, D_w, D_x, D_y, log_scale, rounding)
@@ -124,10 +126,9 @@ class ParameterPlane:
         two_steps_back = (x - 2 * step, y) if axis_index == 0 else (x, y - 2 * step)
         return (CENTRAL_STENCIL if self.is_valid_at(*two_steps_back) else ONE_SIDED_STENCIL), step
 
-    def _determinant_of_arms(self, w: complex, x: float, y: float) -> ValueOnPlane:
-        """`determinant` for arms without a closed form of D; derivatives by x and y are fourth-order
+    def _slopes_of_arms(self, w: complex, x: float, y: float, log_scale: float) -> list[complex]:
+        """Derivatives of D exp(-`log_scale`) by x and y, for arms without a closed form of D, by fourth-order
         differences."""
-        D, D_w, log_scale, rounding_error = self.determinant_value(w, x, y)
         slopes = []
         for axis_index in range(2):
             stencil, step = self.difference_stencil(x, y, axis_index)
@@ -138,9 +139,7 @@ class ParameterPlane:
                 )
                 slope += weight * neighbour.D * exp(neighbour.log_scale - log_scale) / step
             slopes.append(slope)
-        D_x, D_y = slopes
-        rounding = rounding_error + MACHINE_EPSILON * (abs(D_x) + abs(D_y) + abs(w * D_w))
-        return ValueOnPlane(D, D_w, D_x, D_y, log_scale, rounding)
+        return slopes
 
     @staticmethod
     def _determinant_along_axis(
