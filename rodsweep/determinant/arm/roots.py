@@ -10,7 +10,6 @@ from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
 from ...model.dispersion import end_coefficients, local_wave_numbers
@@ -47,64 +46,94 @@ def refine_mesh_eigenvalues(
     the clamp and at the tip resolve, (2,); by default none. Infinite eigenvalues, which rounding makes
     finite, are dropped: they lie outside the hull, have too large a |q|, or are far from every root.
     """
-    settings = ROOT_NEWTON_SETTINGS
-    guesses = [w.real + 0j if abs(w.imag) <= settings.real_tolerance * abs(w) else w for w in mesh_w.tolist()]
-    in_box = [i for i, w in enumerate(guesses) if _is_in_eigenvalue_box(w, hull)]
-    guesses_in_box: Complex = np.array([guesses[i] for i in in_box], complex)
-    scales = mean_wave_numbers_and_w_scales(guesses_in_box, determinant.samples)
-    wave_number, scale = (dict(zip(in_box, values, strict=True)) for values in scales.tolist())
-    is_resolved = _is_resolved(guesses_in_box, scales[0], determinant, max_q, max_end_q)
-    resolved = [i for i, is_kept in zip(in_box, is_resolved.tolist(), strict=True) if is_kept]
-    starts = [guesses[i] for i in resolved]
-    _prepare_elements(determinant, max(map(abs, starts), default=0.0), largest_w)
-    errors = dict(zip(resolved, root_errors(starts, determinant).tolist(), strict=True))
-    near = [i for i in resolved if errors[i] <= ROOT_SETTINGS.max_pair_correction_ratio * scale[i]]
-    near_errors = [errors[i] for i in near]
+    guesses = _guesses_in_box(mesh_w, determinant, hull)
+    resolved = _resolved_guesses(guesses, determinant, max_q, max_end_q)
+    _prepare_elements(determinant, max((abs(guess.w) for guess in resolved), default=0.0), largest_w)
+    errors = root_errors([guess.w for guess in resolved], determinant).tolist()
+    max_ratio = ROOT_SETTINGS.max_pair_correction_ratio
+    near = [(guess, e) for guess, e in zip(resolved, errors, strict=True) if e <= max_ratio * guess.scale]
     # From two close guesses Newton's method may find one root twice, so these are moved apart first.
-    near_w, half_distances = _separated_close_roots([guesses[i] for i in near], near_errors, determinant)
+    near_w, half_distances = _separated_close_roots(
+        [guess.w for guess, _ in near], [error for _, error in near], determinant
+    )
     refined = [
         k
-        for k, i in enumerate(near)
-        if half_distances[k] < math.inf or near_errors[k] <= ROOT_SETTINGS.max_correction_ratio * scale[i]
+        for k, (guess, error) in enumerate(near)
+        if half_distances[k] < math.inf or error <= ROOT_SETTINGS.max_correction_ratio * guess.scale
     ]
     located = _refine_guesses([(near_w[k], half_distances[k]) for k in refined], determinant)
     located.sort(key=lambda root: (-root.w.real, -root.w.imag))
-    indices = [near[refined[root.guess_index]] for root in located]
-    errors_of_roots = _errors_of_located_roots(located, determinant)
+    leading_growth = located[0].w.real if located else -math.inf
+    near_indices = {guess.mesh_index for guess, _ in near}
+    # An eigenvalue inside the hull that approximates no root is spurious, or hides one that leads.
+    spurious_count = sum(
+        guess.w.real > leading_growth for guess in guesses if guess.mesh_index not in near_indices
+    )
+    guesses_of_roots = [near[refined[root.guess_index]][0] for root in located]
+    return _roots_with_errors(located, guesses_of_roots, determinant, spurious_count)
+
+
+class _Guess(NamedTuple):
+    """Eigenvalue w of a mesh in the a-priori box, and its index in the list of eigenvalues. wave_number: mean
+    of |q| along the arm. scale: change of w over which an exponent of D changes by about one."""
+
+    mesh_index: int
+    w: complex
+    wave_number: float
+    scale: float
+
+
+def _guesses_in_box(mesh_w: Complex, determinant: ArmDeterminant, hull: EigenvalueHull) -> list[_Guess]:
+    """The eigenvalues `mesh_w` of a mesh, (n,), that lie in the a-priori box; real where nearly real."""
+    tolerance = ROOT_NEWTON_SETTINGS.real_tolerance
+    w = [w.real + 0j if abs(w.imag) <= tolerance * abs(w) else w for w in mesh_w.tolist()]
+    in_box = [i for i, value in enumerate(w) if _is_in_eigenvalue_box(value, hull)]
+    w_in_box = [w[i] for i in in_box]
+    scales = mean_wave_numbers_and_w_scales(np.array(w_in_box, complex), determinant.samples).tolist()
+    return [_Guess(*values) for values in zip(in_box, w_in_box, *scales, strict=True)]
+
+
+def _resolved_guesses(
+    guesses: list[_Guess], determinant: ArmDeterminant, max_q: float, max_end_q: Array
+) -> list[_Guess]:
+    """The guesses whose wave number is at most `max_q` in the mean or, where an eigenfunction is confined to
+    an end of the arm, at most `max_end_q`, (2,), at the clamp or at the tip."""
+    rod = determinant.rod
+    resolved = []
+    for guess in guesses:
+        is_resolved = guess.wave_number <= max_q
+        if not is_resolved:
+            end_wave_numbers = local_wave_numbers(guess.w, float(rod.F), end_coefficients(rod))
+            is_resolved = bool((end_wave_numbers <= max_end_q).any())
+        if is_resolved:
+            resolved.append(guess)
+    return resolved
+
+
+def _roots_with_errors(
+    located: "list[_LocatedRoot]", guesses: list[_Guess], determinant: ArmDeterminant, unmatched_count: int
+) -> Roots:
+    """The `Roots` of the sorted roots `located`, each refined from the guess at the same place."""
+    errors = _errors_of_located_roots(located, determinant)
     # For so few numbers Python is faster than NumPy.
-    roots_and_indices = list(zip(located, indices, strict=True))
-    displacement = [abs(root.w - guesses[i]) / max(abs(root.w), scale[i]) for root, i in roots_and_indices]
+    displacement = [
+        abs(root.w - guess.w) / max(abs(root.w), guess.scale)
+        for root, guess in zip(located, guesses, strict=True)
+    ]
     is_imaginary = [
         abs(root.w.real)
         <= max(ROOT_SETTINGS.axis_tolerance_in_errors * error, ROOT_SETTINGS.axis_tolerance * abs(root.w))
-        for root, error in zip(located, errors_of_roots, strict=True)
+        for root, error in zip(located, errors, strict=True)
     ]
-    leading_growth = located[0].w.real if located else -math.inf
     return Roots(
-        mesh_indices=np.array(indices, np.int64),
+        mesh_indices=np.array([guess.mesh_index for guess in guesses], np.int64),
         w=np.array([root.w for root in located], complex),
-        error=np.array(errors_of_roots, float),
+        error=np.array(errors, float),
         displacement=np.array(displacement, float),
-        wave_number=np.array([wave_number[i] for i in indices], float),
+        wave_number=np.array([guess.wave_number for guess in guesses], float),
         is_imaginary=np.array(is_imaginary, bool),
-        # An eigenvalue inside the hull that approximates no root is spurious, or hides one that leads.
-        unmatched_count=sum(guesses[i].real > leading_growth for i in in_box if i not in near),
+        unmatched_count=unmatched_count,
     )
-
-
-def _is_resolved(
-    w: Complex, mean_wave_numbers: Array, determinant: ArmDeterminant, max_q: float, max_end_q: Array
-) -> NDArray[np.bool_]:
-    """Whether the wave number at each rate w, (n,), is at most `max_q` in the mean or, where an eigenfunction
-    is confined to an end of the arm, at most `max_end_q`, (2,), at the clamp or at the tip.
-    mean_wave_numbers: of each w, (n,)."""
-    is_resolved: NDArray[np.bool_] = mean_wave_numbers <= max_q
-    if not is_resolved.all():
-        others = np.flatnonzero(~is_resolved)
-        rod = determinant.rod
-        end_wave_numbers = local_wave_numbers(w[others, None], float(rod.F), end_coefficients(rod))
-        is_resolved[others] = (end_wave_numbers <= max_end_q).any(axis=1)
-    return is_resolved
 
 
 def _prepare_elements(determinant: ArmDeterminant, needed_w: float, later_w: float) -> None:

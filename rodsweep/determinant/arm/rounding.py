@@ -28,12 +28,14 @@ from .elements.evaluation import (
     apply_transposed_real_propagator,
     fill_propagator_value,
     fill_real_propagator_value,
-    modulus_sum_of_form,
-    modulus_sum_of_form_at_real_w,
-    modulus_sum_of_real_form,
     powers_and_derivatives,
 )
 from .elements.minor_rates import PADDED, SM
+from .elements.modulus_sums import (
+    modulus_sum_of_form,
+    modulus_sum_of_form_at_real_w,
+    modulus_sum_of_real_form,
+)
 from .elements.settings import MINORS
 from .value import divide_by_norm, divide_real_by_norm
 

@@ -24,13 +24,12 @@ from .elements.evaluation import (
     fill_propagator_value,
     fill_real_propagator,
     fill_real_propagator_value,
-    minor_sm_modulus_sum,
     powers_and_derivatives,
     propagate_real_tangent,
     propagate_tangent,
-    real_minor_sm_modulus_sum,
 )
 from .elements.minor_rates import PADDED, SM
+from .elements.modulus_sums import minor_sm_modulus_sum, real_minor_sm_modulus_sum
 from .elements.settings import MINORS
 
 

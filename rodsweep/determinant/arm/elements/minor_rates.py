@@ -42,8 +42,8 @@ def fill_drag_rates(W: float, coefficients: Array, values: Array, rates: Array) 
 @compiled_for_vectors
 def integrate_s_m(F: float, Q: Array, starts: Array, coefficients: Array, rates: Array) -> None:
     """Integrates the rates of s^m, and adds the terms with s^m to the rates of theta^s and y^m. The
-    elimination of theta^m leaves out its initial value, so the share of theta^s is added here. Arguments: see
-    the module docstring."""
+    elimination of theta^m leaves out its initial value, so the share of theta^s is added here. rates:
+    (MINORS, STAGES, WIDTH). Other arguments: see the module docstring."""
     for i in range(ARM_ELEMENT_SETTINGS.stages):
         for c in range(ARM_ELEMENT_SETTINGS.width):
             value = starts[SM, c]
@@ -58,7 +58,7 @@ def integrate_theta_s(
     eliminations: Array, starts: Array, coefficients: Array, values: Array, rates: Array
 ) -> None:
     """Integrates the rates of theta^s after the elimination of theta^m, and writes the rates -g theta^s of
-    theta^m. Arguments: see the module docstring."""
+    theta^m. values, rates: (MINORS, STAGES, WIDTH). Other arguments: see the module docstring."""
     for i in range(ARM_ELEMENT_SETTINGS.stages):
         for c in range(ARM_ELEMENT_SETTINGS.width):
             value = eliminations[i, 0, c] * starts[TS, c]
@@ -71,8 +71,8 @@ def integrate_theta_s(
 @compiled_for_vectors
 def integrate_theta_m(F: float, Q: Array, starts: Array, coefficients: Array, rates: Array) -> None:
     """Integrates the rates of theta^m, and adds the terms with theta^m to the rates of theta^s and y^m; the
-    rates of theta^s already contain its initial value (`integrate_s_m`). Arguments: see the module
-    docstring."""
+    rates of theta^s already contain its initial value (`integrate_s_m`). rates: (MINORS, STAGES, WIDTH).
+    Other arguments: see the module docstring."""
     for i in range(ARM_ELEMENT_SETTINGS.stages):
         for c in range(ARM_ELEMENT_SETTINGS.width):
             change = 0.0
@@ -84,8 +84,8 @@ def integrate_theta_m(F: float, Q: Array, starts: Array, coefficients: Array, ra
 
 @compiled_for_vectors
 def integrate_y_m(Q: Array, starts: Array, coefficients: Array, values: Array, rates: Array) -> None:
-    """Integrates the rates of y^m, and writes the rates c3 y^m - c2 theta^s of y^theta. Arguments: see the
-    module docstring."""
+    """Integrates the rates of y^m, and writes the rates c3 y^m - c2 theta^s of y^theta. values,
+    rates: (MINORS, STAGES, WIDTH). Other arguments: see the module docstring."""
     for i in range(ARM_ELEMENT_SETTINGS.stages):
         for c in range(ARM_ELEMENT_SETTINGS.width):
             value = starts[YM, c]
@@ -100,7 +100,7 @@ def integrate_y_theta(
     F: float, eliminations: Array, starts: Array, coefficients: Array, values: Array, rates: Array
 ) -> None:
     """Integrates the rates of y^theta after the elimination of y^m, and adds the term -F g y^theta to the
-    rates of y^m. Arguments: see the module docstring."""
+    rates of y^m. values, rates: (MINORS, STAGES, WIDTH). Other arguments: see the module docstring."""
     for i in range(ARM_ELEMENT_SETTINGS.stages):
         for c in range(ARM_ELEMENT_SETTINGS.width):
             value = eliminations[i, 0, c] * starts[YT, c]

@@ -12,58 +12,13 @@ bounded by theta(0) = 0. A second trial bounds the sum of the two terms by the r
 """
 
 import math
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ....arrays import Array
 from ....model.compiled.compilation import compiled, compiled_for_vectors
-from ....model.compiled.kernel_constants import KernelConstants
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AveragedWeightSettings(KernelConstants):
-    """Settings for the averaged weights alpha that are tried."""
-
-    load_term_factors: tuple[float, ...] = (0.0, 0.5, 1.0)
-    """Values of f in l = f |F| sqrt(c2 c3 gamma3/gamma2), the term with the load in the trial weight t."""
-    half_widths: tuple[float, ...] = (0.01, 0.02, 0.04, 0.08, 0.16, 0.32)
-    """Values of the half-width h of the window, in L."""
-    max_distance_across_jump: float = 1e-6
-    """Two successive points closer than this distance, in L, lie on the two sides of a jump."""
-    added_point_distance: float = 1e-12
-    """Distance, in L, between the points added on both sides of u at which the slope of alpha jumps."""
-
-    @property
-    def trial_count(self) -> int:
-        """Number of trial regions: two for each pair of f and h."""
-        return 2 * len(self.load_term_factors) * len(self.half_widths)
-
-
-AVERAGED_WEIGHT_SETTINGS = AveragedWeightSettings()
-
-
-class GridPositions(NamedTuple):
-    """Positions of n points in a grid: index of the grid interval, (n,), and fraction of its length, (n,)."""
-
-    interval_index: NDArray[np.int64]
-    fraction: Array
-
-
-class TrialPoints(NamedTuple):
-    """Points of an arm at which the weights of one half-width h are evaluated. u: from clamp to tip, (n,).
-    sources: index of each point among the points of the arm, -1 for an added point, (n,). coefficients:
-    `LocalCoefficients`, (6, n). loads: |F| sqrt(c2 c3 gamma3/gamma2), (n,). window_starts, window_ends:
-    positions of u - h and of u + h in u."""
-
-    u: Array
-    sources: NDArray[np.int64]
-    coefficients: Array
-    loads: Array
-    window_starts: GridPositions
-    window_ends: GridPositions
+from .trial_points import AVERAGED_WEIGHT_SETTINGS, TrialPoints, interpolate_at_position, trial_points
 
 
 class TrialWeight(NamedTuple):
@@ -107,97 +62,17 @@ def averaged_regions(u: Array, coefficients: Array, F: float, only_smallest: boo
     max_a2 = math.inf
     limiting_source = 0
     for h in AVERAGED_WEIGHT_SETTINGS.half_widths:
-        points = _trial_points(u, coefficients, loads, F, h)
+        points = trial_points(u, coefficients, loads, F, h)
         for m in range(len(factors)):
             weight = _trial_weight(points, factors[m], log_t[m])
-            limiting_source = _write_regions_of_trial(
-                regions[row : row + 2], points, weight, (F, factors[m], h, max_a2), limiting_source
-            )
+            trial = (F, factors[m], h, max_a2)
+            # The point that limited a in an earlier trial mostly limits a again.
+            if not _exceeds_limit_at(limiting_source, points, weight, trial):
+                limiting_source = _write_regions_of_trial(regions[row : row + 2], points, weight, trial)
             if only_smallest:
                 max_a2 = min(max_a2, regions[row + 1, 0] ** 2)
             row += 2
     return regions
-
-
-@compiled
-def _trial_points(u: Array, coefficients: Array, loads: Array, F: float, h: float) -> TrialPoints:
-    """The points for the half-width h of an arm under the force F with the points u, (points,), where the arm
-    has the `LocalCoefficients` `coefficients`, (6, points), and the `loads` of `TrialPoints`, (points,)."""
-    points, sources = _with_points_where_window_ends_jump(u, h)
-    coefficients_at_points = np.empty((6, len(points)))
-    loads_at_points = np.empty(len(points))
-    i = 0  # the last point of the arm at or before the added point
-    for n in range(len(points)):
-        if sources[n] >= 0:
-            i = sources[n]
-            for k in range(6):
-                coefficients_at_points[k, n] = coefficients[k, i]
-            loads_at_points[n] = loads[i]
-        else:
-            fraction = (points[n] - u[i]) / (u[i + 1] - u[i])
-            for k in range(6):
-                change = coefficients[k, i + 1] - coefficients[k, i]
-                coefficients_at_points[k, n] = coefficients[k, i] + fraction * change
-            _, c2, c3, gamma2, gamma3, _ = coefficients_at_points[:, n]
-            loads_at_points[n] = abs(F) * math.sqrt(c2 * c3 * gamma3 / gamma2)
-    window_starts, window_ends = _grid_positions(points - h, points), _grid_positions(points + h, points)
-    return TrialPoints(points, sources, coefficients_at_points, loads_at_points, window_starts, window_ends)
-
-
-@compiled
-def _with_points_where_window_ends_jump(u: Array, h: float) -> tuple[Array, NDArray[np.int64]]:
-    """Returns (points, sources): the points u of an arm, (points,), and two more near each u at the distance
-    h from a jump, sorted; index of each point in u, -1 for the others."""
-    # Each jump adds at most four points: two window ends, with a point on either side of each.
-    added = np.empty(4 * len(u))
-    count = 0
-    for i in range(len(u) - 1):
-        if u[i + 1] - u[i] < AVERAGED_WEIGHT_SETTINGS.max_distance_across_jump:
-            for window_end in (-h, h):
-                for offset in (
-                    -AVERAGED_WEIGHT_SETTINGS.added_point_distance,
-                    AVERAGED_WEIGHT_SETTINGS.added_point_distance,
-                ):
-                    position = (u[i + 1] + u[i]) / 2 + window_end + offset
-                    if u[0] < position < u[-1]:
-                        added[count] = position
-                        count += 1
-    added = np.sort(added[:count])
-    points = np.empty(len(u) + count)
-    sources = np.empty(len(points), np.int64)
-    used = 0
-    for i in range(len(u)):
-        while used < count and added[used] < u[i]:
-            points[i + used] = added[used]
-            sources[i + used] = -1
-            used += 1
-        points[i + used] = u[i]
-        sources[i + used] = i
-    return points, sources
-
-
-@compiled
-def _grid_positions(x: Array, grid: Array) -> GridPositions:
-    """Positions of x, (n,), increasing, in the intervals of `grid`; x outside is moved to the nearer end."""
-    interval = np.empty(len(x), np.int64)
-    fraction = np.empty(len(x))
-    i = 0
-    for n in range(len(x)):
-        # x increases, so the search continues where the last one ended.
-        while i < len(grid) - 2 and grid[i + 1] < x[n]:
-            i += 1
-        width = grid[i + 1] - grid[i]
-        interval[n] = i
-        # The two points at a jump may coincide.
-        fraction[n] = min(max((x[n] - grid[i]) / width, 0.0), 1.0) if width > 0 else 0.0
-    return GridPositions(interval, fraction)
-
-
-@compiled_for_vectors
-def _interpolate_at_position(positions: GridPositions, n: int, values: Array) -> float:
-    """Value at position number n in a grid, interpolated linearly from `values` at the grid points."""
-    i = positions.interval_index[n]
-    return values[i] + positions.fraction[n] * (values[i + 1] - values[i])
 
 
 @compiled
@@ -224,27 +99,32 @@ def _weight_before_averaging(points: TrialPoints, i: int, factor: float) -> floa
 
 
 @compiled
+def _exceeds_limit_at(
+    source: int, points: TrialPoints, weight: TrialWeight, trial: tuple[float, float, float, float]
+) -> bool:
+    """Whether a^2 of both regions of a trial exceeds the limit at the arm's point number `source`. Other
+    arguments: as in `_write_regions_of_trial`."""
+    i = source
+    while points.sources[i] != source:  # added points shift the points of the arm
+        i += 1
+    _, clamp, drag = _squared_norms(points, weight, i, trial)
+    return min(clamp, drag) > trial[3]
+
+
+@compiled
 def _write_regions_of_trial(
     regions: Array,
     points: TrialPoints,
     weight: TrialWeight,
     trial: tuple[float, float, float, float],
-    limiting_source: int,
 ) -> int:
     """Writes the two regions (a, c) of a trial weight into `regions`, (2, 2). In the first region (t - alpha)
     nu is bounded by theta(0) = 0, in the second by the rotational drag. Returns the index of the arm's point
     that limits a.
 
     trial: force F, factor f, half-width h, and the a^2 above which both regions are left unchanged.
-    limiting_source: index of the arm's point that limited a in an earlier trial. It mostly limits a again,
-    and is tested first.
     """
     u = points.u
-    i = limiting_source
-    while points.sources[i] != limiting_source:  # added points shift the points of the arm
-        i += 1
-    if min(*_squared_norms(points, weight, i, trial)[1:]) > trial[3]:
-        return limiting_source
     a2_clamp = 0.0
     a2_drag = 0.0
     largest_norm = 0.0
@@ -252,6 +132,7 @@ def _write_regions_of_trial(
     c2_clamp = 0.0
     previous = 0.0
     source = 0
+    limiting_source = 0
     for i in range(len(u)):
         alpha, clamp, drag = _squared_norms(points, weight, i, trial)
         a2_clamp = max(a2_clamp, clamp)
@@ -298,12 +179,12 @@ def _squared_norms(
 def _alpha_and_log_slope(points: TrialPoints, weight: TrialWeight, i: int, h: float) -> tuple[float, float]:
     """Returns (alpha, derivative of log alpha) at point number i. h: half-width of the window."""
     u = points.u
-    start = _interpolate_at_position(points.window_starts, i, weight.log_t)
-    end = _interpolate_at_position(points.window_ends, i, weight.log_t)
+    start = interpolate_at_position(points.window_starts, i, weight.log_t)
+    end = interpolate_at_position(points.window_ends, i, weight.log_t)
     # Beyond its ends the arm continues with its end values, so that every window has the same width.
-    integral_to_end = _interpolate_at_position(points.window_ends, i, weight.log_integral)
+    integral_to_end = interpolate_at_position(points.window_ends, i, weight.log_integral)
     integral_to_end += max(u[i] + h - u[-1], 0.0) * weight.log_t[-1]
-    integral_to_start = _interpolate_at_position(points.window_starts, i, weight.log_integral)
+    integral_to_start = interpolate_at_position(points.window_starts, i, weight.log_integral)
     integral_to_start -= max(u[0] - (u[i] - h), 0.0) * weight.log_t[0]
     return math.exp((integral_to_end - integral_to_start) / (2 * h)), (end - start) / (2 * h)
 

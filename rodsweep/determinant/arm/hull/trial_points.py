@@ -1,0 +1,138 @@
+"""Points of an arm at which averaged weights are evaluated: the points of the arm, and points on both sides
+of each u at which the slope of a weight jumps (`rodsweep.determinant.arm.hull.averaged_weight`)."""
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....arrays import Array
+from ....model.compiled.compilation import compiled, compiled_for_vectors
+from ....model.compiled.kernel_constants import KernelConstants
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AveragedWeightSettings(KernelConstants):
+    """Settings for the averaged weights alpha that are tried."""
+
+    load_term_factors: tuple[float, ...] = (0.0, 0.5, 1.0)
+    """Values of f in l = f |F| sqrt(c2 c3 gamma3/gamma2), the term with the load in the trial weight t."""
+    half_widths: tuple[float, ...] = (0.01, 0.02, 0.04, 0.08, 0.16, 0.32)
+    """Values of the half-width h of the window, in L."""
+    max_distance_across_jump: float = 1e-6
+    """Two successive points closer than this distance, in L, lie on the two sides of a jump."""
+    added_point_distance: float = 1e-12
+    """Distance, in L, between the points added on both sides of u at which the slope of alpha jumps."""
+
+    @property
+    def trial_count(self) -> int:
+        """Number of trial regions: two for each pair of f and h."""
+        return 2 * len(self.load_term_factors) * len(self.half_widths)
+
+
+AVERAGED_WEIGHT_SETTINGS = AveragedWeightSettings()
+
+
+class GridPositions(NamedTuple):
+    """Positions of n points in a grid: index of the grid interval, (n,), and fraction of its length, (n,)."""
+
+    interval_index: NDArray[np.int64]
+    fraction: Array
+
+
+class TrialPoints(NamedTuple):
+    """Points of an arm at which the weights of one half-width h are evaluated. u: from clamp to tip, (n,).
+    sources: index of each point among the points of the arm, -1 for an added point, (n,). coefficients:
+    `LocalCoefficients`, (6, n). loads: |F| sqrt(c2 c3 gamma3/gamma2), (n,). window_starts, window_ends:
+    positions of u - h and of u + h in u."""
+
+    u: Array
+    sources: NDArray[np.int64]
+    coefficients: Array
+    loads: Array
+    window_starts: GridPositions
+    window_ends: GridPositions
+
+
+@compiled
+def trial_points(u: Array, coefficients: Array, loads: Array, F: float, h: float) -> TrialPoints:
+    """The points for the half-width h of an arm under the force F with the points u, (points,), where the arm
+    has the `LocalCoefficients` `coefficients`, (6, points), and the `loads` of `TrialPoints`, (points,)."""
+    points, sources = _with_points_where_window_ends_jump(u, h)
+    coefficients_at_points = np.empty((6, len(points)))
+    loads_at_points = np.empty(len(points))
+    i = 0  # the last point of the arm at or before the added point
+    for n in range(len(points)):
+        if sources[n] >= 0:
+            i = sources[n]
+            for k in range(6):
+                coefficients_at_points[k, n] = coefficients[k, i]
+            loads_at_points[n] = loads[i]
+        else:
+            fraction = (points[n] - u[i]) / (u[i + 1] - u[i])
+            for k in range(6):
+                change = coefficients[k, i + 1] - coefficients[k, i]
+                coefficients_at_points[k, n] = coefficients[k, i] + fraction * change
+            _, c2, c3, gamma2, gamma3, _ = coefficients_at_points[:, n]
+            loads_at_points[n] = abs(F) * math.sqrt(c2 * c3 * gamma3 / gamma2)
+    window_starts, window_ends = _grid_positions(points - h, points), _grid_positions(points + h, points)
+    return TrialPoints(points, sources, coefficients_at_points, loads_at_points, window_starts, window_ends)
+
+
+@compiled
+def _with_points_where_window_ends_jump(u: Array, h: float) -> tuple[Array, NDArray[np.int64]]:
+    """Returns (points, sources): the points u of an arm, (points,), and two more near each u at the distance
+    h from a jump, sorted; index of each point in u, -1 for the others."""
+    # Each jump adds at most four points: two window ends, with a point on either side of each.
+    added = np.empty(4 * len(u))
+    count = 0
+    for i in range(len(u) - 1):
+        if u[i + 1] - u[i] < AVERAGED_WEIGHT_SETTINGS.max_distance_across_jump:
+            for window_end in (-h, h):
+                for offset in (
+                    -AVERAGED_WEIGHT_SETTINGS.added_point_distance,
+                    AVERAGED_WEIGHT_SETTINGS.added_point_distance,
+                ):
+                    position = (u[i + 1] + u[i]) / 2 + window_end + offset
+                    if u[0] < position < u[-1]:
+                        added[count] = position
+                        count += 1
+    added = np.sort(added[:count])
+    points = np.empty(len(u) + count)
+    sources = np.empty(len(points), np.int64)
+    used = 0
+    for i in range(len(u)):
+        while used < count and added[used] < u[i]:
+            points[i + used] = added[used]
+            sources[i + used] = -1
+            used += 1
+        points[i + used] = u[i]
+        sources[i + used] = i
+    return points, sources
+
+
+@compiled
+def _grid_positions(x: Array, grid: Array) -> GridPositions:
+    """Positions of x, (n,), increasing, in the intervals of `grid`; x outside is moved to the nearer end."""
+    interval = np.empty(len(x), np.int64)
+    fraction = np.empty(len(x))
+    i = 0
+    for n in range(len(x)):
+        # x increases, so the search continues where the last one ended.
+        while i < len(grid) - 2 and grid[i + 1] < x[n]:
+            i += 1
+        width = grid[i + 1] - grid[i]
+        interval[n] = i
+        # The two points at a jump may coincide.
+        fraction[n] = min(max((x[n] - grid[i]) / width, 0.0), 1.0) if width > 0 else 0.0
+    return GridPositions(interval, fraction)
+
+
+@compiled_for_vectors
+def interpolate_at_position(positions: GridPositions, n: int, values: Array) -> float:
+    """Value at position number n in a grid, interpolated linearly from `values` at the grid points,
+    (points,)."""
+    i = positions.interval_index[n]
+    return values[i] + positions.fraction[n] * (values[i + 1] - values[i])
