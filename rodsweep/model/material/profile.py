@@ -34,6 +34,14 @@ class Profile:
     u: tuple[float, ...]
     rows: tuple[tuple[float, ...], ...]
 
+    def __hash__(self) -> int:
+        return self._hash
+
+    @cached_property
+    def _hash(self) -> int:
+        """Hash of the table, kept because rods of a sweep are keys of caches; equal in all processes."""
+        return hash((self.u, self.rows))
+
     def __post_init__(self) -> None:
         if len(self.u) < 2:
             raise ValueError(f"there must be rows at u = 0 and u = 1; the number of rows is {len(self.u)}")
