@@ -19,6 +19,8 @@ from ....determinant.arm.arm_family import ArmFamily
 from ....determinant.arm.hull.hull import hulls_along
 from ....determinant.arm.hull.region import PathHulls
 from ....determinant.parameter_path import ParameterPath
+from ....model.material.rod_material import RodMaterial
+from ....model.parameters import PARAMETERS
 from ....model.rod import Rod
 from ..candidates import line_for_proof
 from .arm_following import follow_eigenvalues_of_arms
@@ -104,12 +106,15 @@ def leader_in_range(
     p = rod.coordinate(name)
     if not (arm_range.low <= p <= arm_range.high and arm_range.is_usable and np.isfinite(guesses).all()):
         return None
-    family_data = _family_and_hulls(rod.with_coordinate(name, arm_range.low), name, arm_range)
+    # A rod would be a slower key, because its values are tested whenever one is made.
+    values = {**rod.values, name: PARAMETERS[name].value(arm_range.low)}
+    family_data = _family_and_hulls(tuple(values.items()), rod.material, name, arm_range)
     if family_data is None:
         return None
-    pairs = guesses[guesses.imag != 0]
-    first_w = np.append(guesses, pairs.conj())
-    track = new_track(first_w[np.lexsort((-first_w.imag, -first_w.real))], 1)
+    upper_w = guesses.tolist()
+    first_w = upper_w + [w.conjugate() for w in upper_w if w.imag]
+    first_w.sort(key=lambda w: (-w.real, -w.imag))
+    track = new_track(np.array(first_w, complex), 1)
     proved_counts = np.zeros(1, np.int64)
     mode_count = 2 if guesses[0].imag else 1
     reached = follow_eigenvalues_of_arms(track, *family_data, np.array([p]), mode_count, proved_counts)
@@ -121,13 +126,15 @@ def leader_in_range(
 
 
 @lru_cache(maxsize=ARM_RANGE_SETTINGS.max_cached_ranges)
-def _family_and_hulls(first_rod: Rod, name: str, arm_range: ArmRange) -> tuple[ArmFamily, PathHulls] | None:
+def _family_and_hulls(
+    values: tuple[tuple[str, float], ...], material: RodMaterial, name: str, arm_range: ArmRange
+) -> tuple[ArmFamily, PathHulls] | None:
     """(family of the arms of a range, hulls that contain their spectra), cached; None if the arms are not
-    smooth in the parameter, or if no elements resolve an arm. first_rod: arm at `arm_range.low`. name: the
-    varied parameter."""
-    path = ParameterPath(first_rod, name)
+    smooth in the parameter, or if no elements resolve an arm. values, material: parameter values by name, and
+    material, of the arm at `arm_range.low`. name: the varied parameter."""
     W = ARM_FOLLOWING_SETTINGS.w_bound_ratio * arm_range.largest_w
     try:
+        path = ParameterPath(Rod(**dict(values), material=material), name)
         hulls = hulls_along(path, arm_range.low, arm_range.high, ARM_RANGE_SETTINGS.hull_count)
         family = family_with_proofs(path, hulls, W, arm_range.line)
     except (ValueError, FloatingPointError):
