@@ -6,7 +6,12 @@ distance between this point and the end of the range.
 
 from math import inf
 
+import numpy as np
+
 from ...model.parameters import PARAMETERS
+from ..orbit.measures import CycleMotion
+from ..orbit.orbit import Orbit
+from ..orbit.orbit_mesh import mesh_of
 from .arc_length_step import BranchCycle
 from .branch_curve import BranchEnd, RangePassage
 from .branch_end_settings import BRANCH_END_SETTINGS
@@ -39,8 +44,8 @@ def has_accurate_range_end(
     largest tip y meet the accuracy or are at most the errors of a cycle that is solved at the end of the
     range.
 
-    A mesh displaces the Hopf point, so the errors of its cycles grow with 1/distance from this point. The
-    errors of the normal form decrease with the distance, but not if `start` is closer.
+    A mesh displaces the Hopf point, so the errors of the largest y of its cycles grow with 1/distance from
+    this point. The errors of the normal form decrease with the distance.
     """
     if end is None or end.range_passage is None:
         return False
@@ -57,13 +62,11 @@ def has_accurate_range_end(
 def _point_at_range_end(
     start: BranchCycle, hopf: HopfBranchStart, limits: BranchLimits, index: int
 ) -> SpecialPoint:
-    """The special point at the end `index` of the range. The normal form errs at this point and at `start` in
-    proportion to the distances from the Hopf point; the errors of its coefficients are added."""
+    """The special point at the end `index` of the range. The errors of the normal form, of its coefficients
+    and of the Hopf point are added."""
     coordinate = limits.coordinate_range[index]
     distance = abs(coordinate - hopf.parameter_coordinate)
-    fraction = distance / abs(start.parameter_coordinate - hopf.parameter_coordinate)
-    start_period, start_amplitude = hopf.period_and_amplitude_at(start.parameter_coordinate)
-    measures = start.cycle.measures
+    period_error, amplitude_error = _errors_of_normal_form(start, hopf, distance)
     period, amplitude = hopf.period_and_amplitude_at(coordinate)
     # The amplitude is the square root of the distance, which is uncertain by the error of the Hopf point.
     hopf_error = abs(hopf.crossing.error / hopf.crossing.value * hopf.parameter_coordinate)
@@ -75,9 +78,59 @@ def _point_at_range_end(
         period=period,
         tip_y_max=amplitude,
         error=BRANCH_END_SETTINGS.relative_parameter_error_at_range_end * abs(value),
-        period_error=fraction * abs(start_period / measures.period - 1) + hopf.period_error,
-        tip_y_max_error=fraction * abs(start_amplitude / measures.tip_y_max - 1)
-        + hopf.relative_coefficient_error
-        + displacement,
+        period_error=period_error + hopf.period_error,
+        tip_y_max_error=amplitude_error + hopf.relative_coefficient_error + displacement,
         reason=limits.end_reasons[index],
     )
+
+
+def _errors_of_normal_form(start: BranchCycle, hopf: HopfBranchStart, distance: float) -> tuple[float, float]:
+    """Relative errors of period and largest tip y by the normal form of `hopf`, with exact coefficients, at a
+    distance of the parameter coordinate from the Hopf point.
+
+    Near the Hopf point these errors are proportional to the distance. Every cycle there gives an estimate:
+    its difference from the normal form, scaled to the distance. An estimate has two errors: the scaled error
+    of the cycle, and the effect of higher powers of the distance, by which it differs from the straight line
+    through two successive estimates at the Hopf point. The smallest sum of an estimate and its errors is
+    returned. The cycles before `start` have at most the errors of `start`, as errors grow towards the Hopf
+    point.
+    """
+    cycle_errors = np.array([start.cycle.errors.period_error, start.cycle.errors.amplitude_error])
+    last_fraction, last_estimate = inf, np.zeros(2)
+    bounds = []
+    for orbit in _orbits_near_hopf(start, hopf):
+        fraction = distance / _distance_from_hopf(orbit, hopf)
+        normal_form = hopf.period_and_amplitude_at(orbit.form.rod.coordinate(hopf.parameter_name))
+        measured = orbit.period, CycleMotion(orbit).extrema["tip_y_max"]
+        estimate = fraction * (np.array(normal_form) / measured - 1)
+        higher_powers = abs(estimate - last_estimate) / (1 - fraction / last_fraction)
+        bounds.append(
+            abs(estimate)
+            + BRANCH_END_SETTINGS.higher_powers_safety_factor * higher_powers
+            + fraction * cycle_errors
+        )
+        last_fraction, last_estimate = fraction, estimate
+    period_error, amplitude_error = np.min(bounds, axis=0).tolist()
+    return period_error, amplitude_error
+
+
+def _orbits_near_hopf(start: BranchCycle, hopf: HopfBranchStart) -> list[Orbit]:
+    """The cycle `start`, and the cycles before it on its mesh that are small enough for an extrapolation to
+    the Hopf point `hopf`; the distance from this point increases along the list."""
+    mesh = mesh_of(start.orbit)
+    orbits = [start.orbit]
+    earlier = start.previous
+    while earlier is not None and mesh_of(earlier.orbit) == mesh:
+        # A fold lies between two cycles if the distance does not increase.
+        is_farther = _distance_from_hopf(earlier.orbit, hopf) > _distance_from_hopf(orbits[-1], hopf)
+        y = CycleMotion(earlier.orbit).extrema["tip_y_max"]
+        if not is_farther or y > BRANCH_END_SETTINGS.max_last_amplitude:
+            break
+        orbits.append(earlier.orbit)
+        earlier = earlier.previous
+    return orbits
+
+
+def _distance_from_hopf(orbit: Orbit, hopf: HopfBranchStart) -> float:
+    """Distance of the parameter coordinate of an orbit from that of the Hopf point `hopf`."""
+    return abs(orbit.form.rod.coordinate(hopf.parameter_name) - hopf.parameter_coordinate)

@@ -165,7 +165,8 @@ def test_the_amplitude_just_beyond_a_hopf_point_has_the_error_of_the_normal_form
     amplitude = exact**0.5 * (0.898059510153 + 0.162248 * exact)
     assert (end.kind, end.parameter_value) == (SpecialKind.end, start)
     assert abs(end.tip_y_max / amplitude - 1) <= end.tip_y_max_error <= largest_error
-    assert end.period_error < 1e-7
+    # The error contains a part of the error of a cycle, which is a fraction of the accuracy at least.
+    assert end.period_error < max(1e-7, 1e-2 * accuracy)
 
 
 @pytest.mark.long

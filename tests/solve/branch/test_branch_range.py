@@ -80,6 +80,25 @@ def test_the_period_is_accurate_where_the_amplitude_is_steep(distance):
     assert abs(end.tip_y_max / exact.tip_y_max - 1) <= end.tip_y_max_error < 0.02 * 1e-5 / distance
 
 
+@pytest.mark.parametrize("distance", [1e-5, 3e-6, 1e-6])
+@pytest.mark.parametrize("accuracy", [1e-4, 1e-5, 1e-6])
+def test_the_normal_form_gives_the_cycle_at_an_end_next_to_the_hopf_point(distance, accuracy):
+    """Its errors fall with the distance: the cycles before the end show them, free of the errors of a mesh,
+    which grow towards the Hopf point."""
+    rod = Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4)
+    (hopf,) = find_axis_crossings(ParameterPath(rod, "F"), 0.0, 40.0).thresholds
+    start = hopf.value * (1 + distance)
+    exact, end = (
+        solve_branches(rod, BranchRequest("F", start, 40.0, a, True, 100, 10)).curves[0].special_points[0]
+        for a in (1e-10, accuracy)
+    )
+    assert exact.tip_y_max_error < 2e-8
+    assert (
+        abs(end.tip_y_max / exact.tip_y_max - 1) <= end.tip_y_max_error < distance * (0.5 + accuracy / 2e-5)
+    )
+    assert abs(end.period / exact.period - 1) <= end.period_error < 0.01 * accuracy
+
+
 @pytest.mark.long
 def test_a_branch_passes_the_drag_below_which_omega_is_an_unknown():
     """Along the taper of a rod with gamma3 = 1e-4 the rotational drag of the tip is 1e-5 at 0.316."""

@@ -43,6 +43,10 @@ class BranchStartSettings:
     """Lower limit of the accuracy that is required because of a large |a|. With this limit, for ten rods at
     distances of 1e-7 to 1e-3 from a generalised Hopf point, no false fold was found, and all folds farther
     than 1e-11 F from the Hopf point were found."""
+    coefficient_accuracies: tuple[float, ...] = (1e-8, 1e-3)
+    """Relative accuracies of the Landau coefficient of a Hopf point, tried in this order. The first one costs
+    as much as the second (1.9 s for 88 Hopf points of random rods); a mesh that misses the eigenvalue at the
+    first may identify it at the second."""
     frequency_rounding: float = 1e-14
     """Relative rounding error of the frequency at a Hopf point, which is computed as a root of the
     determinant D."""

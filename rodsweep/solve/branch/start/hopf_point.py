@@ -9,9 +9,10 @@ from ....determinant.parameter_path import ParameterPath
 from ....model.rod import Rod
 from ...changes.arm.path import path_problem
 from ...changes.threshold_kinds import Threshold
-from ...cycle.hopf_start_settings import HOPF_START_SETTINGS, normal_form_accuracy
+from ...cycle.hopf_start_settings import normal_form_accuracy
 from ...hopf.hopf_coefficients import HopfCoefficients, hopf_coefficients
 from ...hopf.normal_form import NormalForm, normal_form_by_mesh_rule
+from ...unsolvable import Unsolvable
 from ..special.special_point import SpecialKind, SpecialPoint
 from .branch_start_settings import BRANCH_START_SETTINGS
 
@@ -133,10 +134,22 @@ def hopf_branch_start(
         growth_slope=complex(slope),
         normal_form=normal,
         # Two meshes give these coefficients with their errors; one mesh suffices for the start of the branch.
-        coefficients=hopf_coefficients(rod, crossing, HOPF_START_SETTINGS.normal_form_accuracy),
+        coefficients=_accurate_coefficients(rod, crossing),
         is_omega_always_unknown=is_omega_always_unknown,
         min_coordinate_unit=min_coordinate_unit,
     )
+
+
+def _accurate_coefficients(rod: Rod, crossing: Threshold) -> HopfCoefficients:
+    """The coefficients of the normal form at the Hopf point `crossing`, to the first possible one of
+    `coefficient_accuracies`; raises Unsolvable. rod: the rod at the Hopf point."""
+    reason = Unsolvable()
+    for accuracy in BRANCH_START_SETTINGS.coefficient_accuracies:
+        try:
+            return hopf_coefficients(rod, crossing, accuracy)
+        except Unsolvable as error:
+            reason = error
+    raise reason
 
 
 def accuracy_near_hopf_points(hopfs: Sequence[HopfBranchStart], accuracy: float) -> float:
