@@ -48,7 +48,9 @@ def consistent(form, X):
     """X with the velocities that its stresses give it, of a rod with rotational drag."""
     S, _ = form.stresses_and_velocities(X)
     Sigma = S + form.rod.balance_coefficients.tip_stress[:, None]
-    return form.state(S, velocity(form.rod.balance_coefficients, Sigma, Sigma @ form.mesh.matrices.D.T))
+    return form.layout.state(
+        S, velocity(form.rod.balance_coefficients, Sigma, Sigma @ form.mesh.matrices.D.T)
+    )
 
 
 def finite_eigenvalues(form):
@@ -162,7 +164,7 @@ def test_equations_are_the_balance_weighted_by_the_quadrature(elements, order):
         in_strain[:, here] += W * bent - (W * V[:, here]) @ D
         turned = np.array([-kappa * n2, kappa * n1, h1 * n2 - h2 * n1])
         in_force[:, here] += W * (Sigma[:, here] @ D.T + turned - material.drag[:, None] * V[:, here])
-    residual = form.state(in_strain, in_force)
+    residual = form.layout.state(in_strain, in_force)
     assert mixed.rate(form, X) == pytest.approx(residual, rel=1e-12, abs=1e-13 * np.abs(residual).max())
 
 

@@ -32,7 +32,7 @@ def guess_at(orbit, m):
     for x, velocities in zip(states, V, strict=True):
         write_balance(x, velocities, reaction, form.nodal_rod, form.mesh.matrices)
     mixed = MixedForm(form.rod, form.mesh)
-    return mixed.state(form.stresses(states), V.swapaxes(0, 1))
+    return mixed.layout.state(form.stresses(states), V.swapaxes(0, 1))
 
 
 def solved_cycle(form, X, frequency):

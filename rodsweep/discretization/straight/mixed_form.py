@@ -96,7 +96,9 @@ class MixedForm(RodOnMesh):
         # F enters through the strain at rest, the tangent at rest, and Sigma1 = -F.
         forces = coad(broadcast_to_field(E, S), self._linearised_stress(S)) + coad(rest_strain, dE)
         forces = forces + coad(self._compliance_times_stress(S), broadcast_to_field(Sigma, S))
-        return self.state(W * ad(broadcast_to_field(E, V), V), W * forces + self._weighted_derivative(dE))
+        return self.layout.state(
+            W * ad(broadcast_to_field(E, V), V), W * forces + self._weighted_derivative(dE)
+        )
 
     @cached_property
     def tip_y_row(self) -> Array:
@@ -113,11 +115,6 @@ class MixedForm(RodOnMesh):
         each."""
         return self.stresses(X), self.layout.velocities(X)
 
-    def state(self, S: Values, V: Values) -> Values:
-        """States X, (..., unknowns), from stresses S and velocities V at all nodes, (3, ..., nodes + 1) each.
-        S at the tip is ignored."""
-        return self.layout.state(S, V)
-
     def bilinear(self, X: Values, Y: Values) -> Values:
         """The symmetric bilinear form B(X, Y) of the quadratic terms; X, Y and result: (..., unknowns)."""
         S, U = self.stresses_and_velocities(X)
@@ -133,7 +130,7 @@ class MixedForm(RodOnMesh):
                 + W * coad(broadcast_to_field(self.nodal_rod.rest_strain, S), second_derivative)
                 + self._weighted_derivative(second_derivative)
             )
-        return self.state(W * (ad(CS, V) + ad(CT, U)), forces)
+        return self.layout.state(W * (ad(CS, V) + ad(CT, U)), forces)
 
     def trilinear(self, X: Values, Y: Values, Z: Values) -> Values:
         """The symmetric trilinear form C(X, Y, Z) of the cubic terms, (..., unknowns); 0 for a linear law."""
@@ -148,7 +145,7 @@ class MixedForm(RodOnMesh):
             forces = forces + W * coad(
                 self._compliance_times_stress(first), law.second_derivative_form(second, third_factor)
             )
-        return self.state(np.zeros_like(forces), forces)
+        return self.layout.state(np.zeros_like(forces), forces)
 
     def _compliance_times_stress(self, S: Values) -> Values:
         """The strain C S, relative to the straight rod, at all nodes, (3, ..., nodes + 1)."""

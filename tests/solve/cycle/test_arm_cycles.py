@@ -128,7 +128,7 @@ def test_the_mixed_form_has_the_same_motion_to_third_order(name):
     errors = []
     for size in (0.02, 0.01):
         x, V, G = moving(form, size)
-        X = mixed.state(form.stresses(x), V)
+        X = mixed.layout.state(form.stresses(x), V)
         cubic = mixed.trilinear(X, X, X) / 6
         S, _ = mixed.stresses_and_velocities(mixed_rate(mixed, X) + cubic)
         errors.append(np.abs(S[:, :-1] - G[:, :-1]).max() / np.abs(G).max())
