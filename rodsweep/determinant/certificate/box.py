@@ -28,7 +28,7 @@ from ..parameter_path import ParameterPath, coefficients_at, dispersion_coeffici
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoxSettings(KernelConstants):
-    """Settings for the a-priori box of all eigenvalues."""
+    """Settings for the a-priori box of all eigenvalues, and for the disc about w = 0 in which D has no zero."""
 
     padding_fraction: float = 0.01
     """This fraction of the depth is added to both bounds of the box."""
@@ -36,20 +36,11 @@ class BoxSettings(KernelConstants):
     """Length added to both bounds of the box, in 1/tau2; far below |w| = 12 of a rod at rest."""
     bound_excess: float = 0.01
     """Relative excess of every bound, for the rounding errors of the bound itself."""
-
-
-BOX_SETTINGS = BoxSettings()
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ZeroFreeDiscSettings:
-    """Settings for the disc about w = 0 in which D has no zero."""
-
     max_deviation_from_one: float = 0.5
     """Bound of |D - 1| in the disc about w = 0. Any bound below 1 excludes zeros of D."""
 
 
-ZERO_FREE_DISC_SETTINGS = ZeroFreeDiscSettings()
+BOX_SETTINGS = BoxSettings()
 
 
 def eigenvalue_box(rod: Rod, depth: float = 0.0) -> tuple[float, float]:
@@ -153,9 +144,7 @@ def _zero_free_radius(radius: float, T: float, X: float, G: float, max_pull: flo
     """The first of r, r/2, r/4, ... such that |D(i eta) - 1| < 1/2 for |eta| <= r; 0 if r underflows. T, X,
     G: bounds of c2 + gamma3, c2 gamma3 and |g nu|. max_pull: bound of -F g, at least 0."""
     # The loop ends at the latest when the radius underflows to 0, where the bound is 0.
-    while (
-        _distance_from_one_bound(radius, T, X, G, max_pull) >= ZERO_FREE_DISC_SETTINGS.max_deviation_from_one
-    ):
+    while _distance_from_one_bound(radius, T, X, G, max_pull) >= BOX_SETTINGS.max_deviation_from_one:
         radius /= 2
     return radius
 

@@ -150,8 +150,8 @@ def _point_at_second_coordinate(boundary: StabilityBoundary, a: Array, b: Array,
     """The point (x, y, log |eigenvalue|) of a curve at the given y, between its points a and b, (3,) each;
     None if not found. Newton's method starts from the chord. If this guess is too far from the curve, secant
     steps along the curve follow."""
-    fraction = (y - a[1]) / (b[1] - a[1]) if a[1] != b[1] else 0.0
     for _ in range(BOUNDARY_ASSIGNMENT_SETTINGS.max_secant_steps):
+        fraction = (y - a[1]) / (b[1] - a[1]) if a[1] != b[1] else 0.0
         guess = a + fraction * (b - a)
         guess_at_y = guess.copy()
         guess_at_y[1] = y
@@ -166,5 +166,4 @@ def _point_at_second_coordinate(boundary: StabilityBoundary, a: Array, b: Array,
             a = point.v
         else:
             b = point.v
-        fraction = (y - a[1]) / (b[1] - a[1]) if a[1] != b[1] else 0.0
     return None
