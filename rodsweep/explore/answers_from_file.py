@@ -15,7 +15,7 @@ from ..post.branch_curves import RodBranches
 from ..post.figures.cycle.animation import MIN_SHAPES
 from ..results.file.view import status_sentences_in
 from .slider_scales import SLIDER_SCALES
-from .solving.diagrams import Dataset, flag_words
+from .solving.curves_and_counts import Dataset, flag_words
 from .solving.requests import AnswerVariables, drawn_branches
 from .state import PageState
 

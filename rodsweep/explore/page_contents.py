@@ -140,7 +140,7 @@ class PageContents:
         else:
             scales = SLIDER_SCALES[state.tab]
             self.diagram.show(answer, scales[state.load], scales[state.second])
-            if kind == "cycles" and len(answer["cycle_curve_x"]) == 0:
+            if kind == "cycles" and not answer["cycle_curves"]:
                 self.diagram.card.show_sentence_above(NO_CYCLE_CURVES_FOUND_SENTENCE)
         self.numbers.show(kind, answer)
 

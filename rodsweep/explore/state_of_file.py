@@ -16,8 +16,8 @@ from ..errors import InputError
 from ..results import RESULT_ENDINGS
 from .answers_from_file import AnswersFromFile
 from .slider_scales import SLIDER_SCALES
+from .solving.curves_and_counts import Dataset
 from .solving.diagrams import (
-    Dataset,
     diagram_from_arm_result,
     diagram_from_phase_result,
     diagram_from_row_result,

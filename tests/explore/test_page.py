@@ -22,6 +22,7 @@ from rodsweep.explore.pictures.diagram import (
 )
 from rodsweep.explore.pictures.diagram_regions import region_table
 from rodsweep.explore.pictures.numbers import NumbersTable, number_text
+from rodsweep.explore.solving.curves_and_counts import DiagramCurve
 from rodsweep.explore.solving.diagrams import CRUSHED_CODE, UNKNOWN_CODE
 from rodsweep.explore.solving.request_inputs import INSTANT_KINDS
 from rodsweep.explore.solving.requests import Reply, SolveRequest, answer_to, answer_variables
@@ -237,11 +238,10 @@ def test_the_diagram_names_its_areas_under_the_pointer_and_nothing_else():
 def test_areas_of_a_diagram_end_at_its_curves_of_hopf_points():
     """A curve between the points, a window narrower than their distance, and a double eigenvalue."""
     y = np.array([1.0, 10.0])
+    kinds_by_loads = {(0.2, 1.9): "hopf", (0.5, 0.5): "double", (1.95, 1.95): "hopf", (1.97, 1.97): "hopf"}
     found = {
         "x": np.array([0.0, 1.0, 2.0]), "y": y, "unstable_count": np.array([[0, 2, 2], [0, 0, 2]]),
-        "curve_x": np.array([0.2, 1.9, 0.5, 0.5, 1.95, 1.95, 1.97, 1.97]),
-        "curve_y": np.tile(y, 4), "curve_number": np.repeat([1, 2, 3, 4], 2),
-        "curve_kind": ["hopf"] * 2 + ["double"] * 2 + ["hopf"] * 4,
+        "curves": [DiagramCurve(np.array(x), y, kind) for x, kind in kinds_by_loads.items()],
         "between_x": np.full(2, 1.96), "between_y": y, "between_count": np.full(2, 4),
         "crushing_load": np.array([1.98, 19.8]),
     }  # fmt: skip
@@ -254,7 +254,7 @@ def test_areas_of_a_diagram_end_at_its_curves_of_hopf_points():
         assert row[np.abs(middles - 1.96).argmin()] == 4
         assert row[-1] == (CRUSHED_CODE if 1.98 * 10**level < sides[-2] else 2)
     assert (levels[0], levels[-1]) == pytest.approx((1, 10))
-    assert region_table(found | {"curve_kind": ["double"] * 8}) is None
+    assert region_table(found | {"curves": found["curves"][1:2]}) is None
     rigid = region_table(found | {"crushing_load": np.full(2, np.inf)})
     assert (rigid.counts[:, -1] == 2).all()
 

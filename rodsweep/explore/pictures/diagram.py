@@ -1,7 +1,7 @@
 """Picture of the stability diagram over the load and a second parameter. A click selects new values of the
 two parameters."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from itertools import groupby
 from math import nan
 from typing import Any, NamedTuple
@@ -12,6 +12,7 @@ from bokeh.models import HoverTool, Legend, LegendItem, Range1d
 from ...arrays import Array
 from ...wording import counted
 from ..slider_scales import ControlScale
+from ..solving.curves_and_counts import DiagramCurve
 from ..solving.diagrams import CRUSHED_CODE, UNKNOWN_CODE
 from . import card
 from .diagram_regions import region_table
@@ -152,8 +153,8 @@ class DiagramPicture:
         self.card.show_figure()
 
     def _show_curves(self, answer: dict[str, Any]) -> None:
-        self.curve_source.data = _boundary_columns(*_curves_of_answer(answer, "curve"))
-        x, y, kinds = _curves_of_answer(answer, "cycle_curve")
+        self.curve_source.data = _boundary_columns(*_curve_columns(answer["curves"]))
+        x, y, kinds = _curve_columns(answer["cycle_curves"])
         colours, dashes = ([CYCLE_CURVE_LOOKS[kind][side] for kind in kinds] for side in (1, 2))
         self.cycle_curve_source.data = {"x": x, "y": y, "colour": colours, "dash": dashes}
         self.legend.visible = len(kinds) > 0
@@ -168,10 +169,6 @@ def _boundary_columns(x: Any, y: Any, kinds: Iterable[str]) -> dict[str, Any]:
     return {"x": x, "y": y, "colour": [BOUNDARY_COLOURS.get(kind, card.STABLE_COLOUR) for kind in kinds]}
 
 
-def _curves_of_answer(answer: dict[str, Any], name: str) -> tuple[list[Array], list[Array], list[str]]:
-    """Returns (x, y, kinds), lists with one entry per curve of the answer `answer`. x, y: arrays, (points,).
-    name: prefix of the curves' variables, such as "curve"."""
-    numbers = np.asarray(answer[f"{name}_number"])
-    lines = [np.flatnonzero(numbers == number) for number in np.unique(numbers)]
-    x, y = ([answer[f"{name}_{axis}"][line] for line in lines] for axis in "xy")
-    return x, y, [str(answer[f"{name}_kind"][line[0]]) for line in lines]
+def _curve_columns(curves: Sequence[DiagramCurve]) -> tuple[list[Array], list[Array], list[str]]:
+    """Returns (x, y, kinds), lists with one entry per curve."""
+    return [curve.x for curve in curves], [curve.y for curve in curves], [curve.kind for curve in curves]

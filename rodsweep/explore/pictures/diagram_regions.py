@@ -29,8 +29,8 @@ def region_table(answer: dict[str, Any]) -> RegionTable | None:
     of Hopf points, or fewer than two finite positive values of the second parameter."""
     x = answer["x"]
     y = answer["y"]
-    is_hopf = np.asarray(answer["curve_kind"], dtype=object) == "hopf"
-    if not is_hopf.any() or len(y) < 2 or not (np.isfinite(y) & (y > 0)).all():
+    hopf_curves = [curve for curve in answer["curves"] if curve.kind == "hopf"]
+    if not hopf_curves or len(y) < 2 or not (np.isfinite(y) & (y > 0)).all():
         return None
     # The axis of the loads is linear, and the axis of the second parameter logarithmic, for any values.
     plane = DrawnPlane(np.linspace(x[0], x[-1], 3), np.linspace(np.log(y[0]), np.log(y[-1]), 3))
@@ -42,13 +42,7 @@ def region_table(answer: dict[str, Any]) -> RegionTable | None:
     )
     row_positions = plane.fractions_of_axes(answer["between_x"], np.log(answer["between_y"]))
     row_points = ClassifiedPoints(row_positions, np.asarray(answer["between_count"]))
-    numbers = np.asarray(answer["curve_number"])
-    curves = []
-    for number in np.unique(numbers[is_hopf]):
-        is_of_curve = is_hopf & (numbers == number)
-        curves.append(
-            plane.fractions_of_axes(answer["curve_x"][is_of_curve], np.log(answer["curve_y"][is_of_curve]))
-        )
+    curves = [plane.fractions_of_axes(curve.x, np.log(curve.y)) for curve in hopf_curves]
     ratio = _crushing_ratio(plane, np.log(y), answer["crushing_load"])
     pixels = pixel_classes(computed, row_points, curves, ratio > CURVE_END_CRUSHING_RATIO, UNKNOWN_CODE)
     pixels = np.where(ratio < 1, pixels, CRUSHED_CODE)

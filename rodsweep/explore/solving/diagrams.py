@@ -13,10 +13,8 @@ from ...errors import InputError
 from ...model.arm.quantities import QUANTITIES
 from ...model.units import quantity_in_si
 from ..state import MATERIAL_SECTION_BY_LAW, PageState, float_or_text
-from .region_counts import region_counts
+from .curves_and_counts import Dataset, diagram_curves, flag_words, region_counts
 
-Dataset = Any
-"""An xarray.Dataset, or one of its arrays."""
 ROW_COUNT = 20
 """Number of values of the second parameter, for uniform rods of linear material."""
 SLOW_ROW_COUNT = 8
@@ -37,6 +35,12 @@ DIAGRAM_CYCLE_ACCURACY = 1e-4
 """Relative error of the cycles between special points; the diagram does not show these cycles. For the first
 rod of the page and F up to 200, the default error of 1e-6 takes three times as long, and changes the curves
 of folds and torus points by 2e-8 at most."""
+NO_CURVES: dict[str, Any] = {
+    "curves": (),
+    "cycle_curves": (),
+    **dict.fromkeys(("between_x", "between_y", "between_count", "crushing_load"), np.zeros(0)),
+}
+"""Variables of a diagram without curves and without known crossings of its rows."""
 UNKNOWN_CODE = -1
 """Value of `unstable_count` at a point whose number of unstable modes is unknown."""
 CRUSHED_CODE = -2
@@ -54,9 +58,9 @@ def diagram_answer(state: PageState) -> dict[str, Any]:
     x: load, (columns,). y: second parameter, (rows,). unstable_count: number of unstable modes, UNKNOWN_CODE
     or CRUSHED_CODE, (rows, columns). between_x, between_y, between_count: places between neighbouring
     crossings of a row, and numbers of unstable modes there, (places,). crushing_load: the crushing load (zero
-    stretch) of a row, (rows,), or empty. curve_x, curve_y, curve_number, curve_kind: stability boundaries,
-    (curve points,); cycle_curve_x, ...: curves of folds and torus points of cycles. crossing_x, crossing_y,
-    crossing_kind: thresholds on the rows, (crossings,), empty for uniform rods.
+    stretch) of a row, (rows,), or empty. curves: stability boundaries. cycle_curves: curves of folds and
+    torus points of cycles. crossing_x, crossing_y, crossing_kind: thresholds on the rows, (crossings,), empty
+    for uniform rods.
     """
     state.subject()
     if state.tab == "arm":
@@ -82,8 +86,7 @@ def cycle_diagram_answer(state: PageState) -> dict[str, Any]:
         "gamma1": state.parameters()["gamma1"],
     }
     diagram = _diagram_of_rods(state, SLOW_ROW_COUNT, cycles)
-    curve_variables = {name: values for name, values in diagram.items() if name.startswith("cycle_")}
-    return _diagram_of_rods(state) | curve_variables
+    return _diagram_of_rods(state) | {"cycle_curves": diagram["cycle_curves"]}
 
 
 def can_follow_cycle_curves(state: PageState) -> bool:
@@ -143,14 +146,12 @@ def diagram_from_phase_result(data: Dataset, second_parameter: str) -> dict[str,
         is_crushed = flag_words(data["class"].transpose(second_parameter, "F")) == "crushed"
         counts = np.where(is_crushed, CRUSHED_CODE, counts)
     axes = {"x": data["F"].values, "y": data[second_parameter].values}
-    diagram = axes | {"unstable_count": counts} | _empty_curves()
+    diagram = axes | {"unstable_count": counts} | NO_CURVES
     if "crossing_at" in data:
         diagram |= region_counts(data, second_parameter)
-    for curve in ("curve", "cycle_curve"):
-        if f"{curve}_F" in data and f"{curve}_{second_parameter}" in data:
-            names = {"x": "F", "y": second_parameter, "number": "number"}
-            diagram |= {f"{curve}_{key}": data[f"{curve}_{name}"].values for key, name in names.items()}
-            diagram[f"{curve}_kind"] = flag_words(data[f"{curve}_kind"])
+    for prefix in ("curve", "cycle_curve"):
+        if f"{prefix}_F" in data and f"{prefix}_{second_parameter}" in data:
+            diagram[f"{prefix}s"] = diagram_curves(data, prefix, second_parameter)
     return diagram | {"crossing_x": np.zeros(0), "crossing_y": np.zeros(0), "crossing_kind": []}
 
 
@@ -221,20 +222,4 @@ def diagram_from_row_result(
     listed = np.isfinite(loads) & (loads <= largest)
     rows = np.broadcast_to(row_values[:, None], loads.shape)
     crossings = {"crossing_x": loads[listed], "crossing_y": rows[listed], "crossing_kind": list(kind[listed])}
-    return {"x": loads_of_grid, "y": row_values, "unstable_count": counts} | _empty_curves() | crossings
-
-
-def _empty_curves() -> dict[str, Any]:
-    empty = np.zeros(0)
-    none = {"curve_x": empty, "curve_y": empty, "curve_number": empty, "curve_kind": []}
-    row_points = {f"between_{name}": empty for name in ("x", "y", "count")}
-    cycles = {f"cycle_{name}": values for name, values in none.items()}
-    return none | row_points | cycles | {"crushing_load": empty}
-
-
-def flag_words(array: Dataset) -> Any:
-    """Array of the words for an array of integer flags, with the same shape. Flags and words are listed in
-    the attributes of the array; an unlisted flag has the word "none"."""
-    names = str(array.attrs["flag_meanings"]).split()
-    by_code = dict(zip(map(int, np.atleast_1d(array.attrs["flag_values"])), names, strict=True))
-    return np.vectorize(lambda code: by_code.get(int(code), "none"), otypes=[object])(array.values)
+    return {"x": loads_of_grid, "y": row_values, "unstable_count": counts} | NO_CURVES | crossings

@@ -20,7 +20,8 @@ from ...config.parameters_section import DEFAULT_VALUES_OF_PARAMETERS
 from ...errors import InputError
 from ...post.branch_curves import RodBranches, stability_runs
 from ..state import MATERIAL_SECTION_BY_LAW, PageState, dimensionless_parameters_of
-from .diagrams import Dataset, cycle_diagram_answer, diagram_answer, flag_words
+from .curves_and_counts import Dataset, flag_words
+from .diagrams import cycle_diagram_answer, diagram_answer
 from .tip_release import TipPosition, dragged_equilibrium, motion_film_answer, released_motion_answer
 
 AnswerVariables = dict[str, Any]
