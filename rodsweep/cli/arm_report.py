@@ -38,11 +38,17 @@ QUANTITY_NAME_IN_SENTENCE_PATTERN = re.compile(
     rf"|(?:(?<= and )|(?<=, with )|(?<= is not below ))({QUANTITY_NAME_PATTERN})(?= = | are )"
 )
 """Regular expression of a quantity's name at the beginning of a sentence or before " = " and " are "."""
+SEGMENT_NUMBER_PREFIX = "segments, number "
+"""Beginning of a message about one segment."""
 
 
 def with_option_names(sentence: str) -> str:
     """The error message `sentence`, with names of options such as --tip-radius in place of names of
     quantities."""
-    text = QUANTITY_NAME_IN_SENTENCE_PATTERN.sub(lambda match: "--" + match[0].replace("_", "-"), sentence)
+    # Quantities inside a segment are not options, so only "segments" itself is one there.
+    replacements = 1 if sentence.startswith(SEGMENT_NUMBER_PREFIX) else 0
+    text = QUANTITY_NAME_IN_SENTENCE_PATTERN.sub(
+        lambda match: "--" + match[0].replace("_", "-"), sentence, count=replacements
+    )
     text = text.replace("--segments", "--segment")
     return text if text.startswith("--") else f"--{text}"

@@ -11,6 +11,7 @@ from pydantic import Field, model_validator
 from ..errors import InputError, short_repr
 from ..model.material.profile import FACTOR_NAMES, Profile
 from ..model.material.rod_material import RodMaterial
+from ..wording import counted
 from .values import Number, StrictConfigSection, cell_number
 
 MAX_PROFILE_ROWS = 1000
@@ -54,7 +55,8 @@ class ProfileTable(StrictConfigSection):
         for name, column in columns.items():
             if len(column) != len(self.u):
                 raise ValueError(
-                    f"{name} has {len(column)} values and u has {len(self.u)}; give one value for each u"
+                    f"{name} has {counted(len(column), 'value')} and u has {len(self.u)}; give one value for "
+                    "each u"
                 )
         return Profile(tuple(self.u), tuple(zip(*columns.values(), strict=True)))
 
@@ -145,8 +147,8 @@ def read_profile(path: Path) -> dict[str, list[float]]:
         row_name = f"{file_text}: row {number}"
         if len(row) != len(header):
             raise InputError(
-                f"{row_name} has {len(row)} values, but the header names {len(header)}; give a value for "
-                "each name of the header"
+                f"{row_name} has {counted(len(row), 'value')}, but the header names {len(header)}; give a "
+                "value for each name of the header"
             )
         for name, cell in zip(header, row, strict=True):
             try:

@@ -61,7 +61,7 @@ def test_rows_at_the_smallest_distance_are_taken_whatever_the_rounding():
             "u,k3\n0,1\n0.5,1\n0.5000001,2\n1,2\n",
             "two rows near u = 0.5 differ by 1e-07 in u; allowed: 0 (a jump) or at least 1e-06",
         ),
-        ("u,k3\n0,1\n1\n", "row 2 has 1 values, but the header names 2"),
+        ("u,k3\n0,1\n1\n", "row 2 has 1 value, but the header names 2"),
         ("u,k3\n0,1\n1,one\n", "row 2: k3 = 'one' is not a number"),
         (
             "u,k9\n0,1\n1,1\n",
@@ -94,7 +94,7 @@ def test_profiles_that_are_none_are_refused_in_a_sentence(tmp_path, text, senten
         ("material: {profile: {u: [0, 1], k3: []}}", "", "material.profile: k3 has 0 values and u has 2"),
         ("material: {profile: {u: [0, 1], k3: 2}}", "", "k3 = 2 is not allowed; it should be a list of"),
         ("material: {}", "", "material: no key is given; give law, section or profile"),
-        ("material: {profile: {u: [0, 1], k3: [1]}}", "", "material.profile: k3 has 1 values and u has 2"),
+        ("material: {profile: {u: [0, 1], k3: [1]}}", "", "material.profile: k3 has 1 value and u has 2"),
     ],
 )
 def test_bad_materials_are_refused_in_a_sentence(tmp_path, rest, more, sentence):
@@ -114,6 +114,31 @@ def test_the_tip_of_a_cone_is_crushed_first():
     with pytest.raises(InputError, match="the weakest section of the arms is crushed at 10"):
         rs.Rod(F=10, **rod)
     assert rs.Rod(F=100, law="neo_hookean", **rod).spectrum().certified
+
+
+@pytest.mark.parametrize("section", ["fixed", "swelling"])
+@pytest.mark.parametrize(("F", "taper", "limit"), [(1.001e7, 1, "10000000"), (1e100, 0.5, "2500000")])
+def test_rubber_compressed_beyond_its_digits_is_refused(section, F, taper, limit):
+    rod = {"k1": 1e4, "k2": 1e3, "gamma3": 1e-3, "taper": taper, "law": "neo_hookean", "section": section}
+    with pytest.raises(InputError, match=f"is above {limit}, 1000 times the stretch stiffness"):
+        rs.Rod(F=F, **rod)
+    assert rs.Rod(F=0.9 * float(limit), **rod).parameters["F"] == 0.9 * float(limit)
+
+
+def test_searches_that_compress_rubber_beyond_its_digits_are_refused():
+    rod = rs.Rod(k1=0.01, k2=1e3, gamma3=1e-3, law="neo_hookean")
+    with pytest.raises(InputError, match="thresholds: F = 11 is above 10, 1000 times the stretch stiffness"):
+        rod.thresholds(F_max=11)
+    with pytest.raises(InputError, match=r"criticality: F = 1e\+100 is above 10"):
+        rod.criticality(F_max=1e100)
+    with pytest.raises(InputError, match="branch: F = 5 is above 1, 1000 times"):
+        rod.replace(F=5).branch(along="k1", start=0.001, stop=200)
+
+
+def test_a_list_of_points_with_rubber_compressed_beyond_its_digits_is_refused(tmp_path):
+    (tmp_path / "rods.csv").write_text("F,k1,k2,gamma3\n1,9,9,0.1\n9001,9,9,0.1\n")
+    with pytest.raises(InputError, match="line 3: F = 9001 is above 9000, 1000 times the stretch stiffness"):
+        rs.sweep("spectrum", points=tmp_path / "rods.csv", law="neo_hookean")
 
 
 def test_a_run_stores_what_was_asked_and_continues_only_that(command):

@@ -98,3 +98,19 @@ def test_the_relative_load_is_1_where_the_weakest_section_is_crushed(taper):
         Rod(F=1.001 * crushing, **at_base)
     rubber = Rod(F=3 * crushing, **at_base, material=RodMaterial("neo_hookean"))
     assert rubber.material.crushing_ratio(rubber.F, rubber.k1, rubber.taper) == 0
+
+
+@pytest.mark.parametrize("section", ["fixed", "swelling"])
+@pytest.mark.parametrize("pull", [1e2, 1e6, 1.1e6, 1e60, 1e103, 1e200])
+def test_the_stretch_of_strongly_pulled_rubber_has_all_digits(section, pull):
+    # nu^3 - 3 |x| nu^2 = 1, so nu = 3 |x| + 1/nu^2
+    shortening = law_of("neo_hookean", section).shortening(-pull)
+    assert 1 - shortening == pytest.approx(3 * pull + 1 / (9 * pull) / pull, rel=1e-13)
+
+
+def test_rubber_has_nearly_all_digits_up_to_its_largest_load():
+    law = law_of("neo_hookean", "fixed")
+    nu = 1 - law.shortening(law.largest_load)
+    # 3 x nu^2 = 1 - nu^3: the residual over its slope is the error of nu
+    error = (1 - nu**3 - 3 * law.largest_load * nu**2) / (6 * law.largest_load * nu)
+    assert abs(error) < 1e-14 * nu

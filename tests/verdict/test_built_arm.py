@@ -174,6 +174,10 @@ def test_another_arm_replaces_the_shape():
     ("words", "sentence"),
     [
         (["--segment", "12 cm: radios 6 mm"], "--segment, number 1: unknown key radios; a segment has"),
+        (
+            ["--segment", "12 cm: radius 6 mm, inner_radius 7 mm"],
+            "--segment, number 1: inner_radius = '7 mm' is not below radius = '6 mm'",
+        ),
         (["--segment", "12 cm: radius 6 mm", "--radius", "5 mm"], "--radius = '5 mm' and --segment are both"),
         (
             ["--segment", "12 cm: radius 6 mm", "--length", "11 cm"],

@@ -18,6 +18,11 @@ import numpy as np
 FloatOrArray = Any
 """A float, or an array of floats of any shape."""
 
+LARGEST_RUBBER_LOAD = 1e3
+"""Largest load F/k1 of rubber, which compresses rubber to nu = 0.018 of its length. There the rounding error
+of 1 - nu is some 1e-15 of nu. At F/k1 = 1e9 it is 1e-12: errors of eigenvalues were 400 times the stated."""
+CUBIC_LOAD = 1e6
+"""Pull -F/k1 beyond which nu = 3 |F|/k1 to all digits; the cube of |F|/k1 may overflow."""
 SHORTENING_NEWTON_STEPS = 2
 """Newton steps for the shortening e = 1 - nu, which double the correct digits. Cardano's formula gives nu, so
 that e = 1 - nu loses digits by cancellation for small loads; the residual of e has no cancellation."""
@@ -32,7 +37,8 @@ class Law:
     1)^2. stress: W'(h1). stiffness: W''(h1). stiffness_slope, stiffness_second_derivative: W''' and W''''.
     bending_factor: B(h1). bending_factor_slope, bending_factor_second_derivative: B' and B''. shortening: 1 -
     nu at the load x = F/k1, from W'(nu) = -x, without cancellation for small loads. crushing_load: the load x
-    that crushes the rod; inf if no force crushes the rod."""
+    that crushes the rod; inf if no force crushes the rod. largest_load: largest load x at which nu = 1 -
+    shortening has nearly all digits; inf if the rod is crushed before."""
 
     law_name: str
     section_name: str
@@ -46,12 +52,14 @@ class Law:
     bending_factor_second_derivative: Callable[[FloatOrArray], FloatOrArray]
     shortening: Callable[[FloatOrArray], FloatOrArray]
     crushing_load: float = np.inf
+    largest_load: float = np.inf
 
 
 def _neo_hookean_shortening(x: FloatOrArray) -> FloatOrArray:
     """Shortening e = 1 - nu of neo-Hookean rubber under the load x = F/k1, (...,); nu^3 + 3 x nu^2 = 1.
     Cardano's formula gives a start for Newton's method for e."""
-    x = np.asarray(x, dtype=float)
+    pull = np.asarray(x, dtype=float)
+    x = np.maximum(pull, -CUBIC_LOAD)
     discriminant = 0.25 - x**3
     root = np.cbrt(0.5 + np.sqrt(np.maximum(discriminant, 0.0)))
     nu = root**2 - x + (x / root) ** 2
@@ -64,6 +72,7 @@ def _neo_hookean_shortening(x: FloatOrArray) -> FloatOrArray:
         nu = 1 - e
         residual = 3 * x * nu**2 - e * (3 - 3 * e + e**2)
         e = e + residual / (3 * nu * (nu + 2 * x))
+    e = np.where(pull < -CUBIC_LOAD, 1 + 3 * pull, e)
     return e if e.ndim else float(e)
 
 
@@ -101,6 +110,7 @@ NEO_HOOKEAN_CONSTITUTIVE_LAW = Law(
     bending_factor_slope=_zeros,
     bending_factor_second_derivative=_zeros,
     shortening=_neo_hookean_shortening,
+    largest_load=LARGEST_RUBBER_LOAD,
 )
 SWELLING_CONSTITUTIVE_LAW = replace(
     NEO_HOOKEAN_CONSTITUTIVE_LAW,

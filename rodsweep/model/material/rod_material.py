@@ -98,6 +98,17 @@ class RodMaterial:
         crushes the arm. taper: taper of the arm."""
         return self.constitutive_law.crushing_load * smallest_factor_along(self.profile, taper, "k1")
 
+    def refuse_extreme_compression(self, F: float, k1: float, taper: float) -> None:
+        """Raises ValueError if the force compresses the weakest section beyond the law's `largest_load`. F:
+        force. k1: stretch stiffness at the base. taper: tip radius over base radius."""
+        largest_load = self.constitutive_law.largest_load
+        limit = largest_load * smallest_factor_along(self.profile, taper, "k1") * k1
+        if limit < F:
+            raise ValueError(
+                f"F = {F:.15g} is above {limit:.15g}, {largest_load:g} times the stretch stiffness of the "
+                "weakest section; rubber this compressed cannot be computed, so give a smaller force"
+            )
+
     def crushing_ratio(self, F: float, k1: float, taper: float) -> float:
         """F divided by the force that crushes the weakest section; 0 if no force crushes the arm. k1: stretch
         stiffness at the base. taper: tip radius over base radius."""

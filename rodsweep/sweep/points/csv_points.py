@@ -14,7 +14,7 @@ from ...errors import InputError, short_repr
 from ...model.material.rod_material import DEFAULT_MATERIAL, RodMaterial
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
-from ...wording import enumeration
+from ...wording import counted, enumeration
 from .points import NEUTRAL_VALUES
 
 MAX_LINE_LENGTH = 10_000
@@ -83,8 +83,8 @@ def _row_numbers(row: list[str], header: list[str], row_text: str, material: Rod
     model. header: names of the columns. row_text: file and line, for the message."""
     if len(row) != len(header):
         raise InputError(
-            f"{row_text} has {len(row)} values, but the header names {len(header)}; give a value for each "
-            "name of the header"
+            f"{row_text} has {counted(len(row), 'value')}, but the header names {len(header)}; give a "
+            "value for each name of the header"
         )
     numbers = []
     for cell, name in zip(row, header, strict=True):
@@ -95,7 +95,8 @@ def _row_numbers(row: list[str], header: list[str], row_text: str, material: Rod
     parameters: dict[str, Any] = {**NEUTRAL_VALUES, **dict(zip(header, numbers, strict=True))}
     try:
         # The rod itself checks combinations such as F below k1, so that no rule is written twice.
-        Rod(**parameters, material=material)
+        rod = Rod(**parameters, material=material)
+        material.refuse_extreme_compression(rod.F, rod.k1, rod.taper)
     except ValueError as error:
         raise InputError(f"{row_text}: {error}") from None
     return numbers

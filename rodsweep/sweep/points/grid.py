@@ -129,7 +129,12 @@ def refuse_invalid_axes(
         require_in_range(PARAMETERS[name].allowed, name, column)
     if not set(FORCE_AND_STRETCH_STIFFNESS) <= axes.keys():
         return
-    crushing_forces = material.relative_crushing_forces(axes.get("taper", np.ones(1)))
+    tapers = axes.get("taper", np.ones(1))
+    try:
+        material.refuse_extreme_compression(axes["F"].max(), axes["k1"].min(), tapers.min())
+    except ValueError as error:
+        raise InputError(f"parameters.{error}") from None
+    crushing_forces = material.relative_crushing_forces(tapers)
     if (crushing_forces == 1).all():
         _refuse_crushed(axes["F"], axes["k1"], allows_crushed_rods)
     elif allows_crushed_rods and axes["F"].min() >= axes["k1"].max() * crushing_forces.max():

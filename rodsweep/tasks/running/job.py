@@ -27,6 +27,7 @@ from ...sweep.points.ranges import Shard
 from .. import TASKS
 from ..arm.point_solver import SkippingSolver, solver_with_outcome_cache
 from ..arm.validity import ArmValidity
+from ..base_classes import CertifiedTask
 from ..protocol import Solver, Task
 
 MAX_FILE_BYTES = 2**63 - 1
@@ -156,7 +157,23 @@ def job_of_config(
             "how many values are stored"
         )
     points = replace(points_of(config, path.parent, flutter), material=config.rod_material)
-    return Job(path, config, source, points, TASKS[config.task](config, points), document, layout)
+    task = TASKS[config.task](config, points)
+    _refuse_extreme_search(task, points)
+    return Job(path, config, source, points, task, document, layout)
+
+
+def _refuse_extreme_search(task: Task, points: Points) -> None:
+    """Raises InputError if a search compresses rubber beyond the largest load of its law."""
+    if not isinstance(task, CertifiedTask) or not task.searched_range_ends():
+        return
+    values = task.parameter_values
+    if not all(values[name].size for name in ("F", "k1")):
+        return
+    taper = values["taper"].min() if "taper" in values else 1.0
+    try:
+        points.material.refuse_extreme_compression(values["F"].max(), values["k1"].min(), taper)
+    except ValueError as error:
+        raise InputError(f"{task.config.task}: {error}") from None
 
 
 def plan_without_solver(config: Config, points: Points) -> FilePlan:
