@@ -28,7 +28,7 @@ from ..parameter_path import ParameterPath, coefficients_at, dispersion_coeffici
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoxSettings(KernelConstants):
-    """Settings for the a-priori box of all eigenvalues, and for the disc about w = 0 in which D has no zero."""
+    """Settings for the a-priori box of all eigenvalues, and for the disc about w = 0 without a zero of D."""
 
     padding_fraction: float = 0.01
     """This fraction of the depth is added to both bounds of the box."""

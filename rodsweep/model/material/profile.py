@@ -79,14 +79,6 @@ class Profile:
             )
 
     @cached_property
-    def _hash(self) -> int:
-        return hash((self.u, self.rows))
-
-    def __hash__(self) -> int:
-        # Cached, as rods are keys of caches. Hashes of numbers are the same in all processes.
-        return self._hash
-
-    @cached_property
     def breaks(self) -> Array:
         """Ends of the intervals of u on which all factors are smooth, increasing from 0 to 1, (breaks,)."""
         return np.unique(self.u)
