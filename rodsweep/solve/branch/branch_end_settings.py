@@ -37,9 +37,11 @@ class BranchEndSettings:
     range_end_step_tolerance: float = 1e-6
     """Tolerance of the predicted arc length to the end of the parameter range, divided by the step. Newton's
     method then solves the cycle exactly at this end."""
-    higher_powers_safety_factor: float = 2.0
-    """Safety factor on the effect of higher powers of the distance from a Hopf point, for the errors of its
-    normal form. Of 84 random rods, no error of a cycle at an end of the range exceeded its estimate."""
+    normal_form_safety_factor: float = 2.0
+    """Safety factor on the measured errors of the normal form of a Hopf point, and on the effect of higher
+    powers of the distance from this point on them. The measured errors are close to the true ones: without
+    the factor on them, the errors of 84 cycles of random rods at ends of ranges reached 0.997 times their
+    estimates."""
     relative_parameter_error_at_range_end: float = 1e-15
     """Relative error of the parameter at an end of the range."""
     max_peak_shift_fraction: float = 0.05

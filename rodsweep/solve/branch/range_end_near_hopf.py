@@ -105,8 +105,7 @@ def _errors_of_normal_form(start: BranchCycle, hopf: HopfBranchStart, distance: 
         estimate = fraction * (np.array(normal_form) / measured - 1)
         higher_powers = abs(estimate - last_estimate) / (1 - fraction / last_fraction)
         bounds.append(
-            abs(estimate)
-            + BRANCH_END_SETTINGS.higher_powers_safety_factor * higher_powers
+            BRANCH_END_SETTINGS.normal_form_safety_factor * (abs(estimate) + higher_powers)
             + fraction * cycle_errors
         )
         last_fraction, last_estimate = fraction, estimate
