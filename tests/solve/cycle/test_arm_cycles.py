@@ -10,6 +10,7 @@ from reference.displaced_segments import Segments
 from reference.strain_collocation import Arm, Law
 from surveyed import survey_only
 
+from rodsweep.bench.limit_cycle.swept_rods import TWO_SEGMENT_PROFILE
 from rodsweep.determinant.arm.determinant import arm_determinant, forget_arm_determinants
 from rodsweep.discretization.elements.mesh import mesh_with_edges
 from rodsweep.discretization.explicit_system import ExplicitSystem
@@ -37,6 +38,7 @@ from rodsweep.solve.hopf.criticality import solve_criticality
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CycleMotion
 from rodsweep.solve.orbit.newton import newton
+from rodsweep.solve.spectrum.path import leader_in_range
 
 STEP = Profile((0.0, 0.4, 0.4, 1.0), ((1.0,) * 6,) * 2 + ((3.0, 0.5, 2.0, 1.0, 1.5, 0.7),) * 2)
 JUMP_OF_ONE = Profile((0.0, 0.4, 0.4, 1.0), ((1.0,) * len(FACTOR_NAMES),) * 4)
@@ -433,6 +435,25 @@ def test_a_neighbour_is_restored_with_its_build():
     beside = replace(rod, F=51.0)
     ends = [solve_cycle(beside, request(1e-5), each, "F").measures.period for each in (neighbour, again)]
     assert ends[0] == ends[1]
+
+
+def test_a_chain_of_arms_goes_on_from_a_checkpoint_with_its_range():
+    """The leading eigenvalue has the same bits, with propagators that are interpolated again."""
+    material = RodMaterial(profile=TWO_SEGMENT_PROFILE)
+    rods = [Rod(F=14.0, k1=1e4 + 50 * k, k2=1e2, gamma3=1e-2, material=material) for k in range(3)]
+    neighbour = None
+    for rod in rods[:2]:
+        neighbour = solve_cycle(rod, request(1e-4), neighbour, "k1").neighbour
+    again = CycleStart.from_arrays(neighbour.arrays())
+    assert again.arm_range == neighbour.arm_range is not None
+    first = solve_cycle(rods[2], request(1e-4), neighbour, "k1")
+    leader_in_range.family_and_hulls_of_range.cache_clear()
+    second = solve_cycle(rods[2], request(1e-4), again, "k1")
+    assert (first.linear_growth_rate, first.linear_frequency) == (
+        second.linear_growth_rate,
+        second.linear_frequency,
+    )
+    assert first.neighbour.arm_range == neighbour.arm_range
 
 
 def test_a_slow_fast_cycle_far_longer_than_the_time_constant_of_its_mode_is_found():

@@ -108,7 +108,7 @@ def leader_in_range(
         return None
     # A rod would be a slower key, because its values are tested whenever one is made.
     values = {**rod.values, name: PARAMETERS[name].value(arm_range.low)}
-    family_data = _family_and_hulls(tuple(values.items()), rod.material, name, arm_range)
+    family_data = family_and_hulls_of_range(tuple(values.items()), rod.material, name, arm_range)
     if family_data is None:
         return None
     upper_w = guesses.tolist()
@@ -126,7 +126,7 @@ def leader_in_range(
 
 
 @lru_cache(maxsize=ARM_RANGE_SETTINGS.max_cached_ranges)
-def _family_and_hulls(
+def family_and_hulls_of_range(
     values: tuple[tuple[str, float], ...], material: RodMaterial, name: str, arm_range: ArmRange
 ) -> tuple[ArmFamily, PathHulls] | None:
     """(family of the arms of a range, hulls that contain their spectra), cached; None if the arms are not
