@@ -2,7 +2,7 @@
 
 import socket
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -25,7 +25,7 @@ from ..sweep.progress import (
     display_listener,
 )
 from ..tasks.protocol import NamedArrays, Solver, SweepWideResult, SweepWideSolver
-from ..tasks.running.failures import FailureReasons, failure_reasons_of_changed_points, parameters_text
+from ..tasks.running.failures import FailureReasons, failure_reasons_of_changed_points
 from ..tasks.running.in_memory import blas_pool, view_in_memory
 from ..tasks.running.job import Job, plan_in_memory
 from ..tasks.running.unforeseen_exceptions import PointExceptionNote, guarded_solver
@@ -67,7 +67,7 @@ def solve_in_process(
                 view = view_in_memory(job, plan, values)
                 sweep_wide = _sweep_wide_result(solver.sweep_wide_solver, view, display)
                 _change_points(sweep_wide, job, plan, values, messages)
-                reasons += failure_reasons_of_changed_points(sweep_wide, solver.statuses, _point_text_of(job))
+                reasons += failure_reasons_of_changed_points(sweep_wide, solver.statuses, job.point_text)
         except BaseException:  # a solve was interrupted, by Ctrl-C too: cached solvers may be half changed
             destroy_pooled_solvers()
             raise
@@ -83,11 +83,6 @@ def solve_in_process(
         run_attributes=_attributes_of_solve(start_time, reasons),
         messages=messages,
     )
-
-
-def _point_text_of(job: Job) -> Callable[[int], str]:
-    """Function from the flat index of a point to a text with its parameters."""
-    return lambda index: parameters_text(job.points.values(index))
 
 
 def _attributes_of_solve(start_time: str, reasons: Sequence[str]) -> dict[str, Any]:
@@ -110,7 +105,7 @@ def _solve_points(
 ) -> tuple[dict[str, np.ndarray], list[str], list[str]]:
     """Returns (variables, messages, reasons). variables: values by name of the variable, with the dimensions
     of the points first. messages: one message for each point. reasons: reasons why points failed."""
-    reasons = FailureReasons(_point_text_of(job))
+    reasons = FailureReasons(job.point_text)
     point_count = job.points.count
     columns = {
         name: np.repeat(value[None], point_count, axis=0) for name, value in plan.layout.empty_point.items()

@@ -18,7 +18,7 @@ from ...sweep.points.ranges import IndexRange, index_count
 from ...sweep.ranks import Ranks
 from ...sweep.stop import StopRequest
 from ...tasks.protocol import SweepWideResult
-from ...tasks.running.failures import failure_reasons_of_changed_points, parameters_text
+from ...tasks.running.failures import failure_reasons_of_changed_points
 from ...tasks.running.job import Job, job_of_config, plan_of
 from ...tasks.running.unforeseen_exceptions import TracebackLog, guarded_solver
 from ...wording import counted
@@ -62,14 +62,14 @@ class _RankRun:
         self.clock_at_start = time.monotonic()
         self.date_at_start = provenance.utc_time()
         self.seconds = 0.0
-        self.log = TracebackLog(output, ranks.rank, self._point_text, request.strict)
+        self.log = TracebackLog(output, ranks.rank, self.job.point_text, request.strict)
         self.solver = guarded_solver(job.solver(), job.layout, self.log)
         self.kernels = provenance.merged_blas_kernels(ranks.gather(blas_description()) or [])
         self.plan = plan_of(job, self.solver, self.shard, self.kernels)
         self.prepare = cache(self.solver.warm_up)
         self.shard_solver = ShardSolver(
             ranks=ranks, job=job, solver=self.solver, plan=self.plan, shard=self.shard, output=output,
-            stop=stop, quiet=request.quiet, point_text=self._point_text,
+            stop=stop, quiet=request.quiet, point_text=self.job.point_text,
         )  # fmt: skip
         sweep_wide = self.solver.sweep_wide_solver
         self.sweep_wide = sweep_wide and SweepWideComputation(
@@ -164,9 +164,6 @@ class _RankRun:
         if sentence := provenance.several_kernels_warning(kernels):
             click.echo(f"{self.output}: {sentence}")
 
-    def _point_text(self, index: int) -> str:
-        return parameters_text(self.job.points.values(index))
-
     def _write_variables_and_check_missing(self, pending: PendingSweepWideVariables) -> bool:
         """Writes the variables that depend on all points into the file; returns whether these are still
         missing."""
@@ -177,7 +174,7 @@ class _RankRun:
             self.store.add_journals({"stopped": self.stop.name})
             return True
         attributes = {"finished": provenance.utc_time(), "stopped": self.stop.name}
-        reasons = failure_reasons_of_changed_points(result, self.solver.statuses, self._point_text)
+        reasons = failure_reasons_of_changed_points(result, self.solver.statuses, self.job.point_text)
         self.store.finish(attributes, FinalVariables(result.variables, result.changed_points, reasons))
         if self.sweep_wide:
             self.sweep_wide.item_results.remove_all()

@@ -102,6 +102,10 @@ class Points:
             values[name] = float(column[index_on_axis])
         return {name: values[name] for name in self.names}
 
+    def text(self, index: int) -> str:
+        """Text with the parameters of the point at a flat index: `F = 40, k1 = 200`."""
+        return ", ".join(f"{name} = {value:.15g}" for name, value in self.values(index).items())
+
     def values_of(self, indices: NDArray[np.int64]) -> dict[str, Array]:
         """Parameter values, (n,) each, of the points at flat indices, (n,), by name."""
         indices_by_axis = (

@@ -1,6 +1,6 @@
 """Reasons why points failed, each with one example, for the last lines of a run and for the result file."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from types import SimpleNamespace
 from typing import Any
@@ -11,11 +11,6 @@ from ...solve.status import PointStatus
 from ...sweep.loop import PointIndexOrIndices
 from ...sweep.points.groups import GroupResult
 from ..protocol import SweepWideResult
-
-
-def parameters_text(values: Mapping[str, float]) -> str:
-    """Text with the parameters of a point: `F=40.0, k1=200.0`."""
-    return ", ".join(f"{name}={value!r}" for name, value in values.items())
 
 
 @dataclass(frozen=True, slots=True)

@@ -70,6 +70,10 @@ class Job:
         """Quantities of the config's arm as coordinates of the points; empty if the config has no arm."""
         return arm_variables(self.config.parameters, self.points)
 
+    def point_text(self, index: int) -> str:
+        """Text with the parameters of the point at a flat index: `F=40.0, k1=200.0`."""
+        return ", ".join(f"{name}={value!r}" for name, value in self.points.values(index).items())
+
     def solver(self) -> Solver:
         """The solver of the task; for an arm, the results also contain values in SI units and the validity of
         the model. Starts PETSc."""

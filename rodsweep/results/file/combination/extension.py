@@ -223,7 +223,6 @@ def _positions_in_list(header: ResultHeader, old: Points, new: Points) -> Indice
         index_by_row.setdefault(row.tobytes(), i)
     positions = np.array([index_by_row.get(row.tobytes(), -1) for row in rows[1]], dtype=np.int64)
     if (positions < 0).any():
-        values = old.values(int(np.argmax(positions < 0)))
-        point_text = ", ".join(f"{name} = {value:.15g}" for name, value in values.items())
+        point_text = old.text(int(np.argmax(positions < 0)))
         _refuse_difference(header, f"the point {point_text} is in the file and not in the list")
     return positions

@@ -82,7 +82,7 @@ class JoinedFile:
                 index = int(records["index"][i])
                 pair = (self.sources[owner[index]], self.sources[number])
                 if not self._is_rounding_error(name, stored_records[i][name], records[i][name], pair):
-                    text = _point_text(self.plan.points, index)
+                    text = self.plan.points.text(index)
                     paths = " and ".join(str(source.path) for source in pair)
                     raise InputError(
                         f"{paths} disagree about the point {text}: the values of {name} differ; repeat one "
@@ -102,11 +102,6 @@ class JoinedFile:
         tolerance = MAX_DIFFERENCE_PER_ACCURACY * float(self.plan.config["accuracy"])
         scale = np.nanmax(np.abs([a, b]), initial=0.0)
         return bool(np.allclose(a, b, rtol=tolerance, atol=tolerance * scale, equal_nan=True))
-
-
-def _point_text(points: Points, index: int) -> str:
-    """Text with the parameters of the point at a flat index."""
-    return ", ".join(f"{name} = {value:.15g}" for name, value in points.values(index).items())
 
 
 def joined_file_of(sources: Sequence[ResultHeader], planner: FilePlanMaker) -> JoinedFile:
@@ -166,7 +161,7 @@ def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]
     if not covered.all():
         raise InputError(
             f"together the files do not form a full grid: {np.count_nonzero(~covered)} of {covered.size} "
-            f"points are in no file, the first at {_point_text(union, int(np.argmin(covered)))}; compute "
+            f"points are in no file, the first at {union.text(int(np.argmin(covered)))}; compute "
             "these points into a separate file, or merge fewer files"
         )
     return union, maps
