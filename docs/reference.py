@@ -25,8 +25,8 @@ from rodsweep.config.tasks import CONFIGS
 from rodsweep.model.arm.quantities import ALL_QUANTITIES
 from rodsweep.model.parameters import PARAMETERS
 from rodsweep.results.file.validation import FORMAT
-from rodsweep.results.layouts.curve_extrema import EXTREMA_UNLOCATED, fold_curve_extremum_variables
 from rodsweep.results.layouts.detached_branches import CURVES_LOST_BEYOND, DETACHED_ROW_VARIABLES_BY_NAME
+from rodsweep.results.layouts.fold_curve_extrema import EXTREMA_UNLOCATED, fold_curve_extremum_variables
 from rodsweep.results.layouts.phase_diagram import (
     CYCLE_CURVE_ENDS,
     STABILITY_CLASSES,

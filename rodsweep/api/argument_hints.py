@@ -26,7 +26,7 @@ def unknown_arm_argument_hint(name: str) -> str:
         return UNKNOWN_ARM_ARGUMENT_HINTS[name]
     if name in PARAMETERS:
         return f"{name} follows from the quantities of the arm; rs.Rod(arm=arm, {name}=...) replaces it"
-    return _option_hint(name, "arm")
+    return _hint_at_methods_with_option(name, "arm")
 
 
 def rod_argument_hint(name: str) -> str:
@@ -35,10 +35,10 @@ def rod_argument_hint(name: str) -> str:
         return UNKNOWN_ROD_ARGUMENT_HINTS[name]
     if name in QUANTITIES or name == "segments":
         return f"{name} belongs to an arm: rs.Rod(arm=rs.Arm({name}=..., ...))"
-    return _option_hint(name, "rod")
+    return _hint_at_methods_with_option(name, "rod")
 
 
-def _option_hint(name: str, owner: str) -> str:
+def _hint_at_methods_with_option(name: str, owner: str) -> str:
     """Advice on an option of tasks: the methods of `owner` that take it; empty if `name` is no option."""
     tasks = [task for task, options in KEYWORDS_OF_TASK.items() if name in options.__annotations__]
     return f"{name} is an option of tasks, as in {owner}.{tasks[0]}({name}=...)" if tasks else ""

@@ -25,7 +25,7 @@ from .solving_in_process import progress_display, solve_in_process
 
 COMPLETE_STATUSES = (0, 1)
 """Exit statuses of a complete run: 0 if all points succeeded, 1 if some points failed."""
-REFUSAL_OF_STATUS: dict[int, type[Exception]] = {2: InputError, 3: EnvironmentIncomplete}
+EXCEPTION_OF_EXIT_STATUS: dict[int, type[Exception]] = {2: InputError, 3: EnvironmentIncomplete}
 """Class of the exception for each exit status of a run that was refused."""
 RANKS_ALLOWED_FOR_ANY_SWEEP = 64
 """A sweep may have this number of ranks whatever the number of its points."""
@@ -148,7 +148,7 @@ def _run_failure_exception(launcher: str, status: int, errors: str, is_file_crea
     file. errors: standard error of the run."""
     lines = [line for line in errors.splitlines() if line.startswith("rodsweep: ")]
     if lines:
-        return REFUSAL_OF_STATUS.get(status, RuntimeError)(lines[0].removeprefix("rodsweep: "))
+        return EXCEPTION_OF_EXIT_STATUS.get(status, RuntimeError)(lines[0].removeprefix("rodsweep: "))
     if is_file_created or "Traceback" in errors:
         return RuntimeError(errors[-MAX_QUOTED_LENGTH:])
     output = " ".join(errors.split()) or f"exit status {status}"

@@ -119,11 +119,11 @@ def _lines_on_points_without_rod(points: Points) -> list[str]:
     lines = list[str]()
     rods = rod_numbers(points)
     if rods is not None:
-        modelled_rods = rods if points.arm_statuses is None else rods[points.arm_statuses == SLENDER]
+        modelled_rods = rods if points.validity_codes is None else rods[points.validity_codes == SLENDER]
         rods_text = counted(len(np.unique(modelled_rods)), "different rod")
         lines.append(f"{rods_text} at {counted(len(modelled_rods), 'point')}; equal rods are solved once")
     for status in OutsideModelStatus:
-        point_count = 0 if points.arm_statuses is None else int((points.arm_statuses == status).sum())
+        point_count = 0 if points.validity_codes is None else int((points.validity_codes == status).sum())
         if point_count:
             lines.append(
                 f"{status.name} at {count_of_total(point_count, points.count, 'point')}: {status.sentence}"

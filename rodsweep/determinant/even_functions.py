@@ -28,7 +28,7 @@ class EvenFunctionSettings(KernelConstants):
     squares_below: float = 0.1
     """Otherwise, if |z+ z-| / (|M|^2 + 4 |P|^2) is at most this number, `even_sum_by_squares` computes s and
     d; else `even_functions_by_roots` does."""
-    scale_rounding: float = 3.0
+    log_scale_rounding_in_epsilons: float = 3.0
     """Bound of the relative rounding error of S, the logarithm of the scale, divided by
     TWO_MACHINE_EPSILONS."""
     max_scale_without_rounding: float = 8.0

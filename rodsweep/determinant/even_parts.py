@@ -165,7 +165,7 @@ def even_parts(w: complex, coefficients: Coefficients) -> EvenSum:
     else:
         even, total, rounding_error = even_sum_by_squares(w, coefficients, rounding_M, rounding_square)
     excess = even.log_scale - EVEN_FUNCTION_SETTINGS.max_scale_without_rounding
-    scale_error = max(1.0, EVEN_FUNCTION_SETTINGS.scale_rounding * excess)
+    scale_error = max(1.0, EVEN_FUNCTION_SETTINGS.log_scale_rounding_in_epsilons * excess)
     return (
         even,
         total,

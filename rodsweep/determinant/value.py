@@ -108,7 +108,7 @@ def determinant_from_parts(w: complex, coefficients: Coefficients, parts: EvenSu
 
 
 @compiled
-def second_difference(
+def scaled_second_derivative_between(
     value_after: DeterminantValue, value_before: DeterminantValue, S: float, h: float
 ) -> complex:
     """D'' exp(-S) by a central difference of D' between w + h (`value_after`) and w - h (`value_before`)."""
@@ -125,7 +125,7 @@ def second_derivative(w: complex, S: float, coefficients: Coefficients) -> compl
     h = DETERMINANT_SETTINGS.second_difference_step_ratio * abs(w)
     value_after = scaled_determinant(w + h, coefficients)
     value_before = scaled_determinant(w - h, coefficients)
-    D_ww = second_difference(value_after, value_before, S, h)
+    D_ww = scaled_second_derivative_between(value_after, value_before, S, h)
     return complex(D_ww.real, 0.0) if w.imag == 0 else D_ww
 
 
@@ -142,7 +142,7 @@ def distance_to_next_root(w: complex, coefficients: Coefficients) -> float:
 
 
 @compiled
-def newton_correction_and_scales(w: complex, coefficients: Coefficients) -> tuple[float, float, float]:
+def eigenvalue_error_and_scales(w: complex, coefficients: Coefficients) -> tuple[float, float, float]:
     """Returns (error, length, wave number) of a uniform rod at w.
 
     error: |D/D'|, in 1/tau2, the distance from w to an eigenvalue to first order, however w was computed. If

@@ -5,6 +5,6 @@ from .stress import balance as stress_balance
 from .stress import jacobian as stress_jacobian
 
 write_balance = stress_balance.write_balance.compiled_for(SE2)
-write_balance_derivative = stress_balance.write_balance_derivative.compiled_for(SE2)
+write_balance_parameter_derivative = stress_balance.write_balance_parameter_derivative.compiled_for(SE2)
 write_velocity_residuals = stress_balance.write_velocity_residuals.compiled_for(SE2)
 write_jacobian = stress_jacobian.write_jacobian.compiled_for(SE2)

@@ -91,7 +91,7 @@ class Page:
         for kind in kinds.STOPPABLE_KINDS:
             if kind in self.solving:
                 self._cancel_request(kind)
-                if kind in kinds.TIP_KINDS:
+                if kind in kinds.TIP_REQUEST_KINDS:
                     self.contents.beating.remove_dragged_shape()
                 elif kind not in kinds.MANUAL_KINDS:
                     self.contents.show_message(kind, SOLVE_STOPPED_SENTENCE)
@@ -100,7 +100,7 @@ class Page:
     def drag(self, kind: str, tip: TipPosition) -> None:
         """Requests the shape with the tip held at `tip`, in L (kind "bent"), or the motion after the tip is
         released there (kind "motion"). A request of the other kind is cancelled."""
-        for tip_kind in kinds.TIP_KINDS:
+        for tip_kind in kinds.TIP_REQUEST_KINDS:
             if tip_kind != kind:
                 self._cancel_request(tip_kind)
         self._send_request(kind, tip)
@@ -139,7 +139,7 @@ class Page:
         except InputError as error:
             self._show_error(str(error))
             return
-        for kind in (kinds.LOAD_KIND, *kinds.TIP_KINDS, *kinds.MANUAL_KINDS):
+        for kind in (kinds.LOAD_KIND, *kinds.TIP_REQUEST_KINDS, *kinds.MANUAL_KINDS):
             self._cancel_request(kind)
         for kind in (*((kinds.LOAD_KIND,) if F is None else ()), *kinds.INSTANT_KINDS):
             self._send_request(kind)
@@ -153,7 +153,7 @@ class Page:
         """Cancels all solves and shows the error message `sentence` in place of all pictures except a drawn
         diagram."""
         self.pause_timer.cancel()
-        for kind in (kinds.LOAD_KIND, *kinds.TIP_KINDS, *kinds.MANUAL_KINDS):
+        for kind in (kinds.LOAD_KIND, *kinds.TIP_REQUEST_KINDS, *kinds.MANUAL_KINDS):
             self._cancel_request(kind)
         for kind in (*kinds.INSTANT_KINDS, *kinds.IDLE_KINDS):
             if kind != "diagram" or kind in self.solving:
@@ -218,7 +218,7 @@ class Page:
             return
         if is_newest:
             self.solving.discard(kind)
-        elif kind in kinds.TIP_KINDS:
+        elif kind in kinds.TIP_REQUEST_KINDS:
             return
         if reply.outcome == "answer":
             if kind == "cycles":

@@ -42,7 +42,7 @@ to 0.43 for the first solve of six tasks beyond the time of the second."""
 MAX_EXTRA_MODES_OF_FOLLOWED_ARM = 9
 """Eigenvalues of an arm are followed only if its number of unstable modes exceeds the number of requested
 modes by at most this number."""
-FIRST_POINT_COST = 2.0
+GROUP_START_TIME_RATIO = 2.0
 """Time of the first point of a group, divided by the time of a point that is solved alone."""
 FOLLOWED_POINT_MS = 0.006
 """Time per point of a group, in which eigenvalues are continued from a neighbouring point, in ms."""
@@ -139,7 +139,7 @@ def followed_spectra_cost(
 ) -> CostEstimate:
     """Estimated cost of the spectra of `points` followed along groups. alone: cost of solving every
     point alone. mode_count: number of eigenvalues."""
-    ratio = FIRST_POINT_COST * groups.count / points.count
+    ratio = GROUP_START_TIME_RATIO * groups.count / points.count
     rods = [points.rod(int(index)) for index in sampled_points_with_rod(points)]
     point_ms = (
         FOLLOWED_ARM_POINT_MS if any(not rod.is_uniform_and_linear for rod in rods) else FOLLOWED_POINT_MS

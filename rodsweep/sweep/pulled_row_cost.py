@@ -77,7 +77,7 @@ def _row_seconds(rod: Rod, start_pull: float) -> float:
 def _boxes_from_pull_to_zero(rod: Rod, pull: float) -> Array | None:
     """Boxes of the covering from `pull` to F = 0; None if no a-priori bound applies."""
     # Imported for rows under pulls only: these modules load the compiler.
-    from ..determinant.certificate.first_boxes import first_boxes
+    from ..determinant.certificate.first_crossing_boxes import first_crossing_boxes
     from ..determinant.parameter_path import ParameterPath
 
-    return first_boxes(ParameterPath(rod.with_values(F=pull), "F"), pull, 0.0) if pull < 0 else None
+    return first_crossing_boxes(ParameterPath(rod.with_values(F=pull), "F"), pull, 0.0) if pull < 0 else None

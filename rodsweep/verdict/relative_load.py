@@ -13,7 +13,7 @@ from typing import TypeVar
 import numpy as np
 
 from ..determinant.certificate.covering import cover_with_boxes
-from ..determinant.certificate.first_boxes import first_boxes
+from ..determinant.certificate.first_crossing_boxes import first_crossing_boxes
 from ..determinant.parameter_path import ParameterPath, coefficients_at, determinant_along_path
 from ..determinant.roots.newton import LocatedEigenvalue
 from ..errors import InputError
@@ -106,7 +106,7 @@ def _first_hopf_force_by_boxes(path: ParameterPath, end_force: float) -> float:
     """Smallest F up to `end_force` at which a pair of modes becomes unstable; inf if no pair does. Covers the
     zeros of the determinant with boxes. Raises FlutterSearchFailed if a smaller F is not excluded."""
     # Boxes exclude all smaller forces; following one mode from F = 0 could miss another one.
-    boxes = first_boxes(path, 0.0, end_force)
+    boxes = first_crossing_boxes(path, 0.0, end_force)
     if boxes is None:
         raise FlutterSearchFailed(
             "the flutter threshold to which a relative load refers is not found, because no bound on the "

@@ -27,7 +27,7 @@ def verdict_sentences(planes: PlanesOfMotion, assessment: Assessment) -> list[st
         return [
             "For some drags the thresholds could not be found: " + "; ".join(plane.thresholds.failures) + "."
         ]
-    headline, *others = _sentences_without_failed_search(planes, assessment)
+    headline, *others = _sentences_if_search_succeeded(planes, assessment)
     return [headline, *_doubt_sentences(planes), *others]
 
 
@@ -38,7 +38,7 @@ def _doubt_sentences(planes: PlanesOfMotion) -> list[str]:
     return [f"For some drags this is not certain: {'; '.join(reasons)}."] if reasons else []
 
 
-def _sentences_without_failed_search(planes: PlanesOfMotion, assessment: Assessment) -> list[str]:
+def _sentences_if_search_succeeded(planes: PlanesOfMotion, assessment: Assessment) -> list[str]:
     """Sentences of the verdict if no search in the first plane failed: see `verdict_sentences`."""
     plane = planes.first
     invalid_effects = assessment.effects_with(Validity.does_not_apply)

@@ -18,7 +18,7 @@ from rodsweep.determinant.certificate.covering import (
     distance_from_zero_bound,
 )
 from rodsweep.determinant.certificate.discs import bidisc_centre, bound_on_bidisc
-from rodsweep.determinant.certificate.first_boxes import first_boxes, path_intervals
+from rodsweep.determinant.certificate.first_crossing_boxes import first_crossing_boxes, path_intervals
 from rodsweep.determinant.parameter_path import (
     ParameterPath,
     coefficients_at,
@@ -136,7 +136,7 @@ def test_no_box_with_a_crossing_is_called_empty_and_regular_ones_hold_one_at_mos
     value = getattr(path.rod, path.name)
     shares = (1.01, 2.0) if path.name == "k1" else (0.5, min(1.5, 0.99 * path.rod.k1 / abs(path.rod.F)))
     low, high = sorted(path.coordinate(share * value) for share in shares)
-    zeros, left, _ = cover_with_boxes(first_boxes(path, low, high), path.origin, path.direction)
+    zeros, left, _ = cover_with_boxes(first_crossing_boxes(path, low, high), path.origin, path.direction)
     assert not left
     for eta, p, *_ in zeros:
         for scale in 10.0 ** rng.uniform(-6, 0, 20):

@@ -384,7 +384,7 @@ def curves_of_changes(accuracy: float) -> Answer:
         )
         seeds += [seed for seed in found if seed is not None]
     curves = boundary_curves_through(plane, seeds)
-    if curves.untraced_count:
+    if curves.untraced_seed_count:
         return None
     answer: dict[str, tuple[float, float]] = {"curves": (len(curves.curves), 0.0)}
     for number, curve in enumerate(curves.curves):
@@ -723,7 +723,7 @@ CASES = {
     "SHAPE_QUADRATURE_SETTINGS": MESH,
     "LOBATTO_SETTINGS": MESH,
     "TIP_VELOCITY_SETTINGS": MESH,
-    "STRESS_FORM_SETTINGS": SMALL_DRAG,
+    "VELOCITY_ELIMINATION_SETTINGS": SMALL_DRAG,
 }
 READ_BY_MOST = ("EVEN_FUNCTION_SETTINGS", "STAGE_NEWTON_SETTINGS")
 """Settings whose change compiles so many functions again that a field takes 8 to 30 seconds."""

@@ -10,7 +10,7 @@ import pytest
 
 from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.nodal_rod import nodal_rod, nodal_rod_derivative
-from rodsweep.discretization.stress.balance import write_balance, write_balance_derivative
+from rodsweep.discretization.stress.balance import write_balance, write_balance_parameter_derivative
 from rodsweep.model.algebra import SE2, SE3
 from rodsweep.model.compiled.digest import kernel_digest, kernel_of
 from rodsweep.model.compiled.unrolling import UnrolledOverAlgebra
@@ -28,8 +28,8 @@ def test_derivative_along_a_parameter_is_that_of_loops_in_python():
     V, G = np.empty((2, 3, GRID.node_count + 1))
     write_balance(SE2, x, V, G, rod, GRID.matrices)
     out = np.empty((2, 3, 3, GRID.node_count + 1))
-    write_balance_derivative.compiled_for(SE2)(x, V, out[0], change, rod, GRID.matrices)
-    write_balance_derivative(SE2, x, V, out[1], change, rod, GRID.matrices)
+    write_balance_parameter_derivative.compiled_for(SE2)(x, V, out[0], change, rod, GRID.matrices)
+    write_balance_parameter_derivative(SE2, x, V, out[1], change, rod, GRID.matrices)
     assert np.abs(out[0] - out[1]).max() <= 1e-13 * np.abs(out[1]).max()
 
 

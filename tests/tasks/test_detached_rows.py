@@ -314,14 +314,14 @@ def test_new_special_points_of_a_row_start_curves_that_lead_to_further_rows():
     results[2] = {"at": np.array([0.2, 0.6])}
     *_, curves = stages.stages(results)
     assert [(point.row_index, point.parameter_value) for point in curves.special_points] == [(3, 0.6)]
-    assert [start.parameter_value for start in curves.starts_of_row(3)] == [0.2]
+    assert [start.parameter_value for start in curves.branch_starts_of_row(3)] == [0.2]
     assert curves.items_to_solve(results) == [3, 4]
 
     results[3] = half(curves.special_points[0], 5.0, [0], [crossing(4, 0.6)])
     results[4] = half(curves.special_points[0], 1.0, [0])
     *_, rows = stages.stages(results)
     assert rows.items_to_solve(results) == [5]
-    assert [start.parameter_value for start in rows.starts_of_row(4)] == [0.6]
+    assert [start.parameter_value for start in rows.branch_starts_of_row(4)] == [0.6]
     results[5] = {"at": np.array([0.6])}
     assert not stages.stages(results)[-1].items_to_solve(results)
     assert {row: values["at"].tolist() for row, values in stages.changed_rows(results).items()} == {
@@ -339,7 +339,7 @@ def test_curves_are_followed_beyond_the_range_after_all_other_stages():
     results = {0: half(first.special_points[0], 5.0, [0]), 1: half(first.special_points[0], 1.0, [0])}
     _, folds = stages.stages(results)
     assert isinstance(folds, FoldsBeyondRange)
-    assert (folds.items_to_solve(results), folds.row_of(2), folds.starts_of_row(5)) == ([2], 5, ())
+    assert (folds.items_to_solve(results), folds.row_of(2), folds.branch_starts_of_row(5)) == ([2], 5, ())
     known = [crossing(5, at).special_point for at in (0.7, 1.5)]
     results[2] = folds.solve(2, lambda row: known if row == 5 else [], (0.0, 1.0))
     *_, tracer = stages.stages(results)
@@ -349,7 +349,7 @@ def test_curves_are_followed_beyond_the_range_after_all_other_stages():
     results[4] = half(tracer.special_points[0], 1.0, [0], [crossing(3, 1.5)])
     *_, rows = stages.stages(results)
     assert isinstance(rows, DetachedRows)
-    assert [start.parameter_value for start in rows.starts_of_row(3)] == [1.5]
+    assert [start.parameter_value for start in rows.branch_starts_of_row(3)] == [1.5]
     results[5] = {"at": np.array([])}
     assert stages.stages(results)[-1] == rows
     assert stages.lost_beyond_count(results) == 0
@@ -382,11 +382,11 @@ def test_a_row_is_solved_again_with_all_its_crossings_and_only_for_new_ones():
         2: {"at": np.array([0.2, 0.3, 0.6])},
     }
     *_, rows, curves = stages.stages(results)
-    assert [start.parameter_value for start in rows.starts_of_row(3)] == [0.2, 0.3]
+    assert [start.parameter_value for start in rows.branch_starts_of_row(3)] == [0.2, 0.3]
     results[3] = half(curves.special_points[0], 5.0, [0], [crossing(3, 0.8)])
     results[4] = half(curves.special_points[0], 1.0, [0], [crossing(3, 0.3)])
     *_, rows = stages.stages(results)
-    assert [start.parameter_value for start in rows.starts_of_row(3)] == [0.2, 0.3, 0.8]
+    assert [start.parameter_value for start in rows.branch_starts_of_row(3)] == [0.2, 0.3, 0.8]
     # A row whose solver failed is unchanged, and its crossings start nothing else.
     results[5] = {}
     assert stages.changed_rows(results) == {3: results[2]}

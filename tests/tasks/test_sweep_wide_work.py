@@ -234,7 +234,7 @@ def test_curves_do_not_depend_on_who_followed_what_in_which_order(ranks):
         found.append(items.curves(pool.results))
     assert all(curves == found[0] for curves in found)
     assert [curve.points[0].parameter_value for curve in found[0].curves] == [0.6, 0.2]
-    assert found[0].untraced_count == 0
+    assert found[0].untraced_seed_count == 0
 
 
 def test_one_rank_follows_no_half_in_vain():

@@ -31,8 +31,8 @@ from rodsweep.solve.continuation.curve_search import TracedCurves
 from rodsweep.solve.spectrum.search import Spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
 from rodsweep.tasks import modes, spectrum, thresholds
-from rodsweep.tasks.diagram.curve_extrema import fold_curve_extremum_values
 from rodsweep.tasks.diagram.curve_variables import fold_and_torus_curve_values
+from rodsweep.tasks.diagram.fold_curve_extrema import fold_curve_extremum_values
 from rodsweep.tasks.running.job import job_of_file
 from rodsweep.tasks.thresholds import crossing_values
 
@@ -357,7 +357,7 @@ def test_a_curve_of_one_point_has_the_reasons_of_both_ends():
         (None, None),
     )
     filled = fold_and_torus_curve_values(
-        TracedCurves((curve,), max_seed_distance_in_rows=0.0, untraced_count=0), PLANE
+        TracedCurves((curve,), max_seed_distance_in_rows=0.0, untraced_seed_count=0), PLANE
     )
     view = SimpleNamespace(variables={variable.name: values for variable, values in filled})
     (line,) = cycle_curve_lines(view, PLANE)
@@ -385,7 +385,7 @@ def test_an_extremum_of_the_row_parameter_along_a_curve_of_folds_is_stored_and_s
     )
     curves = [SpecialPointCurve(SpecialKind.fold, points[2:], (CurveEndReason.edge,) * 2, (None, None))]
     curves.append(replace(curves[0], points=points))
-    traced = TracedCurves(tuple(curves), max_seed_distance_in_rows=0.0, untraced_count=0)
+    traced = TracedCurves(tuple(curves), max_seed_distance_in_rows=0.0, untraced_seed_count=0)
     filled = fold_curve_extremum_values(traced, PLANE)
     view = SimpleNamespace(variables={variable.name: values for variable, values in filled})
     assert {name: values.tolist() for name, values in view.variables.items()} == {
@@ -416,7 +416,7 @@ def test_a_row_that_a_curve_of_folds_meets_without_a_fold_of_its_own_is_named():
     )
     curve = SpecialPointCurve(SpecialKind.fold, points, (CurveEndReason.edge,) * 2, (None, None))
     filled = fold_and_torus_curve_values(
-        TracedCurves((curve,), max_seed_distance_in_rows=0.0, untraced_count=0), PLANE
+        TracedCurves((curve,), max_seed_distance_in_rows=0.0, untraced_seed_count=0), PLANE
     )
     nan = float("nan")
     rows = {

@@ -181,7 +181,7 @@ def test_an_arm_without_flutter_is_a_point_with_a_status():
     grid = grid_of_arms(
         section, {}, ("F", "k1"), lambda arm, taper: FlutterForce(36.0 if arm.k1 == stiff else np.inf)
     )
-    assert grid.arm_statuses is not None and grid.arm_statuses.tolist() == [NO_FLUTTER, 0]
+    assert grid.validity_codes is not None and grid.validity_codes.tolist() == [NO_FLUTTER, 0]
     assert np.isnan(grid.columns_by_name["F"][0])
     with pytest.raises(ValueError, match="relative to flutter, but with the likeliest drag no arm flutters"):
         grid_of_arms(section, {}, ("F", "k1"), lambda arm, taper: FlutterForce(np.inf))

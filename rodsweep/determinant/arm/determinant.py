@@ -15,7 +15,7 @@ from ...arrays import Array
 from ...model.dispersion import sampled_arm
 from ...model.material.rod_material import LocalCoefficients
 from ...model.rod import Rod
-from ..value import DeterminantValue, newton_correction_and_scales
+from ..value import DeterminantValue, eigenvalue_error_and_scales
 from .elements.edges import element_edges, halved_where_coarse, sum_and_remainder
 from .elements.propagators import element_propagators, gauss_method
 from .elements.settings import ARM_ELEMENT_SETTINGS
@@ -154,7 +154,7 @@ def eigenfunction_wave_number(rod: Rod, w: complex) -> float:
     uniform or not of linear material the result is the mean along the arm of the local bounds, which is not a
     bound."""
     if rod.is_uniform_and_linear:
-        return newton_correction_and_scales(w, rod.coefficients)[2]
+        return eigenvalue_error_and_scales(w, rod.coefficients)[2]
     return arm_determinant(rod).mean_wave_number_bound(w)
 
 

@@ -16,7 +16,7 @@ from ...model.compiled.kernel_constants import KernelConstants
 from ..exponents import EXPONENT_SETTINGS, MACHINE_EPSILON
 from ..roots.roots import roots_of_parabola
 from ..roots.settings import ROOT_NEWTON_SETTINGS, ROOT_SETTINGS
-from ..value import DETERMINANT_SETTINGS, DeterminantValue, second_difference
+from ..value import DETERMINANT_SETTINGS, DeterminantValue, scaled_second_derivative_between
 from .determinant import ArmDeterminant, PropagatorsUpToW
 from .rounding import rounding_error_from_propagators
 from .value import determinant_from_propagators
@@ -45,7 +45,7 @@ def _second_derivative(w: complex, S: float, level: PropagatorsUpToW) -> complex
     h = DETERMINANT_SETTINGS.second_difference_step_ratio * abs(w)
     value_after = determinant_from_propagators(w + h, level[0], level[1])
     value_before = determinant_from_propagators(w - h, level[0], level[1])
-    D_ww = second_difference(value_after, value_before, S, h)
+    D_ww = scaled_second_derivative_between(value_after, value_before, S, h)
     return complex(D_ww.real, 0.0) if w.imag == 0 else D_ww
 
 

@@ -1,8 +1,8 @@
 """All crossings of the imaginary axis along a path of uniform rods, with a proof of completeness.
 
 Along a path p -> rod a pair crosses where D(i eta; p) = 0, two real equations in (eta, p). The a-priori
-bounds leave a finite region of the (eta, p) plane (`first_boxes`), which is divided into boxes until each box
-is
+bounds leave a finite region of the (eta, p) plane (`first_crossing_boxes`), which is divided into boxes until
+each box is
 
 * empty: with the centre c and half-widths (h_w, h_p) of the box, f = D exp(-L dw - K dp) is at most M in the
   bidisc of radii (h_w, h_p)/t. Cauchy's estimate on complex lines gives

@@ -22,7 +22,7 @@ from ..exponents import EXPONENT_SETTINGS
 from ..rounding_at_root import rounding_error_at_root
 from ..value import (
     distance_to_next_root,
-    newton_correction_and_scales,
+    eigenvalue_error_and_scales,
     scaled_determinant,
     second_derivative,
 )
@@ -52,14 +52,14 @@ class Roots(NamedTuple):
 @compiled
 def root_error_and_scales(w: complex, coefficients: Coefficients) -> tuple[float, float, float]:
     """Returns (estimated distance from w to the nearest root of D, length, wave number), as
-    `newton_correction_and_scales`, but also near double roots.
+    `eigenvalue_error_and_scales`, but also near double roots.
 
     With e = max(|D|, rounding error of D), the Newton correction e/|D'| is valid if |D'|^2 is large against
     e |D''|. Otherwise w lies at the distance |D'/D''| from the middle of two roots, and these lie within
     sqrt(2 e/|D''|) of the middle. The rounding error of D is the typical one at a well-conditioned eigenvalue
     and one that covers nearly all roundings at another.
     """
-    error, length, wave = newton_correction_and_scales(w, coefficients)
+    error, length, wave = eigenvalue_error_and_scales(w, coefficients)
     if error > ROOT_SETTINGS.ill_conditioned_ratio * abs(w):
         D, D1, S, _ = scaled_determinant(w, coefficients)
         rounding_error = rounding_error_at_root(w, coefficients, S)

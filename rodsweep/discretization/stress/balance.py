@@ -183,7 +183,7 @@ def write_law_derivative(x: Array, dS: Array, change: NodalRodDerivative, c: Nod
 
 
 @UnrolledOverAlgebra
-def write_balance_derivative(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count references at each use
+def write_balance_parameter_derivative(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count references at each use
     g: LieAlgebra, x: Array, V: Array, out: Array, change: NodalRodDerivative, c: NodalRod, m: NodeMatrices
 ) -> None:
     """Writes the derivatives of the equations with respect to a parameter, at a fixed state x, (unknowns,),

@@ -18,7 +18,7 @@ from ..state_layout import SE2_DIMENSION, plane_layout
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class StressFormSettings:
+class VelocityEliminationSettings:
     """Settings for the choice of the unknowns of a `StressForm`."""
 
     min_eliminated_rotational_drag: float = 1e-5
@@ -34,7 +34,7 @@ class StressFormSettings:
     had no cycle; at drags from 3e-3 to 1e-2 none of 13. The form with v1 takes up to twice as long."""
 
 
-STRESS_FORM_SETTINGS = StressFormSettings()
+VELOCITY_ELIMINATION_SETTINGS = VelocityEliminationSettings()
 
 AXIAL_COMPONENTS = (0,)
 """Index of the axial velocity v1 among the components of V, as a tuple."""
@@ -44,7 +44,7 @@ OMEGA_COMPONENTS = (2,)
 
 def has_small_rotational_drag(rod: Rod) -> bool:
     """Whether the rotational drag is somewhere so small that Omega must be an unknown."""
-    return rod.least_rotational_drag < STRESS_FORM_SETTINGS.min_eliminated_rotational_drag
+    return rod.least_rotational_drag < VELOCITY_ELIMINATION_SETTINGS.min_eliminated_rotational_drag
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +63,9 @@ class StressForm(RodOnMesh):
 
     @property
     def unknown_velocities(self) -> tuple[int, ...]:
-        is_axial_velocity_unknown = self.rod.least_axial_drag < STRESS_FORM_SETTINGS.min_eliminated_axial_drag
+        is_axial_velocity_unknown = (
+            self.rod.least_axial_drag < VELOCITY_ELIMINATION_SETTINGS.min_eliminated_axial_drag
+        )
         is_omega_unknown = self.is_omega_always_unknown or has_small_rotational_drag(self.rod)
         axial = AXIAL_COMPONENTS if is_axial_velocity_unknown else ()
         return (*axial, *(OMEGA_COMPONENTS if is_omega_unknown else ()))

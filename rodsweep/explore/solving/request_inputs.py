@@ -27,7 +27,7 @@ MANUAL_KINDS = ("motion", "film", "cycles")
 cancels these requests."""
 STOPPABLE_KINDS = ("cycle", *IDLE_KINDS, *MANUAL_KINDS)
 """Kinds of requests that the button "Stop" cancels."""
-TIP_KINDS = ("bent", "motion")
+TIP_REQUEST_KINDS = ("bent", "motion")
 """Kinds of requests about a dragged tip. An answer for an earlier position of the tip is not shown."""
 
 
@@ -36,7 +36,7 @@ def inputs_of_request(request: SolveRequest) -> AnswerInputs:
     answer are blank. tip: position of the tip if the answer depends on the tip, else None."""
     kind = request.kind
     state = request.state
-    if kind in ("spectrum", "cycle", "film", LOAD_KIND, *TIP_KINDS):
+    if kind in ("spectrum", "cycle", "film", LOAD_KIND, *TIP_REQUEST_KINDS):
         return replace(state, across="", F_max=""), request.tip
     blank = {state.load: ""}
     if kind in ("diagram", "cycles"):

@@ -21,7 +21,7 @@ from .cycle.selection import (
     chosen_cycles,
 )
 from .cycle.transient import draw_transients
-from .layout.fitting import MAP_ASPECT, STRIP_ASPECT
+from .layout.fitting import MAP_ASPECT, MIN_TIME_PANEL_ASPECT
 from .request import FIGURE_KINDS_BY_TASK, FigureRequest
 
 ALL_POINT_FIGURE_NOUNS = {"amplitude": "amplitudes", "maps": "maps"}
@@ -53,7 +53,9 @@ def draw_limit_cycle(request: FigureRequest) -> str:
         return request.write(*draw_amplitude(request.views, request.look.is_narrow))
     if name == "maps":
         return request.write(*draw_maps(view, request.look.is_narrow), MAP_ASPECT)
-    return request.write(*FEW_POINT_FIGURES[name](view, points, request.look.is_narrow), STRIP_ASPECT)
+    return request.write(
+        *FEW_POINT_FIGURES[name](view, points, request.look.is_narrow), MIN_TIME_PANEL_ASPECT
+    )
 
 
 def _with_needed_variables(request: FigureRequest, name: str) -> ResultView:

@@ -5,7 +5,7 @@ import numpy as np
 from ...model.parameters import NON_OPTIONAL_LINEAR_PARAMETERS
 from ...results.file.view import ResultView
 from ...results.layouts.branch import SPECIAL_KINDS
-from ...results.layouts.curve_extrema import EXTREMA_UNLOCATED
+from ...results.layouts.fold_curve_extrema import EXTREMA_UNLOCATED
 from ...results.layouts.phase_diagram import BAUTIN_ENDS, CURVE_ENDS, CYCLE_CURVE_ENDS
 from ...wording import counted, is_or_are
 from ..plane_curves import PlaneParameters

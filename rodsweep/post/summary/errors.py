@@ -47,7 +47,7 @@ with arms of segments and of rubber."""
 CYCLE_POWER_VARIABLE_NAMES = ("injection_mean", "injection_rms", "dissipation_mean", "dissipation_rms")
 """Mean powers and rms fluctuations. Their errors follow from the errors of amplitude, period and energy
 balance."""
-MIN_UNKNOWN_RELATIVE_TIME_ERROR = 0.5
+MAX_RELATIVE_ERROR_OF_KNOWN_TIME = 0.5
 """The time of the largest transient growth is treated as unknown if its relative error is at least this
 number."""
 STRAIGHT_EIGENVALUE_NAMES = ("linear_growth_rate", "linear_frequency")
@@ -120,7 +120,7 @@ def is_known(variables: Mapping[str, np.ndarray], name: str) -> np.ndarray:
     values = np.asarray(variables[name])
     if name != "transient_time" or "growth_error" not in variables:
         return np.ones(values.shape, bool)
-    return (values == 0) | ~(absolute_errors(variables, name) >= MIN_UNKNOWN_RELATIVE_TIME_ERROR * values)
+    return (values == 0) | ~(absolute_errors(variables, name) >= MAX_RELATIVE_ERROR_OF_KNOWN_TIME * values)
 
 
 def known_range_text(variables: Mapping[str, np.ndarray], name: str, mask: np.ndarray) -> str:

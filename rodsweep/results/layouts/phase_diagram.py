@@ -6,8 +6,8 @@ from typing import Any
 from ...model.parameters import PARAMETERS, TRANSVERSE_PARAMETERS, parameter_names_except
 from .branch import SPECIAL_KINDS, followed_range_variables
 from .criticality import LANDAU_UNIT, SLOPE_UNIT, criticality_variable
-from .curve_extrema import EXTREMA_UNLOCATED, fold_curve_extremum_variables
 from .detached_branches import CURVES_LOST_BEYOND, DETACHED_ROW_NAME, DETACHED_ROW_VARIABLES_BY_NAME
+from .fold_curve_extrema import EXTREMA_UNLOCATED, fold_curve_extremum_variables
 from .rods import with_certified_meaning
 from .spectrum import UNSTABLE_COUNT_VARIABLE
 from .thresholds import CROSSING_LIST_EXTENSION_RULE, search_variables

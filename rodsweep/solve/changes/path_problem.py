@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 
-from ...determinant.certificate.first_boxes import path_intervals
+from ...determinant.certificate.first_crossing_boxes import path_intervals
 from ...determinant.certificate.winding_number import EigenvalueCount, count_right_of
 from ...determinant.parameter_path import ParameterPath, coefficients_at
 from ...determinant.roots.newton import LocatedEigenvalue, double_eigenvalue_by_newton, eigenvalue_by_newton

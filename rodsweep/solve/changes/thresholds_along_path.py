@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass, replace
 
 from ...determinant.certificate.covering import Box, cover_with_boxes
-from ...determinant.certificate.first_boxes import first_boxes
+from ...determinant.certificate.first_crossing_boxes import first_crossing_boxes
 from ...determinant.parameter_path import ParameterPath, coefficients_at, determinant_along_path
 from ...determinant.roots.newton import LocatedEigenvalue
 from ..unsolvable import Unsolvable
@@ -202,7 +202,7 @@ def _crossings(
 def _crossings_by_covering(path: ParameterPath, low: float, high: float) -> PathCrossings:
     """Crossings for path variables from `low` to `high`, by boxes; raises Unsolvable if no a-priori bound
     applies."""
-    boxes = first_boxes(path, low, high)
+    boxes = first_crossing_boxes(path, low, high)
     if boxes is None:
         ends = f"from {path.text_at(low)} to {path.text_at(high)}"
         raise Unsolvable(f"no a-priori bound on the eigenvalues applies to all rods {ends}")

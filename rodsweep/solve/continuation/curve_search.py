@@ -39,12 +39,12 @@ class CurveTracingProblem(Protocol[AnyCurve]):
 @dataclass(frozen=True, slots=True)
 class TracedCurves(Generic[AnyCurve]):
     """All curves through the seed points of a plane. max_seed_distance_in_rows: largest distance of a seed
-    point from its curve, divided by the length of a row; 0 if no seed point lies on a curve. untraced_count:
-    number of seed points that lie on no traced curve."""
+    point from its curve, divided by the length of a row; 0 if no seed point lies on a curve.
+    untraced_seed_count: number of seed points that lie on no traced curve."""
 
     curves: tuple[AnyCurve, ...]
     max_seed_distance_in_rows: float
-    untraced_count: int
+    untraced_seed_count: int
 
 
 @dataclass(slots=True)

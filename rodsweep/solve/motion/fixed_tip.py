@@ -107,7 +107,7 @@ class _BentRod:
         weights = self.mesh.quadrature
         matrix = np.zeros((size + 2, size + 2))
         for _ in range(FIXED_TIP_SETTINGS.max_iterations):
-            tip_derivative, second_derivative = self._tip_position_derivatives(Pi, force)
+            tip_derivative, second_derivative = self._tip_jacobian_and_weighted_hessian(Pi, force)
             # Bending energy minus the work of the force, with the tip's position as two constraints.
             matrix[:size, :size] = np.diag(weights) - second_derivative
             matrix[:size, size:] = -tip_derivative.T
@@ -123,7 +123,7 @@ class _BentRod:
                 return Pi, force
         return None
 
-    def _tip_position_derivatives(self, Pi: Array, force: Array) -> tuple[Array, Array]:
+    def _tip_jacobian_and_weighted_hessian(self, Pi: Array, force: Array) -> tuple[Array, Array]:
         """Returns (d(x, y)/dPi, d^2(f . (x, y))/dPi^2), (2, nodes + 1) and (nodes + 1, nodes + 1), by
         quadrature. (x, y): the tip. Pi: curvatures at all nodes, (nodes + 1,). force: f, (2,)."""
         A = self.angle_matrix

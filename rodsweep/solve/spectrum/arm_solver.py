@@ -12,7 +12,7 @@ from ...discretization.straight.pencil import PencilMatrices, fields_of_vectors,
 from ...model.compiled.compilation import compiled
 from ...model.rod import Rod
 from ..backend.solver_pools import LruPool
-from .shift_invert import KRYLOV_SETTINGS, LoadedPencil, ShiftInvertSolver
+from .shift_invert import KRYLOV_SETTINGS, CurrentPencil, ShiftInvertSolver
 
 
 @compiled
@@ -45,7 +45,7 @@ class ArmSolver(ShiftInvertSolver):
         super().__init__(self.pencil, np.full(self.pencil.node_count, 1 / self.pencil.node_count))
         self._places: NDArray[np.int64] = self.pencil.columns.astype(np.int64) * n + self.pencil.rows
 
-    def load(self, rod: Rod, shift: float) -> LoadedPencil:
+    def load(self, rod: Rod, shift: float) -> CurrentPencil:
         self.matrices = matrices = self.pencil.matrices(rod)
         # One sum tests all entries at once: inf or nan anywhere makes it non-finite.
         if not isfinite(_sum_of_entries(matrices.A, matrices.B) + shift):
@@ -62,7 +62,7 @@ class ArmSolver(ShiftInvertSolver):
             values = matrices.A.copy()
             values[self.is_diagonal_entry] -= shift * matrices.B
             self.A.setValuesCSR(self.indptr, self.indices, values)
-        return LoadedPencil(finite_eigenvalue_count(rod, self.node_count), shift)
+        return CurrentPencil(finite_eigenvalue_count(rod, self.node_count), shift)
 
     def displacements(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
         """Returns (y, theta) at all nodes, (nodes + 1, k) each. vectors: eigenvectors of the arm that was

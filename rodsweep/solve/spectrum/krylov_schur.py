@@ -16,7 +16,7 @@ from ...discretization.straight.pencil import (
 from ...model.compiled.compilation import compiled
 from ...model.rod import Rod
 from ..backend.solver_pools import LruPool
-from .shift_invert import KRYLOV_SETTINGS, LoadedPencil, ShiftInvertSolver
+from .shift_invert import KRYLOV_SETTINGS, CurrentPencil, ShiftInvertSolver
 
 
 @compiled
@@ -44,7 +44,7 @@ class UniformSolver(ShiftInvertSolver):
         self.loaded_gamma3 = -1.0
         self.mass_diagonal: Array = np.ones(self.pencil.unknown_count)
 
-    def load(self, rod: Rod, shift: float) -> LoadedPencil:
+    def load(self, rod: Rod, shift: float) -> CurrentPencil:
         rod, deflection_ratio = _equivalent_filament_and_deflection_ratio(rod)
         # The filament's eigenvalues are those of the rod times this factor, and so is the shift.
         shift *= deflection_ratio**2
@@ -68,7 +68,7 @@ class UniformSolver(ShiftInvertSolver):
             values = coefficients @ self.pencil.term_entries
             values[self.is_diagonal_entry] -= shift * self.mass_diagonal
             self.A.setValuesCSR(self.indptr, self.indices, values)
-        return LoadedPencil(finite_eigenvalue_count(rod, self.node_count), shift, deflection_ratio)
+        return CurrentPencil(finite_eigenvalue_count(rod, self.node_count), shift, deflection_ratio)
 
     def displacements(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
         """Returns (y, theta) at all nodes, (nodes + 1, k). vectors: eigenvectors of the last solve,

@@ -73,7 +73,7 @@ SPECTRUM_OPTIONS_PREFIX = "spectrum_"
 """Prefix of the PETSc options that override the settings of this eigensolver, as in -spectrum_eps_ncv 32."""
 
 
-class LoadedPencil(NamedTuple):
+class CurrentPencil(NamedTuple):
     """Data of the rod whose matrices a solver contains.
 
     finite_eigenvalue_count: number of finite eigenvalues. shift: shift in the units of the pencil's
@@ -125,7 +125,7 @@ class ShiftInvertSolver(ABC):
         self.krylov_size_option = PETSc.Options(SPECTRUM_OPTIONS_PREFIX).getInt("eps_ncv", 0)
         self.tolerance_option = PETSc.Options(SPECTRUM_OPTIONS_PREFIX).getReal("eps_tol", 0.0)
         self.eps = self._create_eps("petsc" if self.is_dense else package)
-        self.loaded_pencil = LoadedPencil(0, 0.0)
+        self.loaded_pencil = CurrentPencil(0, 0.0)
 
     def _create_eps(self, package: str | None) -> "SLEPc.EPS":
         """SLEPc's Krylov-Schur solver with shift-and-invert; package: PETSc's name of the LU package."""
@@ -148,7 +148,7 @@ class ShiftInvertSolver(ABC):
         return eps
 
     @abstractmethod
-    def load(self, rod: Rod, shift: float) -> LoadedPencil:
+    def load(self, rod: Rod, shift: float) -> CurrentPencil:
         """Fills PETSc's matrices A - shift B and B with the values for `rod`, and returns data of the pencil.
         shift: in 1/tau2."""
 

@@ -78,8 +78,8 @@ def grid_of_arms(
     columns = tuple(np.broadcast_to(table[name], shape).ravel() for name in names)
     units = {name: np.broadcast_to(column, shape).ravel() for name, column in units.items()}
     failures = _search_failures(codes, forces)
-    arm_statuses = codes.astype(np.int8).ravel()
-    return Points(names, columns, False, values, units, DEFAULT_MATERIAL, materials, arm_statuses, failures)
+    validity_codes = codes.astype(np.int8).ravel()
+    return Points(names, columns, False, values, units, DEFAULT_MATERIAL, materials, validity_codes, failures)
 
 
 def _materials_of(arms: Sequence[SlenderArm | None]) -> tuple[RodMaterial, ...]:

@@ -64,14 +64,17 @@ def points_of(config: Config, directory: Path, flutter_forces: FlutterForces | N
         except ValueError as error:
             raise InputError(str(error)) from None
     columns_by_name = {name: axes[name] for name in config.parameter_names}
-    arm_statuses = (
+    validity_codes = (
         None
         if parameters.arm is None
         else _status_codes_if_some_crushed(columns_by_name, config.rod_material)
     )
-    refuse_invalid_axes(axes, config.allows_crushed_rods or arm_statuses is not None, config.rod_material)
+    refuse_invalid_axes(axes, config.allows_crushed_rods or validity_codes is not None, config.rod_material)
     return Points(
-        config.parameter_names, tuple(columns_by_name.values()), is_grid=True, arm_statuses=arm_statuses
+        config.parameter_names,
+        tuple(columns_by_name.values()),
+        is_grid=True,
+        validity_codes=validity_codes,
     )
 
 

@@ -43,7 +43,7 @@ class Points:
     materials: tuple[RodMaterial, ...] = ()
     """Constitutive law and profile of each arm of a grid over an arm's quantities, in the order of the
     points. Every arm has the same number of consecutive points. Empty if all points have `material`."""
-    arm_statuses: NDArray[np.int8] | None = None
+    validity_codes: NDArray[np.int8] | None = None
     """Status code of each point of an arm, (points,), from `rodsweep.config.arm.status`: SLENDER if the rod
     model applies, else the code of the reason why it does not apply. None if every point has a rod."""
     failures: dict[int, str] = field(default_factory=dict)
@@ -74,13 +74,13 @@ class Points:
     @property
     def parameter_values_of_rods(self) -> dict[str, Array]:
         """Values of each parameter by name, (n,) each, as in `columns`, without points that have no rod."""
-        if self.arm_statuses is None:
+        if self.validity_codes is None:
             return self.columns_by_name
-        return self.values_of(np.flatnonzero(self.arm_statuses == SLENDER))
+        return self.values_of(np.flatnonzero(self.validity_codes == SLENDER))
 
     def is_in_model(self, index: int) -> bool:
         """Whether the point at a flat index has a rod."""
-        return self.arm_statuses is None or self.arm_statuses[index] == SLENDER
+        return self.validity_codes is None or self.validity_codes[index] == SLENDER
 
     @property
     def columns_by_name(self) -> dict[str, Array]:
@@ -127,9 +127,12 @@ class Points:
         distinct_materials = list(dict.fromkeys(self.materials)) or [self.material]
         material_of_arm = np.array([distinct_materials.index(material) for material in self.materials] or [0])
         material_indices = material_of_arm[np.arange(self.count) * len(material_of_arm) // self.count]
-        return distinct_materials, material_indices if self.arm_statuses is None else material_indices[
-            self.arm_statuses == SLENDER
-        ]
+        return (
+            distinct_materials,
+            material_indices
+            if self.validity_codes is None
+            else material_indices[self.validity_codes == SLENDER],
+        )
 
     def material_of(self, index: int) -> RodMaterial:
         """Constitutive law and profile of the rod of the point at a flat index."""

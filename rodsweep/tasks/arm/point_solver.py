@@ -147,13 +147,13 @@ class SkippingSolver:
     """A solver that skips the points to which the rod model does not apply, and gives these points fill
     values.
 
-    rod_solver: solver of the points to which the rod model applies. arm_statuses: SLENDER for points to which
-    the rod model applies, else a value of `OutsideModelStatus`, (points,). failures: additional messages by
-    flat index of the point. layout: variables of a point.
+    rod_solver: solver of the points to which the rod model applies. validity_codes: SLENDER for points to
+    which the rod model applies, else a value of `OutsideModelStatus`, (points,). failures: additional
+    messages by flat index of the point. layout: variables of a point.
     """
 
     rod_solver: Solver
-    arm_statuses: NDArray[np.int8]
+    validity_codes: NDArray[np.int8]
     failures: Mapping[int, str]
     layout: Layout
 
@@ -164,9 +164,9 @@ class SkippingSolver:
         return self.rod_solver.with_wrapper(self._solve, self._solve_group, **changed)
 
     def _solve(self, index: int, start: State, solve: Callable[[], tuple[Any, State]]) -> tuple[Any, State]:
-        if self.arm_statuses[index] == SLENDER:
+        if self.validity_codes[index] == SLENDER:
             return solve()
-        status = next(status for status in OutsideModelStatus if status == self.arm_statuses[index])
+        status = next(status for status in OutsideModelStatus if status == self.validity_codes[index])
         return OutcomeOutsideModel(status, self.failures.get(index, "")), None
 
     def _record(self, index: int, outcome: Any) -> dict[str, Any]:
@@ -186,14 +186,14 @@ class SkippingSolver:
         """Results for the points of a group at flat indices, (n,); only points to which the rod model
         applies are solved."""
         assert self.rod_solver.grouped is not None
-        arm_statuses = self.arm_statuses[indices]
-        rod_indices = np.flatnonzero(arm_statuses == SLENDER)
+        validity_codes = self.validity_codes[indices]
+        rod_indices = np.flatnonzero(validity_codes == SLENDER)
         values = {name: np.stack([value] * len(indices)) for name, value in self._empty_values.items()}
-        values[STATUS_VARIABLE.name][...] = arm_statuses
+        values[STATUS_VARIABLE.name][...] = validity_codes
         result = self.rod_solver.grouped[1](indices[rod_indices]) if len(rod_indices) else None
         for name, column in result.values.items() if result else ():
             values[name][rod_indices] = column
-        is_solved = arm_statuses != FLUTTER_UNKNOWN
+        is_solved = validity_codes != FLUTTER_UNKNOWN
         if result:
             is_solved[rod_indices] = result.is_solved
         return GroupResult(values, is_solved)

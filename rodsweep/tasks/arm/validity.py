@@ -168,8 +168,8 @@ class ArmValidity:
         parts = []
         for start in range(0, self.points.count, self.points_per_arm):
             indices = np.arange(start, start + self.points_per_arm)
-            if self.points.arm_statuses is not None:
-                indices = indices[self.points.arm_statuses[indices] == SLENDER]
+            if self.points.validity_codes is not None:
+                indices = indices[self.points.validity_codes[indices] == SLENDER]
             if len(indices):
                 no_motion = ArmMotion(np.full(len(indices), np.nan))
                 parts.append(self._validity_variables(self._arm_of(start), no_motion, indices))

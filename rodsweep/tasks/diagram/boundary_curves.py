@@ -42,7 +42,8 @@ def boundary_curves(
     # If a list is full, its last crossings are not stored, and no curve starts from them.
     unlisted = view.variables["crossing_count"].ravel() - np.count_nonzero(kind, axis=1)
     return replace(
-        traced, untraced_count=traced.untraced_count + int(unlisted[np.isfinite(rows)].clip(min=0).sum())
+        traced,
+        untraced_seed_count=traced.untraced_seed_count + int(unlisted[np.isfinite(rows)].clip(min=0).sum()),
     )
 
 

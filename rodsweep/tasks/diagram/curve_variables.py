@@ -58,7 +58,10 @@ def boundary_curve_values(
     values = _values_along_dimension(declared, "curve_point", "curve_", points) | _values_along_dimension(
         declared, "fold", "fold_", folds
     )
-    values |= {"curve_agreement": traced.max_seed_distance_in_rows, "curves_untraced": traced.untraced_count}
+    values |= {
+        "curve_agreement": traced.max_seed_distance_in_rows,
+        "curves_untraced": traced.untraced_seed_count,
+    }
     return _variables_with_values(declared, values | limit_values)
 
 
@@ -122,7 +125,7 @@ def fold_and_torus_curve_values(
     values = _values_along_dimension(variables, "cycle_curve_point", "cycle_curve_", rows)
     values |= {
         "cycle_curve_agreement": traced.max_seed_distance_in_rows,
-        "cycle_curves_untraced": traced.untraced_count,
+        "cycle_curves_untraced": traced.untraced_seed_count,
     }
     return _variables_with_values(variables, values)
 
@@ -209,10 +212,10 @@ def with_ends_on_hopf_curves(
 ) -> "TracedCurves[SpecialPointCurve]":
     """The curves in `traced`, with ends at generalised Hopf points replaced by the points located on Hopf
     curves. criticalities: criticality along each boundary curve. unstored: number of special points that are
-    not stored, added to `untraced_count`.
+    not stored, added to `untraced_seed_count`.
     """
     from ...solve.branch.special.special_curves import with_bautin_ends
 
     bautin_points = [point for curve in criticalities for point in curve.points]
     curves = tuple(with_bautin_ends(curve, plane, bautin_points) for curve in traced.curves)
-    return replace(traced, curves=curves, untraced_count=traced.untraced_count + unstored)
+    return replace(traced, curves=curves, untraced_seed_count=traced.untraced_seed_count + unstored)

@@ -12,7 +12,6 @@ from ...model.rod import Rod
 from ...results.file.view import ResultView
 from ..protocol import NamedArrays, SweepWideResult
 from .boundary_curves import boundary_curves, criticality_along, generalised_hopf_curves
-from .curve_extrema import fold_curve_extremum_values
 from .curve_variables import (
     boundary_curve_values,
     criticality_and_bautin_record,
@@ -31,6 +30,7 @@ from .detached_branches import (
     special_points_of_row,
     special_points_of_rows,
 )
+from .fold_curve_extrema import fold_curve_extremum_values
 
 if TYPE_CHECKING:
     from ...determinant.parameter_plane import ParameterPlane
@@ -80,7 +80,7 @@ class DiagramCurves:
 
         if isinstance(items, DetachedRows):
             return {}
-        keys = {(row, len(items.starts_of_row(row))) for row in map(items.row_of, item_numbers)}
+        keys = {(row, len(items.branch_starts_of_row(row))) for row in map(items.row_of, item_numbers)}
         return {key: self.special_points_by_row[key] for key in keys if key in self.special_points_by_row}
 
     def add_starts(self, starts: "Mapping[RowAndStartCount, Any]") -> None:
@@ -141,7 +141,7 @@ class DiagramCurves:
         if not isinstance(items, DetachedRows):
             return items.solve(item, partial(self._special_points, items), self.workspace)
         row_index = items.row_of(item)
-        starts = items.starts_of_row(row_index)
+        starts = items.branch_starts_of_row(row_index)
         row = self.task.solve_coexistence_row(row_index, self.workspace, starts)
         self.special_points_by_row[row_index, len(starts)] = row.special_points + row.folds_beyond
         return row_result(row, self.task.coexistence_record(row))
@@ -231,7 +231,7 @@ class DiagramCurves:
         again. items: half curves that start at these points, or rows."""
         from ...solve.branch.coexistence import row_branches, special_points_of
 
-        starts = items.starts_of_row(number)
+        starts = items.branch_starts_of_row(number)
         if (number, len(starts)) not in self.special_points_by_row:
             rod = self.task.rod_of_row(number)
             if rod is None:

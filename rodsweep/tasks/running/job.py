@@ -81,10 +81,10 @@ class Job:
         if self.config.parameters.arm is None:
             return solver
         cached_solver = solver_with_outcome_cache(self._with_arm_results(solver), self.points, self.layout)
-        arm_statuses = self.points.arm_statuses
-        if arm_statuses is None or not arm_statuses.any():
+        validity_codes = self.points.validity_codes
+        if validity_codes is None or not validity_codes.any():
             return cached_solver
-        skipping = SkippingSolver(cached_solver, arm_statuses, self.points.failures, self.layout)
+        skipping = SkippingSolver(cached_solver, validity_codes, self.points.failures, self.layout)
         return skipping.solver_of_all_points()
 
     def _with_arm_results(self, solver: Solver) -> Solver:

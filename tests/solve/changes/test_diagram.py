@@ -89,7 +89,7 @@ def test_rows_and_curves_agree_and_every_change_lies_on_a_curve():
     rod = Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4)
     _, seeds = rows(axes, rod, 12)
     curves = boundary_curves_through(ParameterPlane(rod, axes), seeds)
-    assert curves.untraced_count == 0
+    assert curves.untraced_seed_count == 0
     assert curves.max_seed_distance_in_rows < 1e-11
     assert sum(c.consists_of_hopf_points for c in curves.curves) == 1
     for curve in curves.curves:
@@ -104,7 +104,7 @@ def test_a_plane_of_two_material_parameters():
     found, seeds = rows(axes, rod, 6)
     curves = boundary_curves_through(ParameterPlane(rod, axes), seeds)
     assert seeds
-    assert (curves.untraced_count, curves.max_seed_distance_in_rows < 1e-11) == (0, True)
+    assert (curves.untraced_seed_count, curves.max_seed_distance_in_rows < 1e-11) == (0, True)
     values = np.linspace(20.0, 1e5, 41)
     gamma3 = axes[1].value(0.4)
     for k2, motion, unstable in zip(values, found[2].rod_class, found[2].unstable_count, strict=True):
@@ -217,7 +217,7 @@ def test_a_diagram_that_begins_at_the_limit_of_the_model_has_its_curves():
     _, seeds = rows(axes, rod, 3)
     curves = boundary_curves_through(ParameterPlane(rod, axes), seeds)
     assert {seed.values[1] for seed in seeds} == {0.0, 0.5, 1.0}
-    assert (curves.untraced_count, curves.max_seed_distance_in_rows < 1e-11) == (0, True)
+    assert (curves.untraced_seed_count, curves.max_seed_distance_in_rows < 1e-11) == (0, True)
 
 
 @pytest.mark.parametrize(

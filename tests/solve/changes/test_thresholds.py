@@ -330,7 +330,7 @@ def test_strong_pulls_cost_no_more_than_pushes(k1):
     path = ParameterPath(Rod(F=0.0, k1=k1, k2=1e4, gamma3=1e-4), "F")
     for start in (-400.0, -100.0):
         zeros, left, examined = transitions_module.cover_with_boxes(
-            transitions_module.first_boxes(path, start, 0.0), path.origin, path.direction
+            transitions_module.first_crossing_boxes(path, start, 0.0), path.origin, path.direction
         )
         assert (zeros, left) == ([], [])
         assert examined < 20_000

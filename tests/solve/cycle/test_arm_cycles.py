@@ -14,7 +14,7 @@ from rodsweep.bench.limit_cycle.swept_rods import TWO_SEGMENT_PROFILE
 from rodsweep.determinant.arm.determinant import arm_determinant, forget_arm_determinants
 from rodsweep.discretization.elements.mesh import mesh_with_edges
 from rodsweep.discretization.explicit_system import ExplicitSystem
-from rodsweep.discretization.plane_equations import write_balance, write_balance_derivative
+from rodsweep.discretization.plane_equations import write_balance, write_balance_parameter_derivative
 from rodsweep.discretization.straight.mixed_form import MixedForm
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.discretization.stresses_at_jumps import interpolate_stress, stresses_at_both_sides
@@ -95,7 +95,7 @@ def test_the_balance_changes_with_every_parameter_as_its_differences_say(name, p
     form = on_mesh(name)
     x, V, _ = moving(form, 1.0)
     change = np.empty((3, *V.shape))
-    write_balance_derivative(
+    write_balance_parameter_derivative(
         x, V, change, form.parameter_derivative(parameter), form.nodal_rod, form.mesh.matrices
     )
     at = form.rod.coordinate(parameter)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rodsweep.discretization.elements.mesh import uniform_mesh
-from rodsweep.discretization.stress.form import STRESS_FORM_SETTINGS, StressForm
+from rodsweep.discretization.stress.form import VELOCITY_ELIMINATION_SETTINGS, StressForm
 from rodsweep.model.material.profile import FACTOR_NAMES, Profile
 from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
@@ -22,7 +22,7 @@ from rodsweep.solve.cycle.transient.motion_mesh import MOTION_MESH_SETTINGS, int
 
 ROD = Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0)
 STIFF = Rod(F=50.0, k1=1e8, k2=1e4, gamma3=1e-8, gamma1=1e-6)
-LIMIT = STRESS_FORM_SETTINGS.min_eliminated_axial_drag
+LIMIT = VELOCITY_ELIMINATION_SETTINGS.min_eliminated_axial_drag
 FOLD = 27.4204256223
 """Fold of the branch from the first Hopf point of ROD with the axial drag 1e-6, +- 9e-10, by the form in
 which the axial velocity is eliminated."""

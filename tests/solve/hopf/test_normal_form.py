@@ -12,7 +12,7 @@ from mixed_motion import mixed_form
 from rods import rod_of
 
 from rodsweep.determinant.roots.newton import eigenvalue_by_newton
-from rodsweep.determinant.value import newton_correction_and_scales
+from rodsweep.determinant.value import eigenvalue_error_and_scales
 from rodsweep.model.rod import Coefficients, Rod
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.hopf.normal_form import (
@@ -145,7 +145,7 @@ def hopf_points():
             if event["kind"].startswith("hopf"):
                 numbers = event["F"], row["k1"], row["k2"], row["gamma3"]
                 rod, w = rod_of(*map(float, numbers)), 1j * float(event["frequency"])
-                if newton_correction_and_scales(w, rod.coefficients)[2] < 10 * np.pi:
+                if eigenvalue_error_and_scales(w, rod.coefficients)[2] < 10 * np.pi:
                     yield rod, w
 
 

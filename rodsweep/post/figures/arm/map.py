@@ -113,7 +113,7 @@ def can_draw_arm_map(request: FigureRequest) -> bool:
     return len(request.views) == 1 and has_map and view.task in PANEL_MAKERS and not has_other_options
 
 
-def _axis_values_and_label(view: ResultView, name: str) -> tuple[Array, str]:
+def _typed_axis_values_and_label(view: ResultView, name: str) -> tuple[Array, str]:
     """Returns (values along the axis `name`, (n,), label of the axis), in the unit typed by the user."""
     values = view.variables[name]
     if name in style.LABELS:
@@ -135,7 +135,7 @@ def _new_panels(panel_count: int, is_narrow: bool, maps: bool) -> tuple[Figure, 
 
 def _draw_map(axes: Axes, panel: Panel, view: ResultView, names: tuple[str, str], index: Any) -> list[Artist]:
     """Draws a panel as a map over two quantities; returns legend entries. names: quantities on x and y."""
-    (x_values, x_label), (y_values, y_label) = (_axis_values_and_label(view, name) for name in names)
+    (x_values, x_label), (y_values, y_label) = (_typed_axis_values_and_label(view, name) for name in names)
     values = np.ma.masked_invalid(panel.values[index].T)
     style.draw_coloured_cells(
         axes, (cell_edges(x_values), cell_edges(y_values)), panel.values[index].T, panel.label
@@ -152,7 +152,7 @@ def _draw_map(axes: Axes, panel: Panel, view: ResultView, names: tuple[str, str]
 
 def _draw_curves(axes: Axes, panel: Panel, view: ResultView, name: str, index: Any) -> list[Artist]:
     """Draws a panel as curves against the quantity `name`; returns legend entries."""
-    x_values, label = _axis_values_and_label(view, name)
+    x_values, label = _typed_axis_values_and_label(view, name)
     colours = (style.VERMILION, style.BLUE, style.GREEN)
     handles: list[Artist] = []
     lines = panel.threshold_lines or {"": panel.values}
@@ -183,7 +183,7 @@ def _draw_drag_band(
     drag = view.arm_axes.index(DRAG_AXIS)
     values_by_drag = np.moveaxis(values, drag, -1)[(*index[:drag], *index[drag + 1 :])]
     bounds = (bound.reduce(values_by_drag, axis=-1) for bound in (np.fmin, np.fmax))
-    x_values, _ = _axis_values_and_label(view, x_name)
+    x_values, _ = _typed_axis_values_and_label(view, x_name)
     axes.fill_between(x_values, *bounds, color=colour, alpha=BAND_OPACITY, lw=0, zorder=1)
     line_name = DRAG_ESTIMATE_NAMES[int(view.variables[DRAG_AXIS].min())].replace("_", " ")
     return [Patch(color="0.3", alpha=BAND_OPACITY, lw=0, label=f"range of drag (line: {line_name})")]
@@ -197,9 +197,9 @@ def _cover_invalid_cells(
     x_name, y_name = names
     rods = view.variables["status"][index] < NOT_SLENDER
     empty = [(rods & np.isnan(panel.values[index]), panel.no_value_label, EMPTY_CELL_LOOK)] if y_name else []
-    x_edges = cell_edges(_axis_values_and_label(view, x_name)[0])
+    x_edges = cell_edges(_typed_axis_values_and_label(view, x_name)[0])
     limits = axes.get_ylim()
-    y_edges = cell_edges(_axis_values_and_label(view, y_name)[0]) if y_name else np.array(limits)
+    y_edges = cell_edges(_typed_axis_values_and_label(view, y_name)[0]) if y_name else np.array(limits)
     handles: list[Artist] = []
     for variable, value, label, look in COVERED_CELL_LOOKS:
         is_covered = view.variables[variable][index] == value

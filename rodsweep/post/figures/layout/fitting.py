@@ -21,7 +21,7 @@ MIN_ASPECT = 0.45
 increased."""
 MAP_ASPECT = 0.7
 """Smallest ratio of height to width of a map, in which slopes along x and along y must be visible."""
-STRIP_ASPECT = 0.25
+MIN_TIME_PANEL_ASPECT = 0.25
 """Smallest ratio of height to width of a panel with a curve against time, in a figure with several panels."""
 MAX_FIGURE_HEIGHT = 9.5
 """Largest height of a figure, in inches: the printable height of a page."""

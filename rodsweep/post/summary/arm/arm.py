@@ -91,7 +91,7 @@ def _largest_absolute(values: np.ndarray) -> float:
     return float(finite.max()) if finite.size else 0.0
 
 
-def given_columns(view: ResultView) -> dict[str, np.ndarray]:
+def varied_columns(view: ResultView) -> dict[str, np.ndarray]:
     """Given quantities of an arm that differ between points of a file, by name: at all points, (points,)."""
     columns = {name: column for name, column in quantities_of_view(view).items() if name not in ARM_SCALES}
     return {name: column for name, column in columns.items() if len(np.unique(column[~np.isnan(column)])) > 1}
@@ -102,7 +102,7 @@ def region_of_arms(view: ResultView, mask: np.ndarray) -> str:
     points of the file have the same arm."""
     flat_mask = mask.ravel()
     range_texts = [
-        quantity_range(view, name, column, flat_mask) for name, column in given_columns(view).items()
+        quantity_range(view, name, column, flat_mask) for name, column in varied_columns(view).items()
     ]
     for name in OPTIONAL_PARAMETERS:
         column = view.as_list.point_columns.get(name, np.ones(1)).ravel()

@@ -6,7 +6,7 @@ import numpy as np
 
 from ....results.file.view import ResultView
 from ....wording import two_digits
-from .arm import given_columns
+from .arm import varied_columns
 
 
 def drag_lines(view: ResultView, numbers: Mapping[str, np.ndarray]) -> list[str]:
@@ -15,7 +15,7 @@ def drag_lines(view: ResultView, numbers: Mapping[str, np.ndarray]) -> list[str]
     arms = arm_index_of_points(view)
     if arms is None:
         return []
-    drags = len(np.unique(given_columns(view)["drag"]))
+    drags = len(np.unique(varied_columns(view)["drag"]))
     has_several_arms = len(np.unique(arms)) > 1
     variations = []
     for name, values in numbers.items():
@@ -31,7 +31,7 @@ def drag_lines(view: ResultView, numbers: Mapping[str, np.ndarray]) -> list[str]
 def arm_index_of_points(view: ResultView) -> np.ndarray | None:
     """Index of the arm at each point, (points,): equal for points that differ only in drag. None if drag does
     not vary."""
-    columns = given_columns(view)
+    columns = varied_columns(view)
     if columns.pop("drag", None) is None:
         return None
     point_count = view.variables["status"].size

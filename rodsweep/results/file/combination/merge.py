@@ -69,7 +69,7 @@ def _merge(
         for source in sources[1:]:
             if write_records(copy, records_to_add(copy, source.path, layout), layout):
                 used.append(source)
-        return _finish_merge(copy, plan, used)
+        return _write_provenance_and_finish(copy, plan, used)
 
 
 def _write_joined_file(replacement: FileReplacement, joined: JoinedFile) -> MergeResult:
@@ -77,10 +77,10 @@ def _write_joined_file(replacement: FileReplacement, joined: JoinedFile) -> Merg
     with replacement.replacing(None) as copy:
         create_file(copy, joined.plan)
         used = joined.write(copy)
-        return _finish_merge(copy, joined.plan, used or joined.sources[:1])
+        return _write_provenance_and_finish(copy, joined.plan, used or joined.sources[:1])
 
 
-def _finish_merge(copy: Path, plan: FilePlan, used: Sequence[ResultHeader]) -> MergeResult:
+def _write_provenance_and_finish(copy: Path, plan: FilePlan, used: Sequence[ResultHeader]) -> MergeResult:
     """Writes the provenance of the points into the merged file, and finishes the file if no point is missing;
     returns the outcome of the merge. used: sources of the stored points."""
     missing_indices = missing_ranges(copy)

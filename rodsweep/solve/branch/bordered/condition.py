@@ -10,7 +10,7 @@ import numpy as np
 
 from ....arrays import Array
 from ....determinant.exponents import MACHINE_EPSILON
-from ....discretization.stress.form import STRESS_FORM_SETTINGS, StressForm
+from ....discretization.stress.form import VELOCITY_ELIMINATION_SETTINGS, StressForm
 from ....solve_progress import report
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.newton import ORBIT_NEWTON_SETTINGS, ConvergedOrbit, relative_change
@@ -134,7 +134,7 @@ def require_equal_unknowns(form: StressForm, orbit: Orbit) -> None:
     """Raises Unsolvable if the states of `form` have other unknowns than the states of `orbit`, so that they
     cannot be compared."""
     if form.unknown_velocities != orbit.form.unknown_velocities:
-        settings = STRESS_FORM_SETTINGS
+        settings = VELOCITY_ELIMINATION_SETTINGS
         raise Unsolvable(
             "the solver changes its unknowns at a rotational drag of "
             f"{settings.min_eliminated_rotational_drag:.0e} gamma2 L^2 and at an axial drag of "

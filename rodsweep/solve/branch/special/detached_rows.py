@@ -41,7 +41,7 @@ class DetachedRows(RowItems):
 
     crossings: Mapping[int, tuple[RowCrossing, ...]]
 
-    def starts_of_row(self, row: int) -> tuple[SpecialPoint, ...]:
+    def branch_starts_of_row(self, row: int) -> tuple[SpecialPoint, ...]:
         """Special points from which branches of the row with the index `row` are followed."""
         return tuple(crossing.special_point for crossing in self.crossings[row])
 
@@ -89,7 +89,7 @@ class DiagramStages:
             first_item=last_stage.end_item,
             special_points=new_points,
             special_points_not_to_trace=known_points,
-            starts_by_row={row: last_stage.starts_of_row(row) for row in last_stage.crossings},
+            starts_by_row={row: last_stage.branch_starts_of_row(row) for row in last_stage.crossings},
         )
 
     def _folds_beyond_after(self, stages: Sequence[Stage], results: Results) -> FoldsBeyondRange | None:
@@ -158,7 +158,7 @@ class DiagramStages:
             if isinstance(stage, SpecialCurveTracer) and stage.line_axis != self.first.line_axis:
                 traced = stage.curves(results)
                 ends = [end for curve in traced.curves for end in curve.ends]
-                count += ends.count(CurveEndReason.not_followed) + traced.untraced_count
+                count += ends.count(CurveEndReason.not_followed) + traced.untraced_seed_count
         return count
 
     def curves(self, results: Results) -> TracedCurves[SpecialPointCurve]:
@@ -177,7 +177,7 @@ class DiagramStages:
         return TracedCurves(
             tuple(curves),
             max(stage_curves.max_seed_distance_in_rows for stage_curves in traced_stages),
-            sum(stage_curves.untraced_count for stage_curves in traced_stages),
+            sum(stage_curves.untraced_seed_count for stage_curves in traced_stages),
         )
 
 

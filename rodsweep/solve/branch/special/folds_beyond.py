@@ -53,7 +53,7 @@ class FoldsBeyondRange(RowItems):
     outcome: ClassVar[str] = "row with branches that leave the range"
     label: ClassVar[str] = "folds beyond the range"
 
-    def starts_of_row(self, row: int) -> tuple[SpecialPoint, ...]:
+    def branch_starts_of_row(self, row: int) -> tuple[SpecialPoint, ...]:
         """No special points: the branches of the row with the index `row` are the branches of the first
         stage."""
         return ()

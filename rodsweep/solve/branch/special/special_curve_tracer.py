@@ -93,7 +93,7 @@ class SpecialCurveTracer:
         return TracedCurves(
             curves,
             max(traced_search.max_seed_distance_in_rows for traced_search in traced_searches),
-            sum(traced_search.untraced_count for traced_search in traced_searches),
+            sum(traced_search.untraced_seed_count for traced_search in traced_searches),
         )
 
     def _searches(
@@ -126,7 +126,7 @@ class SpecialCurveTracer:
         """Index of the row on which half curve number `item` starts."""
         return self.special_points[(item - self.first_item) // 2].row_index
 
-    def starts_of_row(self, row: int) -> tuple[SpecialPoint, ...]:
+    def branch_starts_of_row(self, row: int) -> tuple[SpecialPoint, ...]:
         """Special points of `starts_by_row` for the row with the index `row`."""
         return self.starts_by_row.get(row, ())
 

@@ -9,7 +9,11 @@ import numpy as np
 from ....arrays import Array
 from ....discretization.elements.mesh import NodeMatrices
 from ....discretization.nodal_rod import NodalRod, NodalRodDerivative
-from ....discretization.plane_equations import write_balance, write_balance_derivative, write_jacobian
+from ....discretization.plane_equations import (
+    write_balance,
+    write_balance_parameter_derivative,
+    write_jacobian,
+)
 from ....discretization.state_layout import BENDING_INDEX, SE2_DIMENSION, stress_index
 from ....model.compiled.compilation import compiled_for_vectors
 
@@ -23,7 +27,7 @@ def phase_right_side(start: Array, change: NodalRodDerivative, c: NodalRod, m: N
     G = np.empty(c.drag.shape)
     changes = np.empty((3, *c.drag.shape))
     write_balance(start, V, G, c, m)
-    write_balance_derivative(start, V, changes, change, c, m)
+    write_balance_parameter_derivative(start, V, changes, change, c, m)
     theta = tip_angle(start, c.compliance, m)
     angle_change = tip_angle(start, change.compliance, m)
     angle_factor = np.cos(theta) * G[0, -1] - np.sin(theta) * G[1, -1]

@@ -10,7 +10,7 @@ from ....arrays import Array
 from ....discretization.nodal_rod import NodalRodDerivative
 from ....discretization.plane_equations import (
     write_balance,
-    write_balance_derivative,
+    write_balance_parameter_derivative,
     write_jacobian,
     write_velocity_residuals,
 )
@@ -57,7 +57,7 @@ def write_rate_derivatives(
     x: state, (n,). V: velocities at x, (3, nodes + 1). out: work array, (3, 3, nodes + 1). change:
     derivatives of the arrays of the rod. p: equations of the orbit.
     """
-    write_balance_derivative(x, V, out, change, p.rod, p.node_matrices)
+    write_balance_parameter_derivative(x, V, out, change, p.rod, p.node_matrices)
     _store_stresses(out[2], F)
     d, size = V.shape
     for k in range(len(p.rod.unknown_velocities)):

@@ -23,7 +23,7 @@ from ....determinant.arm.hull.region import EigenvalueHull, PathHulls, hull_at
 from ....determinant.arm.rounding import error_of_interpolated_chain
 from ....determinant.arm.value import determinant_from_propagators, path_value_from_propagators
 from ....determinant.roots.roots import roots_of_parabola, sort_indices_descending
-from ....determinant.value import DETERMINANT_SETTINGS, second_difference
+from ....determinant.value import DETERMINANT_SETTINGS, scaled_second_derivative_between
 from ....model.compiled.compilation import compiled
 from ..candidates import CANDIDATE_SETTINGS
 from .following import (
@@ -83,7 +83,7 @@ def taylor_parabola_roots_of_arm(
     h = DETERMINANT_SETTINGS.second_difference_step_ratio * abs(middle)
     value_after = determinant_from_propagators(middle + h, level[0], level[1])
     value_before = determinant_from_propagators(middle - h, level[0], level[1])
-    D_ww = second_difference(value_after, value_before, S, h)
+    D_ww = scaled_second_derivative_between(value_after, value_before, S, h)
     return roots_of_parabola(middle, complex(D.real, 0.0), complex(D_w.real, 0.0), complex(D_ww.real, 0.0))
 
 

@@ -59,7 +59,7 @@ def path_intervals(path: ParameterPath, p_start: float, p_stop: float) -> list[t
     return list(zip(edges[:-1], edges[1:], strict=True))
 
 
-def first_boxes(path: ParameterPath, p_start: float, p_stop: float) -> Array | None:
+def first_crossing_boxes(path: ParameterPath, p_start: float, p_stop: float) -> Array | None:
     """Boxes (eta_from, eta_to, p_from, p_to) that contain every crossing with p from p_start to p_stop, (n,
     4). None if no a-priori bound exists, or if the lower bound of eta underflows, or almost."""
     boxes = []

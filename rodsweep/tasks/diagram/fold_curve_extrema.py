@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...results.layouts.curve_extrema import EXTREMA_UNLOCATED, fold_curve_extremum_variables
+from ...results.layouts.fold_curve_extrema import EXTREMA_UNLOCATED, fold_curve_extremum_variables
 from ...results.layouts.variables import FilledVariable
 
 if TYPE_CHECKING:
