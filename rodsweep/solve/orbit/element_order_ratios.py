@@ -8,12 +8,13 @@ import numpy as np
 
 from ...arrays import Array
 from ...determinant.exponents import EXPONENT_SETTINGS
+from ...model.compiled.kernel_constants import KernelConstants
 from .orbit import Orbit
 from .tails import coefficients_of_elements
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class OrderRatioSettings:
+class OrderRatioSettings(KernelConstants):
     """Settings for the orders of the elements of a mesh relative to the largest order."""
 
     min_order: int = 4

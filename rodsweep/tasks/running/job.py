@@ -171,7 +171,7 @@ def _refuse_extreme_search(task: Task, points: Points) -> None:
     if not isinstance(task, CertifiedTask) or not task.searched_range_ends():
         return
     values = task.parameter_values
-    if not all(values[name].size for name in ("F", "k1")):
+    if not (values["F"].size and values["k1"].size):
         return
     taper = values["taper"].min() if "taper" in values else 1.0
     try:

@@ -4,11 +4,12 @@ from the curve."""
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import inf, nan
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
 from ....arrays import Array
+from ....model.compiled.kernel_constants import KernelConstants
 from ...cycle.cycles_along_parameter import interpolated_change
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of
@@ -17,7 +18,7 @@ from ..bordered.scale import ArcLengthScale
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CurveSecantSettings:
+class CurveSecantSettings(KernelConstants):
     """Settings for the secant method across a curve of special points, and for the errors of its points."""
 
     accuracy: float = 1e-7
@@ -64,6 +65,7 @@ class CurveSecantSettings:
     """Ratio of the number of time intervals of the next finer mesh to the number of the current mesh."""
     max_finer_meshes: int = 5
     """Maximum number of meshes tried for one point after the first mesh, each finer than the mesh before."""
+    field_ranges: ClassVar = {"interval_ratio": (1.0, inf)}
 
 
 CURVE_SECANT_SETTINGS = CurveSecantSettings()

@@ -19,6 +19,7 @@ from ....determinant.arm.arm_family import ArmFamily
 from ....determinant.arm.hull.hull import hulls_along
 from ....determinant.arm.hull.region import PathHulls
 from ....determinant.parameter_path import ParameterPath
+from ....model.compiled.kernel_constants import KernelConstants
 from ....model.material.rod_material import RodMaterial
 from ....model.parameters import PARAMETERS
 from ....model.rod import Rod
@@ -31,7 +32,7 @@ from .prediction import new_track
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ArmRangeSettings:
+class ArmRangeSettings(KernelConstants):
     """Settings for the ranges of arms of a chain."""
 
     max_relative_length: float = 0.2
