@@ -2,6 +2,7 @@
 VI)."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 
@@ -51,7 +52,7 @@ def solve_thresholds(rod: Rod, request: ThresholdsRequest) -> Thresholds:
 
     def search() -> Thresholds:
         result = find_thresholds(ParameterPath(rod, "F"), 0.0, end, request.certify, request.max_thresholds)
-        return thresholds_with_status(result, request.accuracy, request.certify, request.max_thresholds)
+        return thresholds_with_status("F", result, request.accuracy, request.certify, request.max_thresholds)
 
     return outcome_or_failure(search, lambda cause: empty_thresholds(ThresholdStatus.failed, math.nan, cause))
 
@@ -64,12 +65,13 @@ def empty_thresholds(status: ThresholdStatus, end: float, message: str = "") -> 
 
 
 def thresholds_with_status(
-    result: ThresholdSearchResult, accuracy: float, certify: bool, max_thresholds: int
+    name: str, result: ThresholdSearchResult, accuracy: float, certify: bool, max_thresholds: int
 ) -> Thresholds:
-    """The result of a search with its status: the most serious problem, or ok. accuracy: requested relative
-    accuracy. certify: whether a proof is requested. max_thresholds: maximum number of thresholds in the
-    list."""
+    """The result of a search along the parameter `name` with its status: the most serious problem, or ok.
+    accuracy: requested relative accuracy. certify: whether a proof is requested. max_thresholds: maximum
+    number of thresholds in the list."""
     status = ThresholdStatus.ok
+    accuracy_text = missed_accuracy_text(name, result.thresholds[:max_thresholds], accuracy)
     # A part of the range that was not searched hides more than any other doubt, so it comes first.
     if result.ended_early:
         status = ThresholdStatus.ended_early
@@ -79,13 +81,21 @@ def thresholds_with_status(
     elif len(result.thresholds) > max_thresholds:
         status = ThresholdStatus.list_full
     # A proof is checked last: an inaccurate list is worse than an unproved one.
-    elif any(c.error > accuracy * abs(c.value) for c in result.thresholds):
+    elif accuracy_text:
         status = ThresholdStatus.accuracy_not_reached
     elif certify and not result.proved:
         status = ThresholdStatus.not_certified
-    return Thresholds(
-        status=status, search_result=result, end=result.searched_interval[1], message=result.doubt_text
-    )
+    # A more serious status does not say that a stored threshold is inaccurate, so the message says it.
+    hidden_text = accuracy_text if status != ThresholdStatus.accuracy_not_reached else ""
+    message = "; ".join(filter(None, (result.doubt_text, hidden_text)))
+    return Thresholds(status=status, search_result=result, end=result.searched_interval[1], message=message)
+
+
+def missed_accuracy_text(name: str, thresholds: Sequence[Threshold], accuracy: float) -> str:
+    """Text with the values of the parameter `name` at those `thresholds` whose relative error exceeds
+    `accuracy`; empty if there are none."""
+    values = ", ".join(f"{c.value:.9g}" for c in thresholds if c.error > accuracy * abs(c.value))
+    return f"the requested accuracy is missed at {name} = {values}" if values else ""
 
 
 @cache

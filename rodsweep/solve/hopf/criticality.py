@@ -12,7 +12,7 @@ from ...determinant.parameter_path import ParameterPath
 from ...model.rod import Rod
 from ..changes.search_range import end_below_crushing
 from ..changes.threshold_kinds import Threshold
-from ..changes.thresholds import ThresholdsRequest
+from ..changes.thresholds import ThresholdsRequest, missed_accuracy_text
 from ..changes.thresholds_along_path import ThresholdSearchResult, find_axis_crossings
 from ..point_outcome import FAILURES, cause_of, outcome_or_failure
 from .hopf_coefficients import HOPF_COEFFICIENT_SETTINGS, HopfCoefficients, hopf_coefficients
@@ -96,7 +96,9 @@ def _status_and_message(
     serious problem, or ok. message: causes of failures, and why the list is not proved."""
     failures = "; ".join(filter(None, (c.message for c in coefficients)))
     known_coefficients = [c for c in coefficients if c.are_known]
-    is_inaccurate = any(c.error > request.accuracy * abs(c.value) for c in hopf_points.thresholds) or any(
+    stored_points = hopf_points.thresholds[: request.max_thresholds]
+    accuracy_text = missed_accuracy_text("F", stored_points, request.accuracy)
+    is_inaccurate = bool(accuracy_text) or any(
         max(c.landau_error, c.growth_slope_error) > request.accuracy for c in known_coefficients
     )
     # From the most to the least serious.
@@ -110,4 +112,6 @@ def _status_and_message(
         CriticalityStatus.not_certified: request.certify and not hopf_points.proved,
     }
     status = next((status for status, applies in applies_by_status.items() if applies), CriticalityStatus.ok)
-    return status, "; ".join(filter(None, (failures, hopf_points.doubt_text)))
+    # A more serious status does not say that a stored Hopf point is inaccurate, so the message says it.
+    hidden_text = accuracy_text if status != CriticalityStatus.accuracy_not_reached else ""
+    return status, "; ".join(filter(None, (failures, hopf_points.doubt_text, hidden_text)))

@@ -47,6 +47,9 @@ class ArmCrossingSettings:
     """Maximum number of Newton steps for one crossing."""
     converged_step_in_errors: float = 4.0
     """Newton's method for a crossing stops when the step is at most this multiple of the error of p."""
+    max_relative_error: float = 1e-6
+    """An eigenvalue with a larger relative error is not located: from a poor guess, Newton's method for w
+    may stop far from all roots of D. Its error then does not show that a crossing has converged."""
     rounding_error: float = 4e-16
     """Relative rounding error of the path variable: two units in the last place."""
 
@@ -212,12 +215,12 @@ class CrossingSearch:
                 return None
             step = -w.real / slope.real
             p = p + step
-            guess = w + slope * step
             if not p_ends[0] <= p <= p_ends[1]:
                 return None
-            w, slope, error = self.problem.eigenvalue(guess, p)
+            w, slope, error = self.problem.eigenvalue(w + slope * step, p)
             p_error = error / abs(slope.real) + settings.rounding_error * abs(p)
-            if abs(w.real / slope.real) <= settings.converged_step_in_errors * p_error:
+            is_located = error <= settings.max_relative_error * abs(w)
+            if is_located and abs(w.real / slope.real) <= settings.converged_step_in_errors * p_error:
                 max_error = settings.count_distance_path_fraction * (p_ends[1] - p_ends[0])
                 if self.axis_modes.has_many_modes(p) and not p_error <= max_error:
                     return None  # no root of D is resolved
@@ -234,9 +237,8 @@ class CrossingSearch:
         kind = crossing_kind(self.problem.path, grows)
         total_p_error = p_error + abs(w.real / slope.real)
         value, error = self.problem.path.value(p, total_p_error)
-        frequency_error = (
-            abs(slope.real) + abs(slope.imag)
-        ) * total_p_error  # at fixed p, and by the error of p
+        # At fixed p, and by the error of p.
+        frequency_error = (abs(slope.real) + abs(slope.imag)) * total_p_error
         return Threshold(value, kind, w.imag, 0.0, error, frequency_error=frequency_error)
 
 

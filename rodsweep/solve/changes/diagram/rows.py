@@ -127,7 +127,9 @@ def _search_row(rod: Rod, request: RowRequest) -> DiagramRow:
     unstable_counts[is_crushed] = -1
     classes[is_nearly_crushed] = RodClass.undecided
     unstable_counts[is_nearly_crushed] = -1
-    thresholds = thresholds_with_status(result, request.accuracy, request.certify, request.max_thresholds)
+    thresholds = thresholds_with_status(
+        name, result, request.accuracy, request.certify, request.max_thresholds
+    )
     return DiagramRow(rod_class=classes, unstable_count=unstable_counts, thresholds=thresholds)
 
 

@@ -1,0 +1,108 @@
+"""Crossings of the imaginary axis by pairs of an arm, and texts on inaccurate thresholds."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from reference.dense_arm import eigenvalues
+
+from rodsweep.model.material.profile import Profile
+from rodsweep.model.material.rod_material import RodMaterial
+from rodsweep.model.rod import Rod
+from rodsweep.solve.changes.status import ThresholdStatus
+from rodsweep.solve.changes.threshold_kinds import Threshold, ThresholdKind
+from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds, thresholds_with_status
+from rodsweep.solve.changes.thresholds_along_path import ThresholdSearchResult
+from rodsweep.solve.hopf.criticality import solve_criticality
+from rodsweep.solve.hopf.status import CriticalityStatus
+
+ROOT_SEGMENT = (1.0,) * 6
+MIDDLE_SEGMENT = (
+    0.3052741941392067,
+    1.0792910558007915,
+    3.855073343782774,
+    1.0,
+    4.736768538519772,
+    0.2813046776034669,
+)
+TIP_SEGMENT = (
+    0.5837255394430819,
+    0.31862901102482877,
+    0.1031608898795434,
+    1.0,
+    0.4197506506390703,
+    0.3434229223897698,
+)
+FIRST_JUMP, SECOND_JUMP = 0.4342114912155325, 0.6944645738173136
+ARM = Rod(
+    F=0.0,
+    k1=9899.694439291508,
+    k2=47.82173276520232,
+    gamma3=0.09850614805835134,
+    taper=0.15053722165990296,
+    material=RodMaterial(
+        "neo_hookean",
+        profile=Profile(
+            (0.0, FIRST_JUMP, FIRST_JUMP, SECOND_JUMP, SECOND_JUMP, 1.0),
+            (ROOT_SEGMENT, ROOT_SEGMENT, MIDDLE_SEGMENT, MIDDLE_SEGMENT, TIP_SEGMENT, TIP_SEGMENT),
+        ),
+    ),
+)
+UNIFORM_ROD = Rod(F=0.0, k1=300.0, k2=150.0, gamma3=1e-3)
+
+
+@pytest.mark.parametrize("F_max", [150.0, 300.0])
+def test_a_stop_of_newtons_method_off_the_eigenvalues_is_no_crossing(F_max):
+    """Newton's method for w, from the first guess on the axis, stops at a distance of a tenth of w."""
+    found = solve_thresholds(ARM, ThresholdsRequest(F_max, 1e-8, True, 2))
+    assert [c.kind for c in found.thresholds[1:]] == [ThresholdKind.hopf] * 3
+    for crossing in found.thresholds[1:]:
+        assert crossing.error <= 1e-8 * crossing.value
+        w = eigenvalues(replace(ARM, F=crossing.value), 8, 16)
+        assert np.abs(w - 1j * crossing.frequency).min() < 1e-7 * crossing.frequency
+    assert found.thresholds[3].value == pytest.approx(0.72978365802, rel=1e-10)
+
+
+def search_result(*errors, **others):
+    thresholds = tuple(
+        Threshold(float(F), ThresholdKind.hopf, 30.0, 0.0, error, 2 * F) for F, error in enumerate(errors, 1)
+    )
+    return ThresholdSearchResult(
+        thresholds=thresholds, searched_interval=(0.0, 9.0), proved=True, doubt_text="the text", **others
+    )
+
+
+@pytest.mark.parametrize(
+    ("others", "max_thresholds", "status"),
+    [
+        ({"ended_early": True}, 4, ThresholdStatus.ended_early),
+        ({"open_range": (7.0, 8.0)}, 4, ThresholdStatus.window_open),
+        ({}, 2, ThresholdStatus.list_full),
+    ],
+)
+def test_a_more_serious_status_does_not_hide_a_missed_accuracy(others, max_thresholds, status):
+    found = thresholds_with_status(
+        "k1", search_result(1e-9, 1e-3, 1e-9, **others), 1e-8, True, max_thresholds
+    )
+    assert found.status == status
+    assert found.message == "the text; the requested accuracy is missed at k1 = 2"
+    accurate = thresholds_with_status("k1", search_result(*[1e-9] * 3, **others), 1e-8, True, max_thresholds)
+    assert accurate.status == status
+    assert accurate.message == "the text"
+
+
+def test_a_threshold_beyond_the_list_misses_no_accuracy():
+    found = thresholds_with_status("F", search_result(1e-9, 1e-9, 1e-3), 1e-8, True, 2)
+    assert (found.status, found.message) == (ThresholdStatus.list_full, "the text")
+
+
+def test_a_status_that_says_it_is_not_repeated():
+    found = thresholds_with_status("F", search_result(1e-9, 1e-3), 1e-8, True, 2)
+    assert (found.status, found.message) == (ThresholdStatus.accuracy_not_reached, "the text")
+
+
+def test_a_full_list_does_not_hide_an_inaccurate_hopf_point():
+    found = solve_criticality(UNIFORM_ROD, ThresholdsRequest(200.0, 1e-16, True, 1))
+    assert found.status == CriticalityStatus.list_full
+    hopf = found.search_result.thresholds[0]
+    assert f"the requested accuracy is missed at F = {hopf.value:.9g}" in found.message
