@@ -9,6 +9,7 @@ from reference.dense_arm import eigenvalues
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
+from rodsweep.solve.changes.arm.axis_modes import ArmModes, next_count_interval_fraction
 from rodsweep.solve.changes.status import ThresholdStatus
 from rodsweep.solve.changes.threshold_kinds import Threshold, ThresholdKind
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds, thresholds_with_status
@@ -61,6 +62,26 @@ def test_a_stop_of_newtons_method_off_the_eigenvalues_is_no_crossing(F_max):
         w = eigenvalues(replace(ARM, F=crossing.value), 8, 16)
         assert np.abs(w - 1j * crossing.frequency).min() < 1e-7 * crossing.frequency
     assert found.thresholds[3].value == pytest.approx(0.72978365802, rel=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("distances", "slopes", "length", "is_counted"),
+    [
+        ((3.561, 13.584), (-21.97, 54.72), 0.6427, True),
+        ((3.561, 13.584), (-2.0, 54.72), 0.2, False),
+        ((3.561, 13.584), (2.0, 29.2), 0.6427, False),
+    ],
+    ids=["meet below zero", "meet above zero", "rises"],
+)
+def test_a_pair_whose_tangents_meet_below_zero_may_leave_the_axis_and_return(
+    distances, slopes, length, is_counted
+):
+    """The first case, of an arm of three segments, hides two crossings; its cubic stays above zero."""
+    left, right = (
+        ArmModes(p, np.array([distance + 150j]), np.array([slope + 10j]), 2)
+        for p, distance, slope in zip((0.0, length), distances, slopes, strict=True)
+    )
+    assert (next_count_interval_fraction(left, right) > 0) == is_counted
 
 
 def search_result(*errors, **others):

@@ -185,4 +185,16 @@ def next_count_interval_fraction(left: ArmModes, right: ArmModes) -> float:
         )
         if minimum < SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * min(left_pair[0], right_pair[0]):
             return fraction
+        if _tangents_meet_below_zero(left_pair, right_pair, length):
+            return 0.5
     return 0.0
+
+
+def _tangents_meet_below_zero(left: tuple[float, float], right: tuple[float, float], length: float) -> bool:
+    """Whether a distance that decreases at the left end of an interval and increases at its right end may be
+    zero between, because its tangents meet below zero. left, right: (distance, slope) at the ends. length:
+    length of the interval."""
+    if not left[1] < 0 < right[1]:
+        return False
+    meeting_place = (left[0] - right[0] + right[1] * length) / (right[1] - left[1])
+    return left[0] + left[1] * meeting_place < 0
