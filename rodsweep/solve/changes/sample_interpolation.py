@@ -62,7 +62,7 @@ def next_sample_between(left: SpectrumSample, right: SpectrumSample) -> NextSamp
             continue
         smallest_value = min(abs(a[0]), abs(b[0]))
         # By the trapezoidal rule smooth slopes explain the change between the samples.
-        unexplained_change = _unexplained_change(a, b, distance)
+        unexplained_change = unexplained_difference(a, b, distance)
         # The gap is mirrored to be positive, so that one test, of a minimum, serves both signs.
         sign = math.copysign(distance, a[0])
         minimum, fraction = cubic_minimum_and_position(abs(a[0]), abs(b[0]), sign * a[1], sign * b[1])
@@ -157,7 +157,7 @@ def _stays_positive(left: tuple[float, float], right: tuple[float, float], dista
     (a, slope_a), (b, slope_b) = left, right
     smallest_value = min(a, b)
     minimum, _ = cubic_minimum_and_position(a, b, distance * slope_a, distance * slope_b)
-    unexplained_change = _unexplained_change(left, right, distance)
+    unexplained_change = unexplained_difference(left, right, distance)
     return (
         # The limit 0 refuses a negative value at a sample, for which the first part alone would hold.
         minimum >= SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * smallest_value > 0
@@ -172,12 +172,12 @@ def _changes_sign_once(left: tuple[float, float], right: tuple[float, float], di
     change = abs(right[0] - left[0])
     return (
         left[0] * right[0] < 0
-        and _unexplained_change(left, right, distance)
+        and unexplained_difference(left, right, distance)
         <= SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * change
     )
 
 
-def _unexplained_change(left: tuple[float, float], right: tuple[float, float], distance: float) -> float:
+def unexplained_difference(left: tuple[float, float], right: tuple[float, float], distance: float) -> float:
     """Modulus of the change of a quantity between two samples, minus its change by the trapezoidal rule.
     left, right: (value, slope) at the samples. distance: distance of the samples."""
     return abs(right[0] - left[0] - distance * (left[1] + right[1]) / 2)

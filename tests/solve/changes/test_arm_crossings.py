@@ -70,13 +70,16 @@ def test_a_stop_of_newtons_method_off_the_eigenvalues_is_no_crossing(F_max):
         ((3.561, 13.584), (-21.97, 54.72), 0.6427, True),
         ((3.561, 13.584), (-2.0, 54.72), 0.2, False),
         ((3.561, 13.584), (2.0, 29.2), 0.6427, False),
+        ((3.01, 8.24), (17.2, 49.4), 1.0, True),
+        ((3.01, 20.6), (17.2, 18.0), 1.0, False),
     ],
-    ids=["meet below zero", "meet above zero", "rises"],
+    ids=["meet below zero", "meet above zero", "rises", "dips unexplained by the slopes", "rises steadily"],
 )
-def test_a_pair_whose_tangents_meet_below_zero_may_leave_the_axis_and_return(
+def test_a_pair_may_leave_the_axis_and_return_where_tangents_and_slopes_allow_it(
     distances, slopes, length, is_counted
 ):
-    """The first case, of an arm of three segments, hides two crossings; its cubic stays above zero."""
+    """The first and the fourth case, of an arm of three segments, hide two crossings; their cubics stay above
+    zero."""
     left, right = (
         ArmModes(p, np.array([distance + 150j]), np.array([slope + 10j]), 2)
         for p, distance, slope in zip((0.0, length), distances, slopes, strict=True)

@@ -10,7 +10,7 @@ from ....arrays import Complex
 from ...spectrum.search import Spectrum, SpectrumRequest
 from ...spectrum.status import SpectrumStatus
 from ...unsolvable import Unsolvable
-from ..sample_interpolation import cubic_minimum_and_position
+from ..sample_interpolation import cubic_minimum_and_position, unexplained_difference
 from ..spectrum_samples import SPECTRUM_SAMPLE_SETTINGS
 from .path import ArmPath
 
@@ -185,9 +185,24 @@ def next_count_interval_fraction(left: ArmModes, right: ArmModes) -> float:
         )
         if minimum < SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * min(left_pair[0], right_pair[0]):
             return fraction
-        if _tangents_meet_below_zero(left_pair, right_pair, length):
+        if _may_vanish_between(left_pair, right_pair, length):
             return 0.5
     return 0.0
+
+
+def _may_vanish_between(left: tuple[float, float], right: tuple[float, float], length: float) -> bool:
+    """Whether a distance whose cubic stays above zero may vanish within an interval: its tangents meet below
+    zero, or one tangent falls below zero within the interval and the slopes do not explain the change of the
+    distance. left, right: (distance, slope) at the ends. length: length of the interval."""
+    lowest_on_tangents = min(left[0] + length * min(left[1], 0.0), right[0] - length * max(right[1], 0.0))
+    if lowest_on_tangents >= 0:
+        return False
+    allowed_change = SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * max(
+        min(left[0], right[0]), abs(right[0] - left[0])
+    )
+    return unexplained_difference(left, right, length) > allowed_change or _tangents_meet_below_zero(
+        left, right, length
+    )
 
 
 def _tangents_meet_below_zero(left: tuple[float, float], right: tuple[float, float], length: float) -> bool:
