@@ -136,7 +136,8 @@ def covered_height(
     radius, smallest = radii
     while height < top:
         max_valid_radius = (arms.largest_w - abs(complex(line, height))) / 2
-        if max_valid_radius < NO_CROSSING_SETTINGS.min_allowed_radius_fraction * radius:
+        # Without the second limit, ever smaller discs would approach the largest |w| and never reach it.
+        if max_valid_radius < max(NO_CROSSING_SETTINGS.min_allowed_radius_fraction * radius, smallest):
             return height, radius
         radius = min(radius, max_valid_radius)
         w0 = complex(
