@@ -20,7 +20,7 @@ FloatOrArray = Any
 
 LARGEST_RUBBER_LOAD = 1e3
 """Largest load F/k1 of rubber, which compresses rubber to nu = 0.018 of its length. There the rounding error
-of 1 - nu is some 1e-15 of nu. At F/k1 = 1e9 it is 1e-12: errors of eigenvalues were 400 times the stated."""
+of 1 - nu is 6e-15 of nu. At F/k1 = 1e9 it is 6e-12: errors of eigenvalues were 400 times the stated ones."""
 CUBIC_LOAD = 1e6
 """Pull -F/k1 beyond which nu = 3 |F|/k1 to all digits; the cube of |F|/k1 may overflow."""
 SHORTENING_NEWTON_STEPS = 2
