@@ -58,7 +58,7 @@ def measured_branch_calibration(
     # The mesh that is finer in time removes only a fraction of the error in time.
     differences[1] /= fraction
     differences[:, MULTIPLIER_ERROR_INDEX] = multiplier_errors
-    calibration = calibration_of(mesh, differences[0, :-1], differences[1, :-1], orbit, previous_calibration)
+    calibration = calibration_of(mesh, differences[:, :-1].copy(), orbit, previous_calibration)
     return BranchCalibration(
         calibration,
         differences[:, -1],

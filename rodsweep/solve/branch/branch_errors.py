@@ -128,44 +128,31 @@ class BranchCalibration:
         slope dy/dp causes. Near a Hopf point a mesh displaces this point, and y at equal p changes by a large
         fraction, but the period does not; at a fold both change."""
         reduction = max(1.0, self._steepness / max(1.0, self.period_sensitivity))
-        parts = [self.at_equal_parameter.space_errors.copy(), self.at_equal_parameter.time_errors.copy()]
-        for part in parts:
-            part[[Y_INDEX, PATH_INDEX]] /= reduction
-        return replace(self.at_equal_parameter, space_errors=parts[0], time_errors=parts[1])
+        errors = self.at_equal_parameter.mesh_errors.copy()
+        errors[:, [Y_INDEX, PATH_INDEX]] /= reduction
+        return replace(self.at_equal_parameter, mesh_errors=errors)
 
     @cached_property
     def _limiting_errors(self) -> Calibration:
         """Errors from which the mesh is chosen: errors at equal parameter, reduced as in
         `largest_weighted_error`, and the parameter error."""
-        space_and_time_errors = [
-            self.at_equal_parameter.space_errors / self._steepness,
-            self.at_equal_parameter.time_errors / self._steepness,
-        ]
-        for part, parameter_error in zip(space_and_time_errors, self.parameter_errors, strict=True):
-            part[PERIOD_INDEX] = max(part[PERIOD_INDEX], parameter_error)
-        return replace(
-            self.at_equal_parameter,
-            space_errors=space_and_time_errors[0],
-            time_errors=space_and_time_errors[1],
-        )
+        errors = self.at_equal_parameter.mesh_errors / self._steepness
+        errors[:, PERIOD_INDEX] = np.maximum(errors[:, PERIOD_INDEX], self.parameter_errors)
+        return replace(self.at_equal_parameter, mesh_errors=errors)
 
     @cached_property
     def _parameter_errors_only(self) -> Calibration:
         """A calibration in which the errors of period, largest y, extrema and path equal the parameter error
         at equal deflection, in space and in time; the error of the multiplier is unchanged."""
-        indices = [PERIOD_INDEX, Y_INDEX, EXTREMUM_INDEX, PATH_INDEX]
-        # Copies, because many cycles share one calibration.
-        parts = [self.at_equal_parameter.space_errors.copy(), self.at_equal_parameter.time_errors.copy()]
-        for part, parameter_error in zip(parts, self.parameter_errors, strict=True):
-            part[indices] = parameter_error
-        return replace(self.at_equal_parameter, space_errors=parts[0], time_errors=parts[1])
+        # A copy, because many cycles share one calibration.
+        errors = self.at_equal_parameter.mesh_errors.copy()
+        errors[:, [PERIOD_INDEX, Y_INDEX, EXTREMUM_INDEX, PATH_INDEX]] = self.parameter_errors[:, None]
+        return replace(self.at_equal_parameter, mesh_errors=errors)
 
     def grown(self, growth: Array) -> "BranchCalibration":
         """The calibration with all errors in space and in time multiplied by `growth`, (2,)."""
         own = self.at_equal_parameter
-        calibration = replace(
-            own, space_errors=growth[0] * own.space_errors, time_errors=growth[1] * own.time_errors
-        )
+        calibration = replace(own, mesh_errors=growth[:, None] * own.mesh_errors)
         return replace(self, at_equal_parameter=calibration, parameter_errors=growth * self.parameter_errors)
 
     def interpolate(
@@ -178,19 +165,26 @@ class BranchCalibration:
         """Interpolated errors of a cycle on the branch between two measured cycles with the same mesh. other:
         errors of the second measured cycle. fraction: fraction of the arc length from the first measured
         cycle to the interpolated one. sensitivities (`sensitivity`, `period_sensitivity`),
-        multiplier_sensitivity: of the interpolated cycle."""
-        first, second = self.at_equal_parameter, other.at_equal_parameter
+        multiplier_sensitivity: of the interpolated cycle.
+        Near a fold or a Hopf point errors at equal parameter are proportional to the sensitivity, which
+        changes by factors between two cycles; their quotients are interpolated. The errors are not below the
+        smaller of the two measured errors, which need not depend on the sensitivity.
+        """
+        first, second = self.at_equal_parameter.mesh_errors, other.at_equal_parameter.mesh_errors
         parameter_errors = _log_interpolated_errors(self.parameter_errors, other.parameter_errors, fraction)
+        quotients = _log_interpolated_errors(
+            first / self._sensitivities, second / other._sensitivities, fraction
+        )
+        errors = max(sensitivities[0], 1.0) * quotients
+        for part in errors:
+            part[MULTIPLIER_ERROR_INDEX] = multiplier_sensitivity.error(float(part[MULTIPLIER_ERROR_INDEX]))
         # The interpolated errors contain their growth since the last measurement.
-        start = replace(first, space_time_error_growth=np.ones(2))
-        interpolated = BranchCalibration(start, parameter_errors, *sensitivities, multiplier_sensitivity)
-        factors = self._sensitivities, other._sensitivities
-        parts = [
-            interpolated._errors_between(errors, factors, fraction)
-            for errors in ((first.space_errors, second.space_errors), (first.time_errors, second.time_errors))
-        ]
-        calibration = replace(interpolated.at_equal_parameter, space_errors=parts[0], time_errors=parts[1])
-        return replace(interpolated, at_equal_parameter=calibration)
+        calibration = replace(
+            self.at_equal_parameter,
+            mesh_errors=np.maximum(errors, np.minimum(first, second)),
+            space_time_error_growth=np.ones(2),
+        )
+        return BranchCalibration(calibration, parameter_errors, *sensitivities, multiplier_sensitivity)
 
     @property
     def _sensitivities(self) -> Array:
@@ -199,25 +193,6 @@ class BranchCalibration:
         factors = np.full(ERROR_COUNT, max(self.sensitivity, 1.0))
         factors[MULTIPLIER_ERROR_INDEX] *= self.multiplier_sensitivity.factor
         return factors
-
-    def _errors_between(
-        self, errors: tuple[Array, Array], sensitivities: tuple[Array, Array], fraction: float
-    ) -> Array:
-        """Errors at equal parameter of this cycle, (5,), interpolated between the errors of two measured
-        cycles, (5,) each. sensitivities: `_sensitivities` of both. fraction: as in `interpolate`.
-
-        Near a fold or a Hopf point these errors are proportional to the sensitivity, which changes by factors
-        between two cycles; their quotients are interpolated. The errors are not below the smaller of the two
-        measured errors, which need not depend on the sensitivity.
-        """
-        quotients = _log_interpolated_errors(
-            errors[0] / sensitivities[0], errors[1] / sensitivities[1], fraction
-        )
-        own_errors = max(self.sensitivity, 1.0) * quotients
-        index = MULTIPLIER_ERROR_INDEX
-        own_errors[index] = self.multiplier_sensitivity.error(float(own_errors[index]))
-        limited_errors: Array = np.maximum(own_errors, np.minimum(*errors))
-        return limited_errors
 
 
 def _log_interpolated_errors(first_errors: Array, second_errors: Array, fraction: float) -> Array:

@@ -61,7 +61,7 @@ def test_it_is_nearer_to_the_orbit_than_two_meshes_in_between_are(near):
 def test_finer_meshes_differ_by_no_more_than_is_stated(near):
     orbit, known = CoarserMeshes(FINE, near, ACCURACY, MEMORY).predicted_orbit_and_errors(FINE)
     found = newton(orbit, 1e-12, MEMORY).orbit
-    for field, parts in (("order", known.space_errors), ("interval_count", known.time_errors)):
+    for field, parts in zip(("order", "interval_count"), known.mesh_errors, strict=True):
         finer = replace(FINE, **{field: 2 * getattr(FINE, field)})
         true = path_differences(
             CycleMotion(found), CycleMotion(newton(finer.interpolated_orbit(found), 1e-12, MEMORY).orbit)

@@ -110,6 +110,6 @@ def test_errors_in_space_of_several_elements_are_kept_where_errors_in_time_are_m
     assert not grown.is_measured_at_orbit
     assert measured.is_measured_at_orbit
     assert measured.relative_parameter_change == (0.05 if is_kept else 0.0)
-    assert measured.time_errors == pytest.approx(calibration.time_errors, rel=0.3)
-    expected = calibration.space_errors * ([1.1, 1.1, 1.2, 1.2, 1.2] if is_kept else 1.0)
-    assert measured.space_errors == pytest.approx(expected, rel=1e-12 if is_kept else 0.3)
+    assert measured.mesh_errors[1] == pytest.approx(calibration.mesh_errors[1], rel=0.3)
+    expected = calibration.mesh_errors[0] * ([1.1, 1.1, 1.2, 1.2, 1.2] if is_kept else 1.0)
+    assert measured.mesh_errors[0] == pytest.approx(expected, rel=1e-12 if is_kept else 0.3)

@@ -31,8 +31,7 @@ ERROR_COUNT = 5
 """Length of the error arrays: the errors of `path_differences`, and the error of the multiplier."""
 
 CHECKPOINT_FIELDS = dict(
-    space="space_errors",
-    time="time_errors",
+    errors="mesh_errors",
     fall="space_decay",
     power="time_order",
     tails="tails_and_size",
@@ -43,14 +42,13 @@ CHECKPOINT_FIELDS = dict(
 
 @dataclass(frozen=True, eq=False)
 class Calibration:
-    """Measured errors of a mesh at an orbit, with convergence rates. space_errors, time_errors: errors due to
-    the elements and to the time intervals, (5,): relative errors of the period, of the largest y, of the
+    """Measured errors of a mesh at an orbit, with convergence rates. mesh_errors: errors due to the elements
+    and errors due to the time intervals, (2, 5): relative errors of the period, of the largest y, of the
     extremum with the largest error and of the tip's path, and the absolute error of the largest nontrivial
     multiplier."""
 
     mesh: OrbitMesh
-    space_errors: Array
-    time_errors: Array
+    mesh_errors: Array
     space_decay: Array
     """Decrease of ln(error) in space if the order of the elements increases by 1, (5,)."""
     time_order: Array
@@ -137,38 +135,33 @@ class Calibration:
     @property
     def scaled_space_errors(self) -> Array:
         """Errors in space, (5,), scaled to the orbit as `errors` scales them."""
-        space_growth = float(self.space_time_error_growth[0])
-        growth = np.append(
-            np.full(2, space_growth), np.full(ERROR_COUNT - 2, self.space_time_error_growth.max())
-        )
-        scaled: Array = self.space_errors * growth
+        growth = np.full(ERROR_COUNT, self.space_time_error_growth.max())
+        growth[:2] = self.space_time_error_growth[0]
+        scaled: Array = self.mesh_errors[0] * growth
         return scaled
 
     def is_valid_after(self, change: float) -> bool:
         """Whether the errors may still apply after a further relative change `change` of the parameter."""
         return self.relative_parameter_change + change <= CALIBRATION_SETTINGS.max_relative_parameter_change
 
-    def min_remeasured_errors(self, orbit: Orbit) -> tuple[Array, Array]:
-        """Returns (errors in space, errors in time), (5,) each: lower limits of errors that are measured
-        again at `orbit` on this mesh. These limits are fractions of the current errors, reduced as the
-        coefficient tails have decreased."""
+    def min_remeasured_errors(self, orbit: Orbit) -> Array:
+        """Lower limits of errors in space and in time, (2, 5), that are measured again at `orbit` on this
+        mesh. These limits are fractions of the current errors, reduced as the coefficient tails have
+        decreased."""
         shrinkage = np.minimum(squared_tail_growth(self.tails_and_size, tails_and_size(orbit)), 1.0)
-        space_ratio, time_ratio = CALIBRATION_SETTINGS.min_remeasured_ratio * shrinkage
-        return space_ratio * self.space_errors, time_ratio * self.time_errors
+        limits: Array = (CALIBRATION_SETTINGS.min_remeasured_ratio * shrinkage)[:, None] * self.mesh_errors
+        return limits
 
     def errors(self, accuracy: float) -> CycleErrors:
         """Error estimates of the orbit to which this calibration is scaled, not below a fraction of the
         requested relative accuracy `accuracy`. For the multiplier and the other extrema, errors in space and
         in time are scaled by the larger of the two growth factors, because an error was once seen to grow 2.7
         times as much as its tail."""
-        space_growth, time_growth = self.space_time_error_growth
-        errors = errors_with_safety_factors(
-            self.space_errors * space_growth, self.time_errors * time_growth, accuracy
-        )
-        max_growth = float(self.space_time_error_growth.max())
-        errors[2:] = errors_with_safety_factors(
-            self.space_errors * max_growth, self.time_errors * max_growth, accuracy
-        )[2:]
+        growth = self.space_time_error_growth
+        space_errors, time_errors = self.mesh_errors * growth[:, None]
+        errors = errors_with_safety_factors(space_errors, time_errors, accuracy)
+        space_errors, time_errors = self.mesh_errors * growth.max()
+        errors[2:] = errors_with_safety_factors(space_errors, time_errors, accuracy)[2:]
         # Extrema other than the largest y lie between time nodes, where harmonics are cut off.
         errors[2] += CALIBRATION_SETTINGS.extrema_error_per_last_harmonics * max(
             self.last_harmonics_change, 0.0
@@ -176,10 +169,8 @@ class Calibration:
         return CycleErrors(*errors.tolist())
 
 
-def calibration_of(
-    mesh: OrbitMesh, space: Array, time: Array, orbit: Orbit, nearby: Calibration | None
-) -> Calibration:
-    """Calibration of a mesh from its measured errors in space and in time, (5,) each, with convergence rates.
+def calibration_of(mesh: OrbitMesh, errors: Array, orbit: Orbit, nearby: Calibration | None) -> Calibration:
+    """Calibration of a mesh from its measured errors in space and in time, (2, 5), with convergence rates.
     orbit: the measured orbit. nearby: calibration at a nearby orbit, on any mesh. If the mesh of `nearby` has
     the same elements but another order, the errors on both meshes give the rate in space; if the number of
     intervals differs, the order in time. Otherwise the rates of `nearby` are kept. If `nearby` is None, the
@@ -189,22 +180,16 @@ def calibration_of(
         decay = CALIBRATION_SETTINGS.error_to_coefficient_decay_ratio * tails_of(orbit).space_decay
         space_decay = _limited_space_decay(np.full(ERROR_COUNT, decay))
         time_order = np.full(ERROR_COUNT, CALIBRATION_SETTINGS.time_order_per_stage * orbit.stage_count)
-        return Calibration(mesh, space, time, space_decay, time_order, tails, 0.0)
+        return Calibration(mesh, errors, space_decay, time_order, tails, 0.0)
     previous_mesh = nearby.mesh
     space_decay = nearby.space_decay
     time_order = nearby.time_order
     if previous_mesh.order != mesh.order and previous_mesh.has_same_edges_and_order_ratios(mesh):
-        space_decay = _measured_space_decay(nearby.space_errors, space, mesh.order - previous_mesh.order)
+        log_ratio = _log_ratio(nearby.mesh_errors[0], errors[0])
+        space_decay = _limited_space_decay(log_ratio / (mesh.order - previous_mesh.order))
     if previous_mesh.interval_count != mesh.interval_count and previous_mesh.grading == mesh.grading:
-        time_order = _measured_time_order(nearby.time_errors, time, previous_mesh, mesh)
-    return Calibration(mesh, space, time, space_decay, time_order, tails, 0.0)
-
-
-def _measured_space_decay(first_errors: Array, second_errors: Array, order_increase: int) -> Array:
-    """Decrease of ln(error) in space if the order of the elements increases by 1, (5,). first_errors,
-    second_errors: errors on two meshes, (5,) each. order_increase: increase of the order from the first mesh
-    to the second."""
-    return _limited_space_decay(_log_ratio(first_errors, second_errors) / order_increase)
+        time_order = _measured_time_order(nearby.mesh_errors[1], errors[1], previous_mesh, mesh)
+    return Calibration(mesh, errors, space_decay, time_order, tails, 0.0)
 
 
 def _limited_space_decay(decay: Array) -> Array:

@@ -34,14 +34,15 @@ def cheapest_mesh(calibration: Calibration, accuracy: float) -> OrbitMesh:
     # than the distance of the tip's paths, and errors in time with the smallest order.
     min_decay = np.minimum(calibration.space_decay, calibration.space_decay[PATH_INDEX])
     decay = np.where(orders < calibrated.order, calibration.space_decay[:, None], min_decay[:, None])
-    space_errors = calibration.space_errors[:, None] * np.exp(decay * (calibrated.order - orders))
+    errors_in_space, errors_in_time = calibration.mesh_errors
+    space_errors = errors_in_space[:, None] * np.exp(decay * (calibrated.order - orders))
     time_order = np.where(
         interval_counts < calibrated.interval_count,
         calibration.time_order[:, None],
         calibrated.stage_count + 1,
     )
     time_errors = (
-        calibration.time_errors[:, None]
+        errors_in_time[:, None]
         * (calibrated.full_length_interval_count / (interval_counts - 1)) ** time_order
     )
     errors = errors_with_safety_factors(space_errors[:, :, None], time_errors[:, None, :], accuracy)

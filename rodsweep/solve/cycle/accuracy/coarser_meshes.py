@@ -126,7 +126,7 @@ class CoarserMeshes:
         multiplier_error = error_of_largest_multiplier(space_cycle.multipliers, time_cycle.multipliers)
         space_errors = np.append(self._errors_of_finer_mesh(space_cycle, space_factor), 0.0)
         time_errors = np.append(self._errors_of_finer_mesh(time_cycle, time_factors), multiplier_error)
-        return orbit, calibration_of(mesh, space_errors, time_errors, orbit, None)
+        return orbit, calibration_of(mesh, np.array([space_errors, time_errors]), orbit, None)
 
     def _cycle_on_mesh(self, mesh: OrbitMesh) -> ComparedCycle:
         if mesh not in self._cycles_on_finer_meshes:

@@ -78,7 +78,7 @@ def measured_calibration(
         return cycle.differences_from(ComparedCycle(newton(start, tolerance, solved.workspace)))
 
     def calibration_with(space_errors: Array, time_errors: Array) -> Calibration:
-        calibration = calibration_of(mesh, space_errors, time_errors, solved.orbit, previous)
+        calibration = calibration_of(mesh, np.array([space_errors, time_errors]), solved.orbit, previous)
         return with_indicators(calibration, error_indicators(solved, cycle.motion))
 
     time_errors = errors_beside(time_mesh) / removed_fraction
@@ -99,10 +99,10 @@ def with_indicators(calibration: Calibration, indicators: Array) -> Calibration:
     """The calibration of a mesh at an orbit with the `error_indicators` of this orbit, (3,). The estimated
     error of the amplitude, one of the indicators, is a lower limit of the error of the largest y in time,
     which may be small only because it changes its sign near the cycle."""
-    time_errors = calibration.time_errors.copy()
+    errors = calibration.mesh_errors.copy()
     amplitude_error = indicators[AMPLITUDE_ERROR_INDEX] / CALIBRATION_SETTINGS.safety_factor
-    time_errors[Y_INDEX] = max(time_errors[Y_INDEX], amplitude_error)
-    return replace(calibration, time_errors=time_errors, indicators=indicators)
+    errors[1, Y_INDEX] = max(errors[1, Y_INDEX], amplitude_error)
+    return replace(calibration, mesh_errors=errors, indicators=indicators)
 
 
 class ComparedCycle:
