@@ -59,7 +59,7 @@ class BranchTask(HopfPointTask):
         return branches_cost(self.points, options.along, limits, self.config.accuracy)
 
     def solver(self) -> Solver:
-        from ..solve.branch.branch_request import BranchRequest
+        from ..solve.branch.branch_limits import BranchRequest
         from ..solve.branch.branches import solve_branches, warm_up
         from ..solve.branch.status import BranchStatus
         from ..solve.orbit.matrix.workspace import NewtonWorkspace

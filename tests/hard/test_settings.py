@@ -43,7 +43,7 @@ from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.solver_pools import destroy_pooled_solvers
 from rodsweep.solve.branch import branches
-from rodsweep.solve.branch.branch_request import BranchRequest
+from rodsweep.solve.branch.branch_limits import BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
 from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem
 from rodsweep.solve.branch.special.special_point import SpecialKind

@@ -22,10 +22,10 @@ from rodsweep.post.summary import branch as summary
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.branch import END_REASONS, SPECIAL_KINDS
 from rodsweep.results.layouts.variables import MISSING_STATUS
-from rodsweep.solve.branch.branch_end_reason import BranchEndReason
-from rodsweep.solve.branch.branch_request import BranchRequest
+from rodsweep.solve.branch.branch_limits import BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
 from rodsweep.solve.branch.special.special_point import SpecialKind
+from rodsweep.solve.branch.status import BranchEndReason
 from rodsweep.tasks.branch import branch_values
 from rodsweep.tasks.running.job import job_of_file
 

@@ -11,7 +11,6 @@ from ...wording import counted
 from ..unsolvable import Unsolvable
 from .arc_length_step import ARC_STEP_CONTROL, BranchCycle, arc_length_between, cycle_at_length, next_cycle
 from .branch_curve import BranchCurve, BranchEnd, RangePassage
-from .branch_end_reason import BranchEndReason, reason_of_failure
 from .branch_end_settings import BRANCH_END_SETTINGS
 from .branch_limits import BranchLimits
 from .branch_mesh_choice import is_measurement_due
@@ -25,6 +24,7 @@ from .special.special_point import SpecialKind, SpecialPoint
 from .start.first_asymmetric_cycle import ASYMMETRIC_START_SETTINGS, first_asymmetric_cycle
 from .start.first_cycle import first_cycle
 from .start.hopf_point import hopf_as_special_point
+from .status import BranchEndReason, reason_of_failure
 
 
 def follow_branch(hopf_index: int, limits: BranchLimits) -> BranchCurve:

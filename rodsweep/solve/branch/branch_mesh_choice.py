@@ -16,7 +16,7 @@ from ..orbit.mesh_choice import finer_orbit_mesh, regraded_coarser
 from ..orbit.newton import ConvergedOrbit, nontrivial_multipliers_and_error
 from ..orbit.orbit_mesh import OrbitMesh, mesh_limit_error, mesh_of
 from ..unsolvable import MeshLimitReached
-from .arc_length_step import ARC_STEP_CONTROL, BranchCycle
+from .arc_length_step import ARC_STEP_CONTROL, BranchCycle, branch_derivatives, tangent_at
 from .bordered.condition import BorderCondition
 from .bordered.corrected_linearisation import linearisation_of
 from .bordered.scale import ArcLengthScale
@@ -24,7 +24,6 @@ from .branch_error_measurement import measured_branch_calibration, parameter_sen
 from .branch_errors import BranchCalibration, branch_newton_tolerance
 from .branch_mesh_ahead import expected_error_growth, mesh_ahead
 from .branch_mesh_settings import BRANCH_MESH_SETTINGS
-from .branch_tangent import branch_derivatives, tangent_at
 from .multiplier_sensitivity import MultiplierSensitivity
 
 

@@ -10,9 +10,9 @@ from ..unsolvable import Unsolvable
 from .arc_length_step import BranchCycle
 from .bordered.condition import BorderCondition
 from .branch_curve import BranchCurve, BranchEnd, StoredBranchCycle
-from .branch_end_reason import BranchEndReason, reason_of_failure
 from .branch_mesh_choice import with_errors_within_accuracy
 from .special.special_point import SpecialKind, SpecialPoint
+from .status import BranchEndReason, reason_of_failure
 
 
 def branch_end_point(point: BranchCycle, reason: BranchEndReason, message: str = "") -> SpecialPoint:

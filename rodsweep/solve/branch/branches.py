@@ -17,14 +17,12 @@ from ..changes.thresholds_along_path import ThresholdSearchResult, find_axis_cro
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..point_outcome import FAILURES, cause_of, outcome_or_failure
 from .branch_curve import BranchCurve
-from .branch_end_reason import BranchEndReason
-from .branch_limits import BranchLimits
-from .branch_request import BranchRequest
+from .branch_limits import BranchLimits, BranchRequest
 from .branch_search import BranchSearch
 from .regions_beyond import regions_beyond
 from .special.special_point import SPECIAL_POINT_SETTINGS, SpecialPoint
 from .start.hopf_point import HopfBranchStart, accuracy_near_hopf_points, hopf_branch_start
-from .status import BranchStatus
+from .status import BranchEndReason, BranchStatus
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

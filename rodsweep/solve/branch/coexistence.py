@@ -20,11 +20,10 @@ from ..changes.diagram.rows import DiagramRow, RodClass, RowRequest, crushed_row
 from ..changes.status import ThresholdStatus
 from ..orbit.matrix.workspace import NewtonWorkspace
 from .branch_curve import BranchCurve
-from .branch_end_reason import BranchEndReason
-from .branch_request import BranchRequest
+from .branch_limits import BranchRequest
 from .branches import BRANCH_SETTINGS, BranchesOfRod, solve_branches
 from .special.special_point import SpecialPoint
-from .status import BranchStatus, CoexistenceStatus
+from .status import BranchEndReason, BranchStatus, CoexistenceStatus
 
 
 class StableStates(IntEnum):

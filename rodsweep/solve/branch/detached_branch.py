@@ -17,7 +17,7 @@ from ..orbit.mesh_choice import cheapest_stage_count, mesh_from_tails
 from ..orbit.newton import relative_change
 from ..orbit.orbit import Orbit
 from ..unsolvable import Unsolvable, WorkLimitReached
-from .arc_length_step import BranchCycle
+from .arc_length_step import BranchCycle, tangent_at
 from .bordered.condition import BorderCondition, moved_orbit
 from .bordered.matrix import BorderedMatrix
 from .bordered.scale import ArcLengthScale, deflection_of
@@ -26,7 +26,6 @@ from .branch_curve import BranchCurve
 from .branch_errors import branch_newton_tolerance
 from .branch_limits import BranchLimits
 from .branch_mesh_choice import first_measured_cycle
-from .branch_tangent import tangent_at
 from .special.special_point import SpecialKind, SpecialPoint
 from .start.branch_start_settings import BRANCH_START_SETTINGS
 from .start.first_asymmetric_cycle import ASYMMETRIC_START_SETTINGS

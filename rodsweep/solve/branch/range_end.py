@@ -15,13 +15,13 @@ from .arc_length_step import (
     arc_length_between,
     branch_cycle_with_calibrated_errors,
     cycle_at_length,
+    tangent_at,
 )
 from .bordered.condition import BorderCondition, moved_orbit
 from .bordered.corrected_linearisation import linearisation_of
 from .bordered.scale import ALONG_PARAMETER
 from .branch_end_settings import BRANCH_END_SETTINGS
 from .branch_errors import branch_newton_tolerance
-from .branch_tangent import tangent_at
 from .special.branch_segment import BranchSegment
 
 

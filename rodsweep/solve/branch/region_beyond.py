@@ -19,8 +19,7 @@ from .arc_length_step import ARC_STEP_CONTROL, BranchCycle, cycle_at_length
 from .beyond_range_settings import BEYOND_RANGE_SETTINGS
 from .branch_continuation import follow_asymmetric_branch, follow_from_cycle, index_of_passed_range_end
 from .branch_curve import BranchCurve, RangePassage, unstable_count_bounds
-from .branch_limits import BranchLimits
-from .branch_request import WORK_UNIT
+from .branch_limits import WORK_UNIT, BranchLimits
 from .detached_branch import complete_branch_through, lies_on_a_branch, reversed_cycle
 from .special.special_point import SpecialKind, SpecialPoint
 from .start.first_cycle import first_cycle

@@ -10,10 +10,10 @@ from ...model.parameters import PARAMETERS
 from ..changes.thresholds_along_path import ThresholdSearchResult, find_axis_crossings
 from ..point_outcome import FAILURES
 from .beyond_range_settings import BEYOND_RANGE_SETTINGS
-from .branch_end_reason import BranchEndReason
 from .branch_limits import BranchLimits
 from .region_beyond import RegionBeyond
 from .start.hopf_point import HopfBranchStart, hopf_branch_start
+from .status import BranchEndReason
 
 
 def regions_beyond(path: ParameterPath, limits: BranchLimits, margin: float) -> list[RegionBeyond]:

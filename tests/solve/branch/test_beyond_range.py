@@ -14,7 +14,7 @@ from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch import branches, region_beyond, regions_beyond
-from rodsweep.solve.branch.branch_request import BranchRequest
+from rodsweep.solve.branch.branch_limits import BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
 from rodsweep.solve.branch.coexistence import solve_coexistence, stability_intervals
 from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem

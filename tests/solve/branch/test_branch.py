@@ -17,9 +17,7 @@ from rodsweep.solve.branch import branch_continuation, branches
 from rodsweep.solve.branch.bordered import matrix
 from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
 from rodsweep.solve.branch.branch_continuation import follow_branch
-from rodsweep.solve.branch.branch_end_reason import BranchEndReason
-from rodsweep.solve.branch.branch_limits import BranchLimits
-from rodsweep.solve.branch.branch_request import BranchRequest
+from rodsweep.solve.branch.branch_limits import BranchLimits, BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
 from rodsweep.solve.branch.special.augmented.fold_and_torus_functions import pair_nearest_unit_circle
 from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem
@@ -28,7 +26,7 @@ from rodsweep.solve.branch.special.special_point import SpecialKind
 from rodsweep.solve.branch.start import first_cycle as start_of_branch
 from rodsweep.solve.branch.start.first_cycle import first_cycle
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
-from rodsweep.solve.branch.status import BranchStatus
+from rodsweep.solve.branch.status import BranchEndReason, BranchStatus
 from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.orbit import orbit_mesh

@@ -6,13 +6,11 @@ from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.branch_continuation import follow_branch
-from rodsweep.solve.branch.branch_end_reason import BranchEndReason
-from rodsweep.solve.branch.branch_limits import BranchLimits
-from rodsweep.solve.branch.branch_request import BranchRequest
+from rodsweep.solve.branch.branch_limits import BranchLimits, BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
 from rodsweep.solve.branch.special.special_point import SpecialKind
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
-from rodsweep.solve.branch.status import BranchStatus
+from rodsweep.solve.branch.status import BranchEndReason, BranchStatus
 from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 

@@ -20,7 +20,6 @@ from rodsweep.solve.branch.branch_continuation import (
     follow_from_cycle,
 )
 from rodsweep.solve.branch.branch_curve import BranchCurve
-from rodsweep.solve.branch.branch_end_reason import BranchEndReason
 from rodsweep.solve.branch.branch_limits import BranchLimits
 from rodsweep.solve.branch.branch_mesh_choice import solve_on_sufficient_mesh
 from rodsweep.solve.branch.branches import BranchesOfRod
@@ -29,7 +28,7 @@ from rodsweep.solve.branch.special.detection import special_kinds_between
 from rodsweep.solve.branch.special.special_point import SPECIAL_POINT_SETTINGS, SpecialKind
 from rodsweep.solve.branch.start.first_asymmetric_cycle import first_asymmetric_cycle
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
-from rodsweep.solve.branch.status import BranchStatus
+from rodsweep.solve.branch.status import BranchEndReason, BranchStatus
 from rodsweep.solve.branch.symmetry_breaking import (
     asymmetry,
     extended_to_whole_period,

@@ -5,16 +5,15 @@ import pytest
 from surveyed import survey_only
 
 from rodsweep.model.rod import Rod
-from rodsweep.solve.branch.branch_end_reason import BranchEndReason
 from rodsweep.solve.branch.branch_errors import BranchCalibration
-from rodsweep.solve.branch.branch_request import WORK_UNIT, BranchRequest
+from rodsweep.solve.branch.branch_limits import WORK_UNIT, BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
 from rodsweep.solve.branch.multiplier_sensitivity import MultiplierSensitivity
 from rodsweep.solve.branch.special import locating
 from rodsweep.solve.branch.special.augmented.fold_and_torus_functions import correct_until_converged
 from rodsweep.solve.branch.special.special_point import SpecialKind
-from rodsweep.solve.branch.special.special_point_meshes import first_mesh
-from rodsweep.solve.branch.status import BranchStatus
+from rodsweep.solve.branch.special.special_point_errors import first_mesh
+from rodsweep.solve.branch.status import BranchEndReason, BranchStatus
 from rodsweep.solve.cycle.accuracy.calibration import ERROR_COUNT, Calibration
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.orbit_mesh import OrbitMesh

@@ -11,7 +11,7 @@ from rodsweep.solve.branch.arc_length_step import next_cycle
 from rodsweep.solve.branch.bordered.condition import moved_orbit
 from rodsweep.solve.branch.bordered.corrected_linearisation import corrected_linearisation
 from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
-from rodsweep.solve.branch.branch_request import BranchRequest
+from rodsweep.solve.branch.branch_limits import BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
 from rodsweep.solve.branch.start.first_cycle import first_cycle
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start

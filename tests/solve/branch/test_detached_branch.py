@@ -12,13 +12,12 @@ import pytest
 import rodsweep as rs
 from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.model.rod import Rod
-from rodsweep.solve.branch.branch_end_reason import BranchEndReason
 from rodsweep.solve.branch.coexistence import row_branches, special_points_of, stable_cycles_at
 from rodsweep.solve.branch.special.row_crossing import crossings_from_arrays, numbered_arrays
 from rodsweep.solve.branch.special.special_curve_tracer import SpecialCurveTracer
 from rodsweep.solve.branch.special.special_curves import CurveEndReason, TracedHalfCurve
 from rodsweep.solve.branch.special.special_point import RowSpecialPoint, SpecialKind
-from rodsweep.solve.branch.status import BranchStatus
+from rodsweep.solve.branch.status import BranchEndReason, BranchStatus
 from rodsweep.solve.changes.diagram.rows import RowRequest
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 

@@ -7,10 +7,10 @@ from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.branch_continuation import follow_branch
-from rodsweep.solve.branch.branch_end_reason import BranchEndReason
 from rodsweep.solve.branch.branch_limits import BranchLimits
 from rodsweep.solve.branch.multiplier_sensitivity import MultiplierSensitivity
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
+from rodsweep.solve.branch.status import BranchEndReason
 from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings
 from rodsweep.solve.cycle.accuracy.calibration_settings import CALIBRATION_SETTINGS
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace

@@ -12,9 +12,7 @@ import pytest
 import rodsweep as rs
 from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.model.rod import Rod
-from rodsweep.solve.branch.branch_end_reason import BranchEndReason
-from rodsweep.solve.branch.branch_limits import BranchLimits
-from rodsweep.solve.branch.branch_request import BranchRequest
+from rodsweep.solve.branch.branch_limits import BranchLimits, BranchRequest
 from rodsweep.solve.branch.branch_search import BranchSearch
 from rodsweep.solve.branch.branches import solve_branches
 from rodsweep.solve.branch.coexistence import row_branches, special_points_of
@@ -25,7 +23,7 @@ from rodsweep.solve.branch.special.parameter_roles import ParameterRoles
 from rodsweep.solve.branch.special.row_crossing import RowCrossing
 from rodsweep.solve.branch.special.special_curves import CurveEndReason
 from rodsweep.solve.branch.special.special_point import RowSpecialPoint, SpecialKind
-from rodsweep.solve.branch.status import BranchStatus
+from rodsweep.solve.branch.status import BranchEndReason, BranchStatus
 from rodsweep.solve.changes.diagram.rows import RowRequest
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.unsolvable import Unsolvable

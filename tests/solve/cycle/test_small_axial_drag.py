@@ -10,7 +10,7 @@ from rodsweep.discretization.stress.form import VELOCITY_ELIMINATION_SETTINGS, S
 from rodsweep.model.material.profile import FACTOR_NAMES, Profile
 from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
-from rodsweep.solve.branch.branch_request import BranchRequest
+from rodsweep.solve.branch.branch_limits import BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
 from rodsweep.solve.branch.special.special_point import SpecialKind
 from rodsweep.solve.branch.status import BranchStatus

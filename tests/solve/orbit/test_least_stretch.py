@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rodsweep.model.rod import Rod
-from rodsweep.solve.branch.branch_request import BranchRequest
+from rodsweep.solve.branch.branch_limits import BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
 from rodsweep.solve.orbit import measures
 from rodsweep.solve.orbit.least_stretch import LEAST_STRETCH_SETTINGS

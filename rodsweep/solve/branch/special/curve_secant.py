@@ -18,9 +18,9 @@ from ...orbit.newton import relative_change
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import mesh_of
 from ...unsolvable import Unsolvable
+from ..arc_length_step import tangent_at
 from ..bordered.condition import BorderCondition, moved_orbit
 from ..bordered.scale import ArcLengthScale
-from ..branch_tangent import tangent_at
 from .augmented.fold_and_torus_functions import MINIMALLY_AUGMENTED_SETTINGS
 from .augmented.nearby_cycles import NearbyCycleSolver
 from .solved_curve_point import CURVE_SECANT_SETTINGS, NormalDerivatives, SearchLine, SolvedPoint

@@ -11,9 +11,9 @@ from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.mesh_choice import cheapest_stage_count
 from ...orbit.orbit_mesh import mesh_of
 from ...unsolvable import Unsolvable
+from ..arc_length_step import tangent_at
 from ..bordered.matrix import BorderedMatrix
 from ..bordered.scale import ArcLengthScale, deflection_of
-from ..branch_tangent import tangent_at
 from ..start.branch_start_settings import BRANCH_START_SETTINGS
 from ..start.first_cycle import DEFLECTION_UNIT_VECTOR
 from .cycle_family import CycleFamily

@@ -15,7 +15,7 @@ from typing import ClassVar
 from ....arrays import Array
 from ....determinant.parameter_plane import PlaneAxis
 from ...continuation.curve_search import TracedCurves
-from .curve_comparison import are_identical_curves
+from .curve_ends import are_identical_curves
 from .folds_beyond import FoldsBeyondRange, RowItems
 from .row_crossing import RowCrossing
 from .special_curve_tracer import SpecialCurveTracer

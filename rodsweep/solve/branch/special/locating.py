@@ -23,8 +23,7 @@ from ..bordered.scale import ArcLengthScale
 from .augmented.fold_and_torus_functions import TorusTestFunction, correct_until_converged
 from .branch_segment import BranchSegment
 from .special_point import SPECIAL_POINT_SETTINGS, SpecialKind, SpecialPoint
-from .special_point_errors import special_point_at, unlocated_point, with_mesh_errors
-from .special_point_meshes import first_mesh, next_mesh
+from .special_point_errors import first_mesh, next_mesh, special_point_at, unlocated_point, with_mesh_errors
 
 
 def kind_at_minus_one(orbit: Orbit) -> SpecialKind:

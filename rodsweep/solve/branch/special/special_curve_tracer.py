@@ -9,8 +9,7 @@ from typing import ClassVar
 from ....determinant.parameter_plane import PlaneAxis
 from ...continuation.curve_search import CurveTracingState, TracedCurves, trace_all_curves
 from ...orbit.matrix.workspace import NewtonWorkspace
-from .curve_comparison import are_identical_curves, leaves_range
-from .curve_ends import END_SETTINGS
+from .curve_ends import END_SETTINGS, are_identical_curves, leaves_range
 from .curve_problem import SpecialCurveProblem
 from .half_curve import trace_half_curve
 from .row_crossing import RowCrossing

@@ -5,7 +5,7 @@ from enum import IntEnum
 from math import nan
 
 from ...orbit.orbit import Orbit
-from ..branch_end_reason import BranchEndReason
+from ..status import BranchEndReason
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

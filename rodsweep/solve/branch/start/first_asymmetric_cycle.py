@@ -19,7 +19,7 @@ from ...orbit.mesh_choice import cheapest_stage_count, mesh_from_tails
 from ...orbit.newton import relative_change
 from ...orbit.orbit import Orbit
 from ...unsolvable import Unsolvable
-from ..arc_length_step import BranchCycle
+from ..arc_length_step import BranchCycle, branch_derivatives, tangent_at
 from ..bordered.condition import BorderCondition, moved_orbit
 from ..bordered.corrected_linearisation import linearisation_of
 from ..bordered.matrix import BorderedMatrix
@@ -27,7 +27,6 @@ from ..bordered.scale import ArcLengthScale, deflection_of
 from ..branch_end_settings import BRANCH_END_SETTINGS
 from ..branch_errors import branch_newton_tolerance
 from ..branch_mesh_choice import first_measured_cycle
-from ..branch_tangent import branch_derivatives, tangent_at
 from ..symmetry_breaking import SymmetryBreaking, asymmetry, extended_to_whole_period
 from .first_cycle import DEFLECTION_UNIT_VECTOR
 
