@@ -16,7 +16,7 @@ from .branch_limits import BranchLimits
 from .branch_mesh_choice import is_measurement_due
 from .branch_record import BranchRecord, branch_end_point
 from .computing_time import fraction_done
-from .mirror_image_end import end_or_shorter_step_at_mirror_image, reaches_mirror_image
+from .mirror_image_end import end_or_shorter_step_at_mirror_image
 from .range_end import cycle_at_end_beside_zero, cycle_within_range, range_end_condition
 from .special.detection import fold_and_breaking_between, lie_on_one_branch, special_points_between
 from .special.locating import special_point_between
@@ -195,11 +195,10 @@ def _end_or_shorter_step(
     """The end of the branch at its mirror image, or `start` with a shorter step, if the step from `start` to
     `end` leads to the mirror image or to another branch; None if both lie on one branch. Raises Unsolvable
     if no shorter step is allowed."""
-    if reaches_mirror_image(start, end, limits):
-        # Beyond this point the branch continues through the mirror images of its cycles.
-        return end_or_shorter_step_at_mirror_image(start, end, limits)
-    if lie_on_one_branch(start, end):
-        return None
+    # Beyond its end the branch continues through the mirror images of its cycles.
+    replacement = end_or_shorter_step_at_mirror_image(start, end, limits)
+    if replacement is not None or lie_on_one_branch(start, end):
+        return replacement
     half_length = arc_length_between(start, end) / 2
     if half_length < ARC_STEP_CONTROL.min_length:
         raise Unsolvable("two branches touch within the shortest allowed step")

@@ -181,11 +181,6 @@ class BranchCurve:
             self.add_special_point(special)
         self.are_circle_crossings_explained &= are_complete
 
-    def replace_last_cycles(self, points: Sequence[StoredBranchCycle]) -> None:
-        """Replaces the last len(points) cycles by `points`, the same cycles with measured or interpolated
-        errors."""
-        self.points[-len(points) :] = points
-
     def remove_last_cycles(self, count: int) -> None:
         """Removes the last `count` cycles, and all special points beyond the first removed cycle."""
         del self.points[-count:]

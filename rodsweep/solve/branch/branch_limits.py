@@ -1,4 +1,5 @@
-"""Limits of the branches of a rod: range, number of cycles, Hopf points and symmetry breakings."""
+"""Request for the branches of a rod, and their limits: range, number of cycles, Hopf points and symmetry
+breakings."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

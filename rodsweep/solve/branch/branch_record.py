@@ -61,9 +61,9 @@ class BranchRecord:
             points = with_errors_within_accuracy(
                 self._last_measured, self._unmeasured, self.accuracy, condition
             )
-            self.curve.replace_last_cycles(
-                [StoredBranchCycle.from_cycle(point, self.accuracy) for point in points]
-            )
+            self.curve.points[-len(points) :] = [
+                StoredBranchCycle.from_cycle(point, self.accuracy) for point in points
+            ]
             self._last_measured = points[-1]
             self._unmeasured = []
         return self._last_measured

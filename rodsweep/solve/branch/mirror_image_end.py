@@ -20,13 +20,6 @@ from .status import BranchEndReason
 from .symmetry_breaking import reaches_symmetric_cycle, symmetry_breaking_index_between
 
 
-def reaches_mirror_image(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> bool:
-    """Whether a branch reaches its mirror image between two cycles: at a Hopf point or a symmetric cycle."""
-    if start.orbit.is_symmetric:
-        return passes_hopf_point(start, end)
-    return reaches_symmetric_cycle(start, end, limits.breakings, limits.accuracy)
-
-
 def passes_hopf_point(start: BranchCycle, end: BranchCycle) -> bool:
     """Whether a Hopf point lies between two cycles: the bending moments at t = 0 then have opposite signs.
     The sign of the tip's y is no criterion: on a large cycle an extremum of y may pass through 0."""
@@ -39,13 +32,16 @@ def passes_hopf_point(start: BranchCycle, end: BranchCycle) -> bool:
 
 def end_or_shorter_step_at_mirror_image(
     start: BranchCycle, end: BranchCycle, limits: BranchLimits
-) -> BranchCycle | BranchEnd:
-    """The end of a branch that reaches its mirror image between two cycles (a failure if no known Hopf point
-    or symmetry breaking is near), or `start` with half the step, if `start` is too far from this end. Raises
-    Unsolvable if no shorter step is allowed."""
+) -> BranchCycle | BranchEnd | None:
+    """The end of a branch that reaches its mirror image between two cycles, at a Hopf point or a symmetric
+    cycle (a failure if no known Hopf point or symmetry breaking is near), or `start` with half the step, if
+    `start` is too far from this end; None if the branch does not reach its mirror image. Raises Unsolvable if
+    no shorter step is allowed."""
     if start.orbit.is_symmetric:
-        return _end_at_hopf_or_shorter_step(start, end, limits)
-    return _end_at_breaking_or_shorter_step(start, end, limits)
+        return _end_at_hopf_or_shorter_step(start, end, limits) if passes_hopf_point(start, end) else None
+    if reaches_symmetric_cycle(start, end, limits.breakings, limits.accuracy):
+        return _end_at_breaking_or_shorter_step(start, end, limits)
+    return None
 
 
 def _end_at_hopf_or_shorter_step(

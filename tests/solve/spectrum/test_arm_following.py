@@ -11,7 +11,7 @@ from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.solve.spectrum.path import arm_count, carried_arm_count, neighbouring_rods
-from rodsweep.solve.spectrum.path.arm_count import confirmed_count_at
+from rodsweep.solve.spectrum.path.carried_arm_count import confirmed_count_at
 from rodsweep.solve.spectrum.path.followed_arms import FollowedArms
 from rodsweep.solve.spectrum.path.neighbouring_rods import NeighbouringRods, follow_spectra_of_arms
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum

@@ -1,4 +1,5 @@
-"""Ends of a curve of folds or torus points: settings, and the reason for each margin that becomes 0."""
+"""Ends of a curve of folds or torus points: settings, the reason for each margin that becomes 0, and the
+comparison of two curves by their ends."""
 
 from dataclasses import dataclass
 

@@ -23,7 +23,7 @@ from ..bordered.scale import ArcLengthScale
 from .augmented.fold_and_torus_functions import TorusTestFunction, correct_until_converged
 from .branch_segment import BranchSegment
 from .special_point import SPECIAL_POINT_SETTINGS, SpecialKind, SpecialPoint
-from .special_point_errors import first_mesh, next_mesh, special_point_at, unlocated_point, with_mesh_errors
+from .special_point_errors import first_mesh, next_mesh, unlocated_point, with_mesh_errors
 
 
 def kind_at_minus_one(orbit: Orbit) -> SpecialKind:
@@ -121,7 +121,14 @@ def _point_near(
                 raise
             break  # the point on coarser meshes, with its measured error
         coarser_point = point
-        point = special_point_at(kind, orbit, start.scale.parameter_name)
+        point = SpecialPoint(
+            kind=kind,
+            parameter_value=getattr(orbit.form.rod, start.scale.parameter_name),
+            period=orbit.period,
+            tip_y_max=CycleMotion(orbit).extrema["tip_y_max"],
+            error=np.nan,
+            orbit=orbit,
+        )
         required_error = required_accuracy * abs(point.parameter_value)
         if coarser_point is not None:
             point = with_mesh_errors(point, coarser_point, start, end)

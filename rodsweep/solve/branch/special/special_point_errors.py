@@ -1,11 +1,10 @@
-"""Special points with their errors, from solutions on two meshes, and special points that are not located."""
+"""Special points with their errors, from solutions on two meshes; special points that are not located; and
+the meshes on which special points are located."""
 
 from dataclasses import replace
-from math import ceil, log, nan
+from math import ceil, log
 
-from ...orbit.measures import CycleMotion
 from ...orbit.mesh_choice import cheapest_stage_count
-from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh
 from ..arc_length_step import BranchCycle
 from ..branch_errors import BranchCalibration
@@ -45,20 +44,6 @@ def with_mesh_errors(
         error=error,
         period_error=period_error / point.period + SPECIAL_POINT_SETTINGS.rounding_error,
         tip_y_max_error=tip_y_error / point.tip_y_max + SPECIAL_POINT_SETTINGS.rounding_error,
-    )
-
-
-def special_point_at(kind: SpecialKind, orbit: Orbit, name: str) -> SpecialPoint:
-    """The special point of a kind at the solved cycle `orbit`, without errors. name: continuation
-    parameter."""
-    motion = CycleMotion(orbit)
-    return SpecialPoint(
-        kind=kind,
-        parameter_value=getattr(orbit.form.rod, name),
-        period=orbit.period,
-        tip_y_max=motion.extrema["tip_y_max"],
-        error=nan,
-        orbit=orbit,
     )
 
 

@@ -24,7 +24,6 @@ from .error_indicators import (
     error_growth_factors,
     squared_tail_growth,
     tails_and_size,
-    time_error_growth,
 )
 
 ERROR_COUNT = 5
@@ -87,7 +86,9 @@ class Calibration:
         # Errors are relative to the size of the orbit; at a much smaller cycle they are measured again.
         has_shrunk = tails[-1] < CALIBRATION_SETTINGS.min_size_ratio * self.tails_and_size[-1]
         growth = error_growth_factors(self.tails_and_size, tails)
-        growth[1] = max(growth[1], time_error_growth(self.indicators, indicators))
+        # The tail in time may belong to a field on which the cycle hardly depends; the lost energy is a sum.
+        indicator_growth = (indicators / self.indicators)[:LAST_HARMONICS_INDEX].max()
+        growth[1] = max(growth[1], float(indicator_growth))
         relative_parameter_change = inf if has_shrunk else self.relative_parameter_change + change
         return replace(
             self,

@@ -130,11 +130,10 @@ class CoarserMeshes:
 
     def _cycle_on_mesh(self, mesh: OrbitMesh) -> ComparedCycle:
         if mesh not in self._cycles_on_finer_meshes:
-            self._cycles_on_finer_meshes[mesh] = self._solve_on_mesh(mesh, self._coarse_cycle.orbit)
+            start = mesh.interpolated_orbit(self._coarse_cycle.orbit)
+            solved = newton(start, self._tolerance, self._workspace)
+            self._cycles_on_finer_meshes[mesh] = ComparedCycle(solved)
         return self._cycles_on_finer_meshes[mesh]
-
-    def _solve_on_mesh(self, mesh: OrbitMesh, start: Orbit) -> ComparedCycle:
-        return ComparedCycle(newton(mesh.interpolated_orbit(start), self._tolerance, self._workspace))
 
     def _errors_of_finer_mesh(self, finer_cycle: ComparedCycle, error_ratio: Array | float) -> Array:
         """Errors of a finer mesh, (4,), in the order of `path_differences`, from the difference between the

@@ -75,7 +75,7 @@ def error_growth_factors(earlier_tails: Array, later_tails: Array) -> Array:
 
     Absolute errors grow as the squares of the tails. Near the Hopf point where the cycles end, the error of
     the size also grows as the reciprocal of the squared size, because the mesh displaces the Hopf point.
-    `time_error_growth` includes this factor for the errors in time. A predicted decrease is ignored.
+    The indicators include this factor for the errors in time. A predicted decrease is ignored.
     """
     # Errors are of second order in the tails.
     growth = np.maximum(squared_tail_growth(earlier_tails, later_tails), 1.0)
@@ -101,14 +101,3 @@ def squared_tail_growth(earlier_tails: Array, later_tails: Array) -> Array:
     )
     growth: Array = ((later * later[-1] / (earlier * earlier[-1])) ** 2)[:-1]
     return np.array([growth[:-1].max(), growth[-1]])
-
-
-def time_error_growth(earlier_indicators: Array, later_indicators: Array) -> float:
-    """Estimated growth of the errors in time between two orbits of a chain: the growth of the lost energy or
-    of the amplitude error due to this loss, whichever grows more.
-
-    earlier_indicators, later_indicators: `error_indicators` of both orbits, (3,) each. The lost energy is the
-    sum over all fields and intervals. The tail in time is not used, because the largest tail may belong to a
-    field on which the cycle hardly depends.
-    """
-    return float((later_indicators / earlier_indicators)[:LAST_HARMONICS_INDEX].max())

@@ -75,7 +75,9 @@ def measured_calibration(
 
     def errors_beside(finer_mesh: OrbitMesh) -> Array:
         start = finer_mesh.interpolated_orbit(solved.orbit)
-        return cycle.differences_from(ComparedCycle(newton(start, tolerance, solved.workspace)))
+        fine = ComparedCycle(newton(start, tolerance, solved.workspace))
+        change = error_of_largest_multiplier(cycle.multipliers, fine.multipliers)
+        return np.append(path_differences(cycle.motion, fine.motion), change)
 
     def calibration_with(space_errors: Array, time_errors: Array) -> Calibration:
         calibration = calibration_of(mesh, np.array([space_errors, time_errors]), solved.orbit, previous)
@@ -119,10 +121,3 @@ class ComparedCycle:
         return nontrivial_multipliers_and_error(
             newton_step_if_matrix_distant(self._converged_orbit, FINER_MESH_SETTINGS.max_matrix_distance)
         )[0]
-
-    def differences_from(self, fine: "ComparedCycle") -> Array:
-        """Differences between this cycle and the same cycle `fine` on a finer mesh, (5,): the four
-        differences of `path_differences`, and `error_of_largest_multiplier` of the nontrivial
-        multipliers."""
-        change = error_of_largest_multiplier(self.multipliers, fine.multipliers)
-        return np.append(path_differences(self.motion, fine.motion), change)

@@ -27,9 +27,16 @@ from ..status import CycleStatus
 from ..straight_rod import StraightRodStability, growth_rate_of_integrated_rod
 from .amplitude_equation import AmplitudeEquation
 from .motion_mesh import integrable_rod
-from .no_period import decayed_without_end_text, no_period_text
 from .orbit_from_motion import orbit_from_motion, scaled_state
-from .returns import RETURN_SETTINGS, recurrence, return_limit, run_failure, section_crossings, tip_angle_row
+from .returns import (
+    RETURN_SETTINGS,
+    no_period_text,
+    recurrence,
+    return_limit,
+    run_failure,
+    section_crossings,
+    tip_angle_row,
+)
 from .run_length import classified_run_length, is_too_short
 from .schemes import schemes_for_growth
 from .shape_trace import ShapeTrace
@@ -64,8 +71,8 @@ class TransientIntegration:
         self.max_returns = request.most_periods
         self.unstable_cycle = unstable_cycle
         self.leading_mode = leading_mode(self.system)
-        self.record = self._new_record(request)
-        self.tip_angle_row = tip_angle_row(self.system)
+        trace = ShapeTrace if request.frames else TipTrace
+        self.record = trace(self.system) if request.is_motion_recorded else None
         rate = straight.growth_rate(self.leading_mode.w.real)
         period = self.leading_mode.period
         self.first_scheme, self.scheme, growth_error, max_steps = schemes_for_growth(
@@ -84,12 +91,6 @@ class TransientIntegration:
         """Number of successive failures of Newton's method."""
         self.unsolved_message = ""
         """Message that no cycle is found near a periodic motion; "" while the search continues."""
-
-    def _new_record(self, request: CycleRequest) -> TipTrace | ShapeTrace | None:
-        """A new record of the tip's path or of shapes, as requested; None if neither is requested."""
-        if request.frames:
-            return ShapeTrace(self.system)
-        return TipTrace(self.system) if request.transient else None
 
     def follow(self, z: Array) -> TransientOutcome:
         """Outcome of the motion from the state z, (unknowns,)."""
@@ -171,7 +172,9 @@ class TransientIntegration:
         if self._bends_beyond_rounding(z):
             limit_text = f", at the maximum of {self.steps} time steps" * (self.steps >= self.max_steps)
             return no_period_text(self.returns, limit_text, self.past_returns)
-        return decayed_without_end_text(self.returns, self.straight.stable is False)
+        is_unstable = self.straight.stable is False
+        reason = "the straight rod is unstable" if is_unstable else "the stretch of the rod has not relaxed"
+        return f"the deflection has decayed after {self.returns} returns, but {reason}"
 
     def _bends_beyond_rounding(self, z: Array) -> bool:
         """Whether the bending and shear components of the state z, (unknowns,), exceed rounding errors."""
@@ -194,7 +197,7 @@ class TransientIntegration:
         """A run from the state z, (unknowns,), over `returns` returns, of at most `max_run_duration_ratio`
         times their expected time. first: whether the run is the first of the motion."""
         scheme = self.first_scheme if first else self.scheme
-        limit = return_limit(self.tip_angle_row, z, returns)
+        limit = return_limit(tip_angle_row(self.system), z, returns)
         # A slow-fast cycle may take many time constants of a leading mode that does not oscillate.
         last = self.past_returns[-1][0] - self.past_returns[-2][0] if len(self.past_returns) > 1 else 0.0
         duration = TRANSIENT_SETTINGS.max_run_duration_ratio * returns * max(self.leading_mode.period, last)
@@ -216,17 +219,14 @@ class TransientIntegration:
             repeats_text = f"the motion repeats within {distance:.0e}, but Newton's method"
             self.unsolved_message = f"{repeats_text} finds no cycle near this motion on finer meshes"
             return None
-        if distance >= self._newton_start_distance() or self.returns < self.next_attempt:
+        limit = TRANSIENT_SETTINGS.max_newton_distance / TRANSIENT_SETTINGS.distance_divisor**self.attempts
+        if self.record and self.returns < self.max_returns // 2:  # the motion may settle
+            limit = min(limit, TRANSIENT_SETTINGS.max_newton_distance_with_path)
+        if distance >= limit or self.returns < self.next_attempt:
             return None
         self.next_attempt = self.returns + TRANSIENT_SETTINGS.returns_per_run * 2**self.attempts
         self.attempts = min(self.attempts + 1, TRANSIENT_SETTINGS.max_counted_attempts)
         return self._cycle_near(run, self.past_returns[-1][0] - self.past_returns[-1 - count][0], count)
-
-    def _newton_start_distance(self) -> float:
-        """The relative distance between two returns below which Newton's method starts."""
-        distance = TRANSIENT_SETTINGS.max_newton_distance / TRANSIENT_SETTINGS.distance_divisor**self.attempts
-        may_settle = self.record and self.returns < self.max_returns // 2
-        return min(distance, TRANSIENT_SETTINGS.max_newton_distance_with_path) if may_settle else distance
 
     def _cycle_near(self, run: Trajectory, period: float, return_count: int) -> RefinedCycle | None:
         """The stable cycle near the end of a run, by Newton's method; None if not found. period: approximate

@@ -31,8 +31,7 @@ from ...point_outcome import FAILURES
 from ..candidates import line_for_proof
 from ..search import SpectrumSearch
 from ..spectrum import SpectrumRequest
-from .arm_following import follow_eigenvalues_of_arms
-from .arm_following_settings import ARM_FOLLOWING_SETTINGS
+from .arm_following import ARM_FOLLOWING_SETTINGS, follow_eigenvalues_of_arms
 from .prediction import FollowedEigenvalues, new_track, slice_track
 
 

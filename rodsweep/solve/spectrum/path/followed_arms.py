@@ -10,10 +10,9 @@ from ....determinant.arm.arm_family import ArmFamily
 from ....determinant.parameter_path import ParameterPath
 from ..spectrum import Spectrum, SpectrumRequest
 from ..status import SpectrumStatus
-from .arm_count import confirmed_count_at
-from .arm_following import follow_eigenvalues_of_arms
-from .arm_following_settings import ARM_FOLLOWING_SETTINGS
+from .arm_following import ARM_FOLLOWING_SETTINGS, follow_eigenvalues_of_arms
 from .arm_interval import ArmInterval, follow_interval
+from .carried_arm_count import confirmed_count_at
 from .carried_count import assess_points, leading_eigenvalues_of_track
 from .prediction import FollowedEigenvalues, KnownRoots, new_track, slice_track
 

@@ -24,8 +24,7 @@ from ....model.material.rod_material import RodMaterial
 from ....model.parameters import PARAMETERS
 from ....model.rod import Rod
 from ..candidates import line_for_proof
-from .arm_following import follow_eigenvalues_of_arms
-from .arm_following_settings import ARM_FOLLOWING_SETTINGS
+from .arm_following import ARM_FOLLOWING_SETTINGS, follow_eigenvalues_of_arms
 from .arm_interval import family_with_proofs
 from .carried_count import leading_eigenvalues_of_track
 from .prediction import new_track

@@ -23,10 +23,9 @@ from ..search import SpectrumRequest, SpectrumSearch
 from ..search import warm_up as warm_up_search
 from ..spectrum import FollowedPoints, Spectrum, errors_with_rounding
 from ..status import SpectrumStatus
-from .arm_count import confirmed_count_at
-from .arm_following_settings import ARM_FOLLOWING_SETTINGS
+from .arm_following import ARM_FOLLOWING_SETTINGS
 from .arm_interval import follow_interval
-from .carried_arm_count import ArmCountCarrier
+from .carried_arm_count import ArmCountCarrier, confirmed_count_at
 from .carried_count import assess_points, carry_count, leading_eigenvalues_of_track, line_in_gap, widest_gap
 from .following import follow_eigenvalues
 from .prediction import FollowedEigenvalues, new_track, slice_track
