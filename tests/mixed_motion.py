@@ -5,12 +5,18 @@ from pointwise_balance import dissipated_power_per_length, energy_per_length
 
 from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.straight.mixed_form import MixedForm
+from rodsweep.discretization.straight.straight_matrices import StraightMatrices
 from rodsweep.model.balance import ad
 
 
 def mixed_form(rod, elements, order):
     """The mixed form on `elements` equal elements of order `order`."""
     return MixedForm(rod, uniform_mesh(elements, order))
+
+
+def whole_A(form):
+    """The matrix A of all components, (unknowns, unknowns)."""
+    return StraightMatrices(form, (0, 1, 2)).A.toarray()
 
 
 def along(constant, field):
@@ -20,12 +26,12 @@ def along(constant, field):
 
 def rate(form, X):
     """M dX/dt = A X + B(X, X)/2, shape (..., unknowns)."""
-    return X @ form.A.T + form.bilinear(X, X) / 2
+    return X @ whole_A(form).T + form.bilinear(X, X) / 2
 
 
 def jacobian(form, X):
     """A + B(X, .) of one X, shape (unknowns, unknowns)."""
-    return form.A + form.bilinear(X[None], np.eye(form.unknown_count)).T
+    return whole_A(form) + form.bilinear(X[None], np.eye(form.unknown_count)).T
 
 
 def reaction(form, X):

@@ -15,7 +15,8 @@ from .quadrature import gauss_lobatto_rule
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ElementSettings:
-    """Settings of elements: points close to the ends of elements, and maximum sizes of caches."""
+    """Settings of elements: points close to the ends of elements, and maximum sizes of caches and of dense
+    matrices."""
 
     one_sided_node_offset: float = 1e-15
     """Distance of the first and last `Elements.one_sided_nodes` from the ends of an element, in L: a
@@ -30,6 +31,8 @@ class ElementSettings:
     """Maximum number of cached pencils; a pencil for 300 growing modes takes 10 MB."""
     max_cached_mesh_pairs: int = 256
     """Maximum number of cached interpolation matrices between two meshes, and of cached lists of edges."""
+    max_dense_unknowns: int = 120
+    """Matrices about the straight rod with up to this number of unknowns are factorised as dense."""
 
 
 ELEMENT_SETTINGS = ElementSettings()

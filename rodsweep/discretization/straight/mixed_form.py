@@ -28,7 +28,7 @@ from ...arrays import Array
 from ...model.balance import Values, ad, coad
 from ..elements.mesh import Mesh, shape_integration_matrices
 from ..rod_on_mesh import RodOnMesh, broadcast_to_field
-from ..state_layout import SE2_DIMENSION, plane_layout
+from ..state_layout import SE2_DIMENSION
 from .law_derivatives import LawDerivativesAtRest, law_derivatives_at_rest
 
 MIRROR_SIGNS = np.array([1.0, -1.0, -1.0])
@@ -48,11 +48,6 @@ class MixedForm(RodOnMesh):
     def unknown_velocities(self) -> tuple[int, ...]:
         return tuple(range(SE2_DIMENSION))
 
-    @property
-    def unknown_stress_count(self) -> int:
-        """Number of unknown stresses."""
-        return plane_layout(self.mesh.node_count).unknown_count
-
     @cached_property
     def law_derivatives(self) -> LawDerivativesAtRest:
         """Derivatives of the constitutive law at rest, at all nodes."""
@@ -69,20 +64,6 @@ class MixedForm(RodOnMesh):
         """Diagonal of the matrix M, (unknowns,): W C for stresses, 0 for velocities."""
         weighted = self.nodal_rod.compliance * self.mesh.quadrature
         return self.layout.state(weighted, np.zeros(weighted.shape))
-
-    @cached_property
-    def A(self) -> Array:
-        """The matrix A of the linear terms, (unknowns, unknowns)."""
-        N = self.mesh.node_count
-        stresses = slice(self.unknown_stress_count)
-        velocities = slice(self.unknown_stress_count, None)
-        WD = -self.mesh.matrices.weak_derivative.T
-        identity = np.eye(SE2_DIMENSION)
-        A = self._A_without_derivative_and_drag()
-        A[stresses, velocities] -= np.kron(identity, WD.T[:N])
-        A[velocities, stresses] += np.kron(identity, WD[:, :N]) * self.law_derivatives.tangent[:, :N].ravel()
-        A[velocities, velocities] -= np.diag((self.nodal_rod.drag * self.mesh.quadrature).ravel())
-        return A
 
     def times_force_derivative_of_A(self, X: Values) -> Values:
         """Product (dA/dF) X for states X, (..., unknowns): dA/dF is the derivative of A by the force."""
@@ -158,26 +139,6 @@ class MixedForm(RodOnMesh):
     def _weighted_derivative(self, field: Values) -> Values:
         """W D times a field at all nodes, both (3, ..., nodes + 1)."""
         return field @ -self.mesh.matrices.weak_derivative
-
-    def _A_without_derivative_and_drag(self) -> Array:
-        """Matrix of the terms of A without D and drag, (unknowns, unknowns). They are W ad_E V in the
-        equations of S, and W (ad*_E T S + ad*_{C S} Sigma) in the equations of V; T: tangent of the law."""
-        N = self.mesh.node_count
-        W = self.mesh.quadrature[:-1]
-        identity = np.eye(SE2_DIMENSION)[:, :, None]
-        E = self.nodal_rod.rest_strain[:, None, :N]
-        C = self.nodal_rod.compliance[:, None, :N]
-        T = self.law_derivatives.tangent[:, None, :N]
-        Sigma = self.nodal_rod.tip_stress[:, None, None]
-        s = np.arange(self.unknown_stress_count).reshape(SE2_DIMENSION, N)
-        v = np.arange(self.unknown_stress_count, self.unknown_count).reshape(SE2_DIMENSION, N + 1)[:, :N]
-        matrix = np.zeros((self.unknown_count, self.unknown_count))
-        # The tip contributes nothing: s = 0, and E enters only the equation of S(1), which is not solved.
-        matrix[s[:, None], v[None]] = W * ad(E, identity)
-        stress_part = identity * np.swapaxes(T, 0, 1)
-        strain_part = identity * np.swapaxes(C, 0, 1)
-        matrix[v[:, None], s[None]] = W * (coad(E, stress_part) + coad(strain_part, Sigma))
-        return matrix
 
 
 def axial_field(values: Array) -> Array:

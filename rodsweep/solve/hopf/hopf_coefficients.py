@@ -13,8 +13,7 @@ from dataclasses import dataclass, replace
 
 from ...determinant.parameter_path import ParameterPath
 from ...discretization.elements.elements import Elements
-from ...discretization.straight.elements import TRANSVERSE_COMPONENTS
-from ...discretization.straight.whole_matrices import straight_matrices
+from ...discretization.straight.straight_matrices import TRANSVERSE_COMPONENTS, StraightMatrices
 from ...model.rod import Rod
 from ..changes.arm.path import path_problem
 from ..changes.threshold_kinds import Threshold
@@ -117,7 +116,7 @@ def hopf_coefficients(rod: Rod, hopf: Threshold, accuracy: float) -> HopfCoeffic
         fine_form = normal_form_on(finer_elements, rod, w, accuracy)
         landau_change = abs(fine_form.landau - coarse_form.landau) / abs(fine_form.landau)
         # The rounding error of c follows from the condition number of the eigenvalue.
-        product_sizes = straight_matrices(fine_form.form, TRANSVERSE_COMPONENTS).A_product_magnitude(
+        product_sizes = StraightMatrices(fine_form.form, TRANSVERSE_COMPONENTS).A_product_magnitude(
             fine_form.p, fine_form.q
         )
         rounding_error = settings.landau_rounding_per_condition_number * product_sizes / abs(fine_form.w)

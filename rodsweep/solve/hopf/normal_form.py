@@ -26,13 +26,12 @@ from ...discretization.elements.elements import Elements, equal_edges, halved_el
 from ...discretization.elements.mesh import mesh_with_edges
 from ...discretization.elements.resolution import RESOLUTION_SETTINGS, resolution_for
 from ...discretization.straight.arm_resolution import arm_elements
-from ...discretization.straight.elements import (
+from ...discretization.straight.mixed_form import MixedForm
+from ...discretization.straight.straight_matrices import (
     LONGITUDINAL_COMPONENTS,
     TRANSVERSE_COMPONENTS,
-    StraightElements,
+    StraightMatrices,
 )
-from ...discretization.straight.mixed_form import MixedForm
-from ...discretization.straight.whole_matrices import WholeRodMatrices, straight_matrices
 from ...model.rod import Rod
 from ..unsolvable import Unsolvable
 
@@ -56,8 +55,8 @@ class NormalFormSettings:
     max_nodes: int = 2000
     """Maximum number of nodes for a uniform rod; Unsolvable is raised for a rod that needs more nodes."""
     max_arm_nodes: int = 1000
-    """Maximum number of nodes for an arm: the dense matrix from which its sparse matrices are made then takes
-    0.3 GB. On a cone 348 nodes give c within 1e-11, and only a mesh of 504 nodes shows this."""
+    """Maximum number of nodes for an arm. On a cone 348 nodes give c within 1e-11, and only a mesh of 504
+    nodes shows this."""
 
 
 NORMAL_FORM_SETTINGS = NormalFormSettings()
@@ -131,7 +130,7 @@ def normal_form(form: MixedForm, guess: complex) -> NormalForm:
     """Normal form of the eigenvalue of (A, M) nearest to `guess`. Raises Unsolvable if the eigenvalue is real
     or the inverse iteration does not converge."""
     transverse, longitudinal = (
-        straight_matrices(form, part) for part in (TRANSVERSE_COMPONENTS, LONGITUDINAL_COMPONENTS)
+        StraightMatrices(form, part) for part in (TRANSVERSE_COMPONENTS, LONGITUDINAL_COMPONENTS)
     )
     w, q, p = _eigenvalue_and_modes(transverse, guess)
     # The mode is transverse, so its quadratic fields are longitudinal: the opposite blocks are not needed.
@@ -165,8 +164,8 @@ def elements_for_landau_coefficient(rod: Rod, w: complex, accuracy: float) -> El
 
 
 def with_odd_order(elements: Elements) -> Elements:
-    """The same elements with an odd order, increased by 1 if even: elements of even order cannot be
-    eliminated one by one."""
+    """The same elements with an odd order, increased by 1 if even: the mesh rule was measured with odd
+    orders."""
     return Elements(elements.edges, elements.order | 1)
 
 
@@ -208,25 +207,23 @@ def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) ->
     return normal
 
 
-def _eigenvalue_and_modes(
-    elements: StraightElements | WholeRodMatrices, guess: complex
-) -> tuple[complex, Complex, Complex]:
+def _eigenvalue_and_modes(matrices: StraightMatrices, guess: complex) -> tuple[complex, Complex, Complex]:
     """(w, q, p): eigenvalue nearest to `guess`, and its transverse modes q and p, scaled as in the module
     docstring. Two-sided inverse iteration, shifted by the Rayleigh quotient. Raises Unsolvable."""
     w = complex(guess)
     for _ in range(NORMAL_FORM_SETTINGS.max_shifts):
         # At the eigenvalue itself the matrix would be singular.
         shift = w * (1 + NORMAL_FORM_SETTINGS.shift_offset)
-        factors = elements.lu_factors(shift)
+        factors = matrices.lu_factors(shift)
         # Odd unknowns are transverse. The longitudinal unknowns start at 0 and remain 0.
-        q = p = np.where(elements.form.reflection_signs < 0, 1 + 0j, 0)
+        q = p = np.where(matrices.form.reflection_signs < 0, 1 + 0j, 0)
         for _ in range(ITERATIONS_PER_SHIFT):
-            q = factors.solve(elements.times_M(q))
-            p = factors.solve(elements.times_M(p), adjoint=True)
+            q = factors.solve(matrices.times_M(q))
+            p = factors.solve(matrices.times_M(p), adjoint=True)
             q = q / np.abs(q).max()
             p = p / np.abs(p).max()
-        Mq = elements.times_M(q)
-        w = complex(np.vdot(p, elements.times_A(q)) / np.vdot(p, Mq))
+        Mq = matrices.times_M(q)
+        w = complex(np.vdot(p, matrices.times_A(q)) / np.vdot(p, Mq))
         if abs(w - shift) <= NORMAL_FORM_SETTINGS.converged_shift_distance * abs(w):
             break
     else:
@@ -235,5 +232,5 @@ def _eigenvalue_and_modes(
         raise Unsolvable(f"the eigenvalue near w = {guess:.6g} is real: no mode oscillates there")
     # The tip of q is at y = 1/2, so that |z| is the largest tip y of z q + c.c.; with <p, M q> = 1, a
     # projection on q needs no denominator.
-    scale = 2 * (elements.form.tip_y_row @ q)
+    scale = 2 * (matrices.form.tip_y_row @ q)
     return w, q / scale, p * scale.conj() / np.vdot(p, Mq).conj()

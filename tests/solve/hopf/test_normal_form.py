@@ -8,7 +8,7 @@ from pathlib import Path
 import mixed_motion as mixed
 import numpy as np
 import pytest
-from mixed_motion import mixed_form
+from mixed_motion import mixed_form, whole_A
 from rods import rod_of
 
 from rodsweep.determinant.roots.newton import eigenvalue_by_newton
@@ -58,7 +58,7 @@ def beyond(point, part):
 def test_modes_are_those_of_the_eigenvalue(rod, w):
     form, normal = form_of(rod), normal_of(rod, w)
     assert normal.w == pytest.approx(w, rel=1e-11)
-    pencil = form.A - normal.w * np.diag(form.M)
+    pencil = whole_A(form) - normal.w * np.diag(form.M)
     for matrix, vector in ((pencil, normal.q), (pencil.conj().T, normal.p)):
         residual = np.abs(matrix @ vector)
         assert residual.max() <= 1e-13 * (np.abs(matrix) @ np.abs(vector)).max()
@@ -103,8 +103,8 @@ def test_second_order_fields_satisfy_their_equations(rod, w):
     form, normal = form_of(rod), normal_of(rod, w)
     q, M = normal.q, np.diag(form.M)
     for matrix, field, source in (
-        (2j * normal.w.imag * M - form.A, normal.h20, form.bilinear(q, q)),
-        (-form.A, normal.h11, form.bilinear(q, q.conj())),
+        (2j * normal.w.imag * M - whole_A(form), normal.h20, form.bilinear(q, q)),
+        (-whole_A(form), normal.h11, form.bilinear(q, q.conj())),
     ):
         assert np.abs(matrix @ field - source).max() <= 1e-12 * (np.abs(matrix) @ np.abs(field)).max()
         assert np.all(form.reflection_signs * field == field)

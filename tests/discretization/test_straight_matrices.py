@@ -1,13 +1,13 @@
-"""The straight rod's matrices element by element, against those of the whole rod."""
+"""The straight rod's matrices of some components, against those of all components."""
 
 import numpy as np
 import pytest
-from mixed_motion import mixed_form
+from mixed_motion import mixed_form, whole_A
 
-from rodsweep.discretization.straight.elements import (
+from rodsweep.discretization.straight.straight_matrices import (
     LONGITUDINAL_COMPONENTS,
     TRANSVERSE_COMPONENTS,
-    StraightElements,
+    StraightMatrices,
 )
 from rodsweep.model.rod import Rod
 
@@ -36,15 +36,15 @@ def vectors(form, parity, seed=0):
 @RODS
 @MESHES
 @PARTS
-def test_products_are_those_of_the_whole_rod(rod, elements, order, components, parity):
+def test_products_are_those_of_all_components(rod, elements, order, components, parity):
     form = mixed_form(rod.with_values(gamma1=0.7), elements, order)
-    by_elements = StraightElements(form, components)
+    restricted = StraightMatrices(form, components)
     p, q = vectors(form, parity)
-    A, M = form.A, form.M
-    for found, exact in ((by_elements.times_A(q), A @ q), (by_elements.times_M(q), M * q)):
+    A, M = whole_A(form), form.M
+    for found, exact in ((restricted.times_A(q), A @ q), (restricted.times_M(q), M * q)):
         assert np.abs(found - exact).max() <= 1e-14 * np.abs(exact).max()
     size = np.abs(p) @ (np.abs(A) @ np.abs(q))
-    assert size <= by_elements.A_product_magnitude(p, q) * (1 + 1e-12) <= 2 * size
+    assert size <= restricted.A_product_magnitude(p, q) * (1 + 1e-12) <= 2 * size
 
 
 @pytest.mark.long
@@ -53,19 +53,12 @@ def test_products_are_those_of_the_whole_rod(rod, elements, order, components, p
 @MESHES
 @PARTS
 @pytest.mark.parametrize("shift", [0.0, 190j, 3 + 2500j])
-def test_solutions_are_those_of_the_whole_rod(rod, elements, order, components, parity, shift):
+def test_solutions_are_those_of_all_components(rod, elements, order, components, parity, shift):
     form = mixed_form(rod.with_values(gamma1=0.7), elements, order)
-    factors = StraightElements(form, components).lu_factors(shift)
+    factors = StraightMatrices(form, components).lu_factors(shift)
     b, _ = vectors(form, parity)
-    K = form.A - shift * np.diag(form.M)
+    K = whole_A(form) - shift * np.diag(form.M)
     for matrix, x in ((K, factors.solve(b)), (K.conj().T, factors.solve(b, adjoint=True))):
         residual = np.abs(matrix @ x - b)[form.reflection_signs == parity]
         assert residual.max() <= 1e-13 * (np.abs(matrix) @ np.abs(x)).max()
         assert np.all(x[form.reflection_signs != parity] == 0)
-
-
-def test_several_elements_of_even_order_are_refused():
-    with pytest.raises(ValueError, match="odd order, not 8"):
-        StraightElements(
-            mixed_form(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4), 2, 8), LONGITUDINAL_COMPONENTS
-        ).lu_factors(0.0)

@@ -1,0 +1,176 @@
+"""Sparse matrices A and M of the mixed form about the straight rod (`mixed_form`).
+
+About the straight rod longitudinal and transverse components are decoupled and have separate matrices.
+Unknowns of different elements are coupled only at the nodes between elements.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg.lapack import zgetrf, zgetrs
+from scipy.sparse import csc_array
+from scipy.sparse.linalg import splu
+
+from ...arrays import Array, Complex
+from ...model.balance import Values, ad, coad
+from ..elements.elements import ELEMENT_SETTINGS
+from ..elements.mesh import Mesh
+from ..state_layout import SE2_DIMENSION
+from .mixed_form import MixedForm
+
+LONGITUDINAL_COMPONENTS = (0,)
+"""Indices of the components of stresses and velocities in se(2) that reflection in the rod's axis keeps."""
+TRANSVERSE_COMPONENTS = (1, 2)
+"""Indices of the components of stresses and velocities in se(2) that change their sign under reflection in
+the rod's axis."""
+
+
+class _Pattern(NamedTuple):
+    """Sparsity pattern of A for some components on a mesh; it contains the full diagonal. i, j: node indices
+    of the nonzero entries of W D without the column of the tip, (m,). positions: index in the pattern of each
+    value that `StraightMatrices.A` concatenates. indices, indptr: rows and column starts in scipy's order.
+    diagonal, columns: indices in the pattern of the diagonal entries, (n,), and column of each entry."""
+
+    i: NDArray[np.int_]
+    j: NDArray[np.int_]
+    positions: NDArray[np.int_]
+    indices: NDArray[np.int32]
+    indptr: NDArray[np.int32]
+    diagonal: NDArray[np.int_]
+    columns: NDArray[np.int_]
+
+
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
+def _pattern(mesh: Mesh, component_count: int) -> _Pattern:
+    """The pattern on a mesh for a number of components of stresses and velocities."""
+    N = mesh.node_count
+    s = np.arange(component_count * N).reshape(-1, N)
+    v = s.size + np.arange(component_count * (N + 1)).reshape(-1, N + 1)
+    size = s.size + v.size
+    i, j = np.nonzero(mesh.matrices.weak_derivative.T[:, :N])
+    entries = (
+        (s[:, j], v[:, i]),
+        (v[:, i], s[:, j]),
+        (v, v),
+        (s, s),
+        (s[:, None], v[:, :N]),
+        (v[:, None, :N], s),
+    )
+    keys = np.concatenate([(columns * size + rows).ravel() for rows, columns in entries])
+    pattern, positions = np.unique(keys, return_inverse=True)
+    columns, indices = np.divmod(pattern, size)
+    indptr = np.searchsorted(columns, np.arange(size + 1)).astype(np.int32)
+    diagonal = np.flatnonzero(columns == indices)
+    return _Pattern(i, j, positions, indices.astype(np.int32), indptr, diagonal, columns)
+
+
+@dataclass(frozen=True, eq=False)
+class StraightMatrices:
+    """A and M of a `MixedForm` about its straight rod, restricted to some components of stresses and
+    velocities. components: indices of these components. Vectors are states of the form, (unknowns,); all
+    other components are ignored, and are 0 in results."""
+
+    form: MixedForm
+    components: tuple[int, ...]
+
+    @cached_property
+    def state_indices(self) -> NDArray[np.int_]:
+        """Indices in a state of the unknowns of `components`, (n,)."""
+        mask = np.zeros((SE2_DIMENSION, self.form.mesh.node_count + 1))
+        mask[list(self.components)] = 1
+        return np.flatnonzero(self.form.layout.state(mask, mask))
+
+    @property
+    def _pattern(self) -> _Pattern:
+        return _pattern(self.form.mesh, len(self.components))
+
+    @cached_property
+    def A(self) -> csc_array:
+        """Rows and columns of the matrix A for the n unknowns of `components`, (n, n)."""
+        form = self.form
+        own = list(self.components)
+        pattern = self._pattern
+        WD = -form.mesh.matrices.weak_derivative.T[pattern.i, pattern.j]
+        strain_rates, forces = (terms[np.ix_(own, own)] for terms in self._terms_without_derivative())
+        values = (
+            np.tile(-WD, len(own)),
+            WD * form.law_derivatives.tangent[own][:, pattern.j],
+            -(form.nodal_rod.drag * form.mesh.quadrature)[own],
+            np.zeros(len(own) * form.mesh.node_count),
+            strain_rates,
+            forces,
+        )
+        entries = np.bincount(pattern.positions, np.concatenate([part.ravel() for part in values]))
+        return csc_array((entries, pattern.indices, pattern.indptr), shape=2 * (len(pattern.diagonal),))
+
+    def _terms_without_derivative(self) -> tuple[Array, Array]:
+        """Returns (W ad_E, W (ad*_E T + ad*_{C .} Sigma)), the terms of A without D and drag, by equation and
+        component at each node but the tip, (3, 3, nodes) each: the terms of V in the equations of S, and of S
+        in the equations of V; T: tangent of the law. The tip contributes nothing: s = 0, and E enters only
+        the equation of S(1), which is not solved."""
+        nodal = self.form.nodal_rod
+        W = self.form.mesh.quadrature[:-1]
+        identity = np.eye(SE2_DIMENSION)[:, :, None]
+        E = nodal.rest_strain[:, None, :-1]
+        stress_part = identity * self.form.law_derivatives.tangent[None, :, :-1]
+        strain_part = identity * nodal.compliance[None, :, :-1]
+        forces = coad(E, stress_part) + coad(strain_part, nodal.tip_stress[:, None, None])
+        return W * ad(E, identity), W * forces
+
+    @cached_property
+    def M(self) -> Array:
+        """Diagonal of M for the unknowns of `components`, (n,)."""
+        return self.form.M[self.state_indices]
+
+    def times_A(self, x: Values) -> Values:
+        """Product A x, (unknowns,)."""
+        return self._scatter(self.A @ x[self.state_indices])
+
+    def times_M(self, x: Values) -> Values:
+        """Product M x, (unknowns,)."""
+        return self._scatter(self.M * x[self.state_indices])
+
+    def A_product_magnitude(self, p: Values, q: Values) -> float:
+        """The number |p| |A| |q|, with the modulus of every entry. The rounding error of p A q is about
+        machine epsilon times this number. p, q: (unknowns,)."""
+        return float(np.abs(p[self.state_indices]) @ (abs(self.A) @ np.abs(q[self.state_indices])))
+
+    def lu_factors(self, shift: complex) -> "StraightFactors":
+        """LU factorisation of A - shift M."""
+        pattern = self._pattern
+        values = self.A.data.astype(complex)
+        values[pattern.diagonal] -= shift * self.M
+        if len(self.M) > ELEMENT_SETTINGS.max_dense_unknowns:
+            sparse = splu(csc_array((values, pattern.indices, pattern.indptr), shape=self.A.shape))
+            return StraightFactors(self, lambda b, adjoint: sparse.solve(b, trans="H" if adjoint else "N"))
+        K = np.zeros(self.A.shape, complex, order="F")
+        K[pattern.indices, pattern.columns] = values
+        factors, pivots, _ = zgetrf(K, overwrite_a=True)
+        return StraightFactors(
+            self, lambda b, adjoint: zgetrs(factors, pivots, b, trans=2 if adjoint else 0)[0]
+        )
+
+    def _scatter(self, values: Values) -> Values:
+        """A state, (unknowns,), with `values`, (n,), in the unknowns of `components`, 0 in all others."""
+        x = np.zeros(self.form.unknown_count, values.dtype)
+        x[self.state_indices] = values
+        return x
+
+
+@dataclass(frozen=True, eq=False)
+class StraightFactors:
+    """LU factorisation of the matrix K = A - shift M; solutions are inf or nan if K is singular. solve_own:
+    function of (right-hand side, adjoint) that solves for the n unknowns of `matrices.components`, (n,)."""
+
+    matrices: StraightMatrices
+    solve_own: Callable[[Complex, bool], Complex]
+
+    def solve(self, b: Values, adjoint: bool = False) -> Complex:
+        """The solution x, (unknowns,), of K x = b or, if `adjoint`, of K^H x = b; b: (unknowns,)."""
+        matrices = self.matrices
+        right_side = b[matrices.state_indices].astype(complex)
+        return matrices._scatter(self.solve_own(right_side, adjoint))
