@@ -97,9 +97,15 @@ def _status_and_message(
     failures = "; ".join(filter(None, (c.message for c in coefficients)))
     known_coefficients = [c for c in coefficients if c.are_known]
     stored_points = hopf_points.thresholds[: request.max_thresholds]
-    accuracy_text = missed_accuracy_text("F", stored_points, request.accuracy)
-    is_inaccurate = bool(accuracy_text) or any(
-        max(c.landau_error, c.growth_slope_error) > request.accuracy for c in known_coefficients
+    inaccurate_forces = ", ".join(
+        f"{hopf.value:.9g}"
+        for hopf, c in zip(stored_points, coefficients, strict=True)
+        if max(c.landau_error, c.growth_slope_error) > request.accuracy
+    )
+    accuracy_texts = (
+        missed_accuracy_text("F", stored_points, request.accuracy),
+        inaccurate_forces
+        and f"the requested accuracy is missed by the coefficients at F = {inaccurate_forces}",
     )
     # From the most to the least serious.
     applies_by_status = {
@@ -108,10 +114,10 @@ def _status_and_message(
         CriticalityStatus.window_open: not math.isnan(hopf_points.open_range[0]),
         CriticalityStatus.list_full: len(hopf_points.thresholds) > request.max_thresholds,
         CriticalityStatus.sign_undecided: any(c.criticality == 0 for c in known_coefficients),
-        CriticalityStatus.accuracy_not_reached: is_inaccurate,
+        CriticalityStatus.accuracy_not_reached: any(accuracy_texts),
         CriticalityStatus.not_certified: request.certify and not hopf_points.proved,
     }
     status = next((status for status, applies in applies_by_status.items() if applies), CriticalityStatus.ok)
-    # A more serious status does not say that a stored Hopf point is inaccurate, so the message says it.
-    hidden_text = accuracy_text if status != CriticalityStatus.accuracy_not_reached else ""
-    return status, "; ".join(filter(None, (failures, hopf_points.doubt_text, hidden_text)))
+    # A more serious status does not say that a result is inaccurate, so the message says it.
+    hidden_texts = accuracy_texts if status != CriticalityStatus.accuracy_not_reached else ()
+    return status, "; ".join(filter(None, (failures, hopf_points.doubt_text, *hidden_texts)))

@@ -277,6 +277,14 @@ def test_more_than_rounding_leaves_is_not_promised():
     assert all(1e-13 < known.landau_error < 1e-11 for known in found.coefficients)
 
 
+def test_full_list_also_names_its_inaccurate_coefficients():
+    found = solved(Rod(F=0.0, k1=1e4, k2=20.0, gamma3=0.0), accuracy=1e-13, F_max=120.0, most=1)
+    assert found.status == CriticalityStatus.list_full
+    assert found.coefficients[0].landau_error > 1e-13
+    force = f"{found.search_result.thresholds[0].value:.9g}"
+    assert "accuracy is missed" in found.message and f"coefficients at F = {force}" in found.message
+
+
 def test_list_that_is_full_says_so():
     found = solved(STRETCHABLE, most=1)
     assert found.status == CriticalityStatus.list_full
