@@ -35,6 +35,7 @@ from .settled_motion import (
     ReturnTimeEstimate,
     SettledMotion,
     max_settled_distance_from_cycle,
+    with_reduced_tolerance,
 )
 from .status import IntegratedCycleStatus
 from .straight_rod import straight_rod_stability
@@ -81,9 +82,8 @@ class _IntegrationUntilSettled:
 
     def cycle(self) -> CycleOutcome:
         """The outcome for the rod: the cycle with its errors, or the status of a motion without a cycle."""
-        w = straight_rod_stability(
-            self.limiting_rod
-        ).w  # exact; an eigenvalue of the mesh has errors up to 1e-3
+        # Exact; an eigenvalue of the mesh has errors up to 1e-3.
+        w = straight_rod_stability(self.limiting_rod).w
         straight = CycleOutcome(
             status=IntegratedCycleStatus.straight, linear_growth_rate=w.real, linear_frequency=w.imag
         )
@@ -114,9 +114,7 @@ class _IntegrationUntilSettled:
         """The motion `settled`, continued on a finer mesh with a smaller tolerance until it settles again."""
         coarser_system = self.system
         self.mesh = mesh_with_edges(self.mesh.edges, self.mesh.order + INTEGRATION_SETTINGS.order_increase)
-        self.scheme = replace(
-            self.scheme, tolerance=INTEGRATION_SETTINGS.successive_tolerance_ratio * self.scheme.tolerance
-        )
+        self.scheme = with_reduced_tolerance(self.scheme)
         self.intervals_per_return *= INTEGRATION_SETTINGS.measurement_interval_ratio
         self.system = ExplicitSystem(self.rod, self.mesh)
         z = self.system.state_of_stresses(coarser_system.stresses_on_mesh(self.system.mesh, settled.state))
@@ -127,7 +125,7 @@ class _IntegrationUntilSettled:
         past_moments: deque[Array] = deque(maxlen=RETURN_SETTINGS.max_returns_per_period + 1)
         angle_row = tip_angle_row(self.system)
         time_step = self.leading_mode.period / TRANSIENT_SETTINGS.first_steps_per_period
-        distances = ReturnDistances(INTEGRATION_SETTINGS.return_error_over_tolerance * self.scheme.tolerance)
+        distances = ReturnDistances(self.scheme.tolerance)
         max_returns = self.request.most_periods
         while self.return_count < max_returns:
             report(lambda: SolvePosition(f"{self.return_count} of at most {max_returns} returns of the tip"))
@@ -151,11 +149,13 @@ class _IntegrationUntilSettled:
                 continue
             returns_per_repetition, distance = recurrence(list(past_moments))
             distances.record_test(distance, returns_per_repetition / returns)
-            # For distances in a geometric sequence the distance from the cycle is distance/(1 - rate).
-            tolerance = max_settled_distance_from_cycle(self.request.accuracy)
-            if distance <= tolerance * (1 - distances.contraction_rate):
+            if distances.have_settled(self.request.accuracy):
                 self.settled_count = self.return_count
                 return SettledMotion(z, returns_per_repetition, time_step)
+            if distances.are_integration_errors:
+                self.scheme = with_reduced_tolerance(self.scheme)
+                distances.restart(self.scheme.tolerance)
+                past_moments.clear()
         message = not_settled_text(self.return_count, len(past_moments), distances.last, self.settled_count)
         raise NoCycleFound(IntegratedCycleStatus.not_settled, message)
 

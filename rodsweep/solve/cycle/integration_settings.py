@@ -28,6 +28,10 @@ class IntegrationSettings:
     min_distances_below_integration_error: int = 3
     """Number of successive distances below the distance that integration errors may cause, which show that
     the integration errors are smaller."""
+    max_integration_error_ratio: float = 3.0
+    """Successive distances that do not decrease are integration errors if they are at most this factor times
+    the distance that integration errors were assumed to cause: 2.0 was measured at an accuracy of 1e-2. The
+    local tolerance is then reduced by `successive_tolerance_ratio`."""
     difference_safety_factor: float = 2.0
     """Safety factor: error estimate divided by the difference between the results of two integrations."""
     nearby_rod_error_over_accuracy: float = 0.5

@@ -1,10 +1,11 @@
 """Criterion by which an integrated motion has settled on a cycle, the settled motion, and the exception for a
 motion without a cycle."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isfinite, isnan, nan
 
 from ...arrays import Array
+from ..motion.time_scheme import TimeScheme
 from .integration_settings import INTEGRATION_SETTINGS
 from .status import IntegratedCycleStatus
 
@@ -23,6 +24,11 @@ class SettledMotion:
 def max_settled_distance_from_cycle(accuracy: float) -> float:
     """Largest relative distance of a settled motion from its cycle, for a requested relative accuracy."""
     return INTEGRATION_SETTINGS.settled_distance_over_accuracy * accuracy
+
+
+def with_reduced_tolerance(scheme: TimeScheme) -> TimeScheme:
+    """The time scheme `scheme` with a smaller local tolerance."""
+    return replace(scheme, tolerance=INTEGRATION_SETTINGS.successive_tolerance_ratio * scheme.tolerance)
 
 
 class ReturnTimeEstimate:
@@ -52,25 +58,33 @@ class ReturnDistances:
     """Relative distances between the returns of a motion that approaches a cycle, measured at successive
     tests.
 
-    integration_error: distance that integration errors alone may cause. contraction_rate: upper estimate of
+    integration_error: distance that integration errors alone may cause. are_integration_errors: whether the
+    distances are near `integration_error` and no longer decrease. contraction_rate: upper estimate of
     the factor by which the distance from the cycle changes in one period. last: distance at the last test;
     NaN before the first test."""
 
-    def __init__(self, integration_error: float) -> None:
-        self.integration_error = integration_error
-        self.contraction_rate = 0.0
+    def __init__(self, local_tolerance: float) -> None:
         self.last = nan
+        self.restart(local_tolerance)
+
+    def restart(self, local_tolerance: float) -> None:
+        """Starts the estimates again, for a new local tolerance of the integration."""
+        self.integration_error = INTEGRATION_SETTINGS.return_error_over_tolerance * local_tolerance
+        self.are_integration_errors = False
+        self.contraction_rate = 0.0
+        self._previous = nan
         self._last_above_error = nan
         self._below_error: list[float] = []
+        self._near_error: list[float] = []
 
     def record_test(self, distance: float, period_ratio: float) -> None:
         """Records the distance at a test. period_ratio: period divided by the time between two tests."""
-        if self.last > self.integration_error:
+        if self._previous > self.integration_error:
             # Below the integration error the quotient of two distances is not the contraction rate.
             self.contraction_rate = (
-                min(max(distance, self.integration_error) / self.last, 1.0) ** period_ratio
+                min(max(distance, self.integration_error) / self._previous, 1.0) ** period_ratio
             )
-        elif isnan(self.last):
+        elif isnan(self._previous):
             # A single distance above the error gives no rate; 1 stands for an unknown distance.
             self.contraction_rate = 0.0 if distance <= self.integration_error else 1.0
         if distance > self.integration_error:
@@ -86,7 +100,19 @@ class ReturnDistances:
             reduction = max(last_distances) / self._last_above_error
             rate = reduction ** (period_ratio / len(self._below_error))
             self.contraction_rate = min(self.contraction_rate, rate)
-        self.last = distance
+        limit = INTEGRATION_SETTINGS.max_integration_error_ratio * self.integration_error
+        self._near_error = [*self._near_error, distance] if distance <= limit else []
+        near = self._near_error[-INTEGRATION_SETTINGS.min_distances_below_integration_error :]
+        # The distances of a motion that approaches a cycle slowly decrease.
+        self.are_integration_errors = (
+            len(near) == INTEGRATION_SETTINGS.min_distances_below_integration_error and near[-1] >= near[0]
+        )
+        self.last = self._previous = distance
+
+    def have_settled(self, accuracy: float) -> bool:
+        """Whether the motion is so near its cycle that it has settled, for a requested relative accuracy."""
+        # For distances in a geometric sequence the distance from the cycle is distance/(1 - rate).
+        return self.last <= max_settled_distance_from_cycle(accuracy) * (1 - self.contraction_rate)
 
 
 class NoCycleFound(Exception):

@@ -178,7 +178,7 @@ def test_a_mode_with_the_tip_almost_at_rest_starts_a_small_motion():
 
 def rates_of(distances):
     """Contraction rate after each of the tests with these distances, with a noise of 1e-3."""
-    seen = ReturnDistances(1e-3)
+    seen = ReturnDistances(1e-4)
     rates = []
     for distance in distances:
         seen.record_test(distance, 0.2)
@@ -191,6 +191,16 @@ def test_distances_that_stay_below_the_noise_show_that_the_motion_has_settled():
     assert rates_of([1.05e-3] + [8e-5] * 4)[1:] == pytest.approx([0.99, 0.99, 0.842, 0.842], abs=1e-3)
     slow = [1.05e-3 * 0.998**k for k in range(200)]
     assert min(rates_of(slow)) >= 0.998**0.2
+
+
+@pytest.mark.parametrize("amplitude", [0.01, 0.5])
+def test_distances_that_are_integration_errors_do_not_keep_a_motion_from_settling(amplitude):
+    """The distances of returns stayed at 2e-4 and at 1e-3 with a local tolerance of 1e-4, for 200 returns."""
+    rod = rod_of(60.0, 1e4, 1e4, 1e-2, 1.0)
+    one = solve_cycle(rod, request(1e-8))
+    other = solve_by_integration(rod, replace(request(1e-2, most_periods=60), amplitude=amplitude))
+    assert other.status == IntegratedCycleStatus.cycle
+    assert abs(other.measures.period / one.measures.period - 1) <= other.errors.period_error
 
 
 def test_a_motion_that_settles_fast_is_settled_at_low_accuracy():
