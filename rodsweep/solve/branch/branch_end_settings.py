@@ -32,8 +32,8 @@ class BranchEndSettings:
     """Relative tolerance of the extrapolated parameter, added to the tolerance by `extrapolation_tolerance`;
     the larger of this number and the accuracy is used."""
     extrapolated_period_tolerance: float = 1e-3
-    """Relative tolerance of the extrapolated period, added to the tolerance by `extrapolation_tolerance`; at
-    a symmetry breaking the larger of this number and the accuracy is used."""
+    """Relative tolerance of the extrapolated period, added to the tolerance by `extrapolation_tolerance`; the
+    larger of this number and the accuracy is used."""
     range_end_step_tolerance: float = 1e-6
     """Tolerance of the predicted arc length to the end of the parameter range, divided by the step. Newton's
     method then solves the cycle exactly at this end."""
@@ -53,3 +53,22 @@ class BranchEndSettings:
 
 
 BRANCH_END_SETTINGS = BranchEndSettings()
+
+
+def is_extrapolated_to(
+    extrapolated: tuple[float, float], last: tuple[float, float], end: tuple[float, float], accuracy: float
+) -> bool:
+    """Whether a branch ends at a Hopf point or a symmetry breaking, within tolerances.
+
+    Each point is (parameter coordinate, period): extrapolated along the branch from its last cycle, of this
+    cycle, and at the end. accuracy: relative accuracy of the branch.
+    """
+    settings = BRANCH_END_SETTINGS
+    # The extrapolation is exact at the end, where only the errors of the last cycle and of the end remain.
+    tolerances = settings.extrapolated_parameter_tolerance, settings.extrapolated_period_tolerance
+    return all(
+        abs(value - end_value)
+        <= settings.extrapolation_tolerance * abs(last_value - end_value)
+        + max(tolerance, accuracy) * abs(end_value)
+        for value, last_value, end_value, tolerance in zip(extrapolated, last, end, tolerances, strict=True)
+    )

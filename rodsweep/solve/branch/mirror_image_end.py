@@ -10,7 +10,7 @@ from ..unsolvable import Unsolvable
 from .arc_length_step import ARC_STEP_CONTROL, BranchCycle, arc_length_between
 from .bordered.scale import deflection_of
 from .branch_curve import BranchEnd
-from .branch_end_settings import BRANCH_END_SETTINGS
+from .branch_end_settings import BRANCH_END_SETTINGS, is_extrapolated_to
 from .branch_limits import BranchLimits
 from .branch_record import branch_end_point
 from .range_end_near_hopf import end_at_range_end_near_hopf, has_accurate_range_end
@@ -102,14 +102,11 @@ def _shrinks_to(start: BranchCycle, hopf: HopfBranchStart, accuracy: float) -> b
     length = deflection_of(start.orbit) / (2 * start.unit_tangent[0] * start.scale.deflection_unit)
     coordinate = start.parameter_coordinate - length * start.tangent[-1]
     period = start.orbit.period - length * start.tangent[-2]
-    settings = BRANCH_END_SETTINGS
-    tolerance = settings.extrapolation_tolerance * abs(start.parameter_coordinate - hopf.parameter_coordinate)
-    tolerance += max(settings.extrapolated_parameter_tolerance, accuracy) * abs(hopf.parameter_coordinate)
-    extrapolated_period_tolerance = settings.extrapolation_tolerance * abs(start.orbit.period - hopf.period)
-    extrapolated_period_tolerance += settings.extrapolated_period_tolerance * hopf.period
-    return (
-        abs(coordinate - hopf.parameter_coordinate) <= tolerance
-        and abs(period - hopf.period) <= extrapolated_period_tolerance
+    return is_extrapolated_to(
+        (coordinate, period),
+        (start.parameter_coordinate, start.orbit.period),
+        (hopf.parameter_coordinate, hopf.period),
+        accuracy,
     )
 
 

@@ -18,7 +18,7 @@ from ..orbit.orbit import Orbit, node_times
 from ..orbit.symmetry import NO_SYMMETRY
 from ..unsolvable import Unsolvable
 from .arc_length_step import ARC_STEP_CONTROL, BranchCycle, arc_length_between
-from .branch_end_settings import BRANCH_END_SETTINGS
+from .branch_end_settings import BRANCH_END_SETTINGS, is_extrapolated_to
 from .special.special_point import SpecialKind, SpecialPoint
 
 
@@ -138,22 +138,9 @@ def _symmetry_breaking_index_ahead(
         if symmetric_orbit is None:
             continue
         symmetric_coordinate = symmetric_orbit.form.rod.coordinate(start.scale.parameter_name)
-        tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(
-            start.parameter_coordinate - symmetric_coordinate
-        )
-        # The extrapolation is exact at the symmetry breaking, where only the errors of the two cycles remain.
-        tolerance += max(BRANCH_END_SETTINGS.extrapolated_parameter_tolerance, accuracy) * abs(
-            symmetric_coordinate
-        )
-        extrapolated_period_tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(
-            orbit.period - symmetric_orbit.period
-        )
-        extrapolated_period_tolerance += (
-            max(BRANCH_END_SETTINGS.extrapolated_period_tolerance, accuracy) * symmetric_orbit.period
-        )
-        if (
-            abs(coordinate - symmetric_coordinate) <= tolerance
-            and abs(period - symmetric_orbit.period) <= extrapolated_period_tolerance
+        symmetric = symmetric_coordinate, symmetric_orbit.period
+        if is_extrapolated_to(
+            (coordinate, period), (start.parameter_coordinate, orbit.period), symmetric, accuracy
         ):
             return index
     return -1

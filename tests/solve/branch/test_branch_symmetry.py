@@ -20,6 +20,7 @@ from rodsweep.solve.branch.branch_continuation import (
     follow_from_cycle,
 )
 from rodsweep.solve.branch.branch_curve import BranchCurve
+from rodsweep.solve.branch.branch_end_settings import is_extrapolated_to
 from rodsweep.solve.branch.branch_limits import BranchLimits
 from rodsweep.solve.branch.branch_mesh_choice import solve_on_sufficient_mesh
 from rodsweep.solve.branch.branches import BranchesOfRod
@@ -198,6 +199,13 @@ def test_a_multiplier_that_passes_minus_one_is_told_by_the_symmetry(has, kind):
         for h in (-0.9, -1.1)
     )
     assert special_kinds_between(here, there) == ([SpecialKind[kind]], True)
+
+
+def test_errors_within_the_accuracy_do_not_keep_a_branch_from_its_end():
+    """The period at a Hopf point had a tolerance of 1e-3 at any accuracy."""
+    end, with_errors = (40.0, 0.04), (40.2, 0.0402)
+    assert is_extrapolated_to(with_errors, end, end, accuracy=1e-2)
+    assert not is_extrapolated_to(with_errors, end, end, accuracy=1e-4)
 
 
 def test_the_file_says_which_branches_meet(symmetric, asymmetric):
