@@ -21,7 +21,8 @@ from .rod import Rod
 WAVE_SAMPLE_COUNT = 64
 """Number of samples of K = kappa^2, with equal ratios. A ratio of 1.15 suffices for an estimate."""
 SAMPLES_PER_INTERVAL = 33
-"""Number of points between two neighbouring breaks of an arm's profile at which local waves are computed."""
+"""Number of points between two neighbouring breaks of an arm's profile at which local waves are computed, if
+the coefficients vary."""
 CACHED_ARM_COUNT = 16
 """Maximum number of arms, and of materials, in the caches of this module."""
 MIN_K_FRACTION = 1e-4
@@ -55,18 +56,22 @@ class SampledArm(NamedTuple):
 @lru_cache(maxsize=CACHED_ARM_COUNT)
 def sampled_arm(rod: Rod) -> SampledArm:
     """Sample points of the arm `rod` and the local coefficients at these points, cached."""
-    points, weights = _interval_midpoints(rod.material)
+    # Where the coefficients are constant a single sample is exact.
+    points, weights = _interval_midpoints(
+        rod.material, 1 if rod.material.is_piecewise_constant(rod.taper) else SAMPLES_PER_INTERVAL
+    )
     return SampledArm(points, weights, rod.local_coefficients(points))
 
 
 @lru_cache(maxsize=CACHED_ARM_COUNT)
-def _interval_midpoints(material: RodMaterial) -> tuple[Array, Array]:
-    """Returns (midpoints, lengths) of short intervals of u between breaks of a profile, (points,) each."""
+def _interval_midpoints(material: RodMaterial, count: int) -> tuple[Array, Array]:
+    """Returns (midpoints, lengths) of `count` equal parts of each interval between breaks of a profile,
+    (points,) each."""
     # Midpoints avoid the breaks, at which the factors have two values.
     lengths = np.diff(material.breaks)
-    fractions = (np.arange(SAMPLES_PER_INTERVAL) + 0.5) / SAMPLES_PER_INTERVAL
+    fractions = (np.arange(count) + 0.5) / count
     points = (material.breaks[:-1, None] + lengths[:, None] * fractions).ravel()
-    return points, np.repeat(lengths / SAMPLES_PER_INTERVAL, SAMPLES_PER_INTERVAL)
+    return points, np.repeat(lengths / count, count)
 
 
 @lru_cache(maxsize=CACHED_ARM_COUNT)

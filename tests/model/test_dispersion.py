@@ -5,7 +5,15 @@ import math
 import numpy as np
 import pytest
 
-from rodsweep.model.dispersion import largest_growth_and_wave_number, local_growths_and_wave_numbers
+from rodsweep.determinant.arm.determinant import ArmDeterminant, coefficient_samples
+from rodsweep.model.dispersion import (
+    SAMPLES_PER_INTERVAL,
+    largest_growth_and_wave_number,
+    local_growths_and_wave_numbers,
+    sampled_arm,
+)
+from rodsweep.model.material.profile import Profile
+from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 
 
@@ -61,3 +69,22 @@ def test_local_waves_of_a_slightly_tapered_arm_are_those_of_the_uniform_rod() ->
     rate, wave_number = largest_growth_and_wave_number(uniform)
     np.testing.assert_allclose(rates, rate, rtol=1e-7)
     np.testing.assert_allclose(wave_numbers, wave_number, rtol=1e-7)
+
+
+def test_one_sample_of_a_constant_segment_gives_the_integrals_of_many():
+    rows = tuple((r**2, r**2, r**4, 1.0, 1.0, r**2) for r in (1.0, 1.0, 0.6, 0.6))
+    almost = ((1 + 1e-12, *rows[0][1:]), *rows[1:])
+    u = (0.0, 0.4, 0.4, 1.0)
+    constant, varying = (
+        Rod(F=14.0, k1=1e4, k2=1e2, gamma3=1e-2, material=RodMaterial(profile=Profile(u, table)))
+        for table in (rows, almost)
+    )
+    assert len(sampled_arm(constant).points) == 2
+    assert len(sampled_arm(varying).points) == 2 * SAMPLES_PER_INTERVAL
+    for w in (-3e3 + 0j, 20 + 150j):
+        one, many = ArmDeterminant(constant), ArmDeterminant(varying)
+        assert one.mean_wave_number_bound(w) == pytest.approx(many.mean_wave_number_bound(w), rel=1e-11)
+        assert one.w_scale(w) == pytest.approx(many.w_scale(w), rel=1e-11)
+    # Along the taper one arm only has constant segments; its points would miss the others' variation.
+    path = [constant, constant.with_values(taper=0.5)]
+    assert len(coefficient_samples(path).points) == 2 * SAMPLES_PER_INTERVAL

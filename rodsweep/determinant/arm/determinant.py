@@ -111,7 +111,8 @@ class ArmElements(NamedTuple):
 
 def coefficient_samples(rods: list[Rod]) -> CoefficientSamples:
     """Samples of the arms `rods`, whose profiles have equal breaks."""
-    points, weights, _ = sampled_arm(rods[0])
+    # Along the taper, coefficients are constant in a single arm only: the points of another arm serve all.
+    points, weights, _ = sampled_arm(min(rods, key=lambda rod: rod.material.is_piecewise_constant(rod.taper)))
     coefficients = Rod.local_coefficients_of_rods(rods, points)
     forces = np.array([[rod.F] for rod in rods])
     return CoefficientSamples(points, coefficients, exponent_samples(forces, coefficients, weights).squares)

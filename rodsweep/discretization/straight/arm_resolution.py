@@ -8,6 +8,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...model.dispersion import local_growths_and_wave_numbers, sampled_arm, wave_numbers_of_growth_at_ends
+from ...model.material.rod_material import RodMaterial
 from ...model.rod import Rod
 from ..elements.elements import ELEMENT_SETTINGS, Elements
 from ..elements.resolution import (
@@ -49,7 +50,9 @@ def arm_mesh(rod: Rod, mode_count: int, accuracy: float) -> ArmMesh:
     _, amplified_q = local_growths_and_wave_numbers(rod)
     unloaded_q = (mode_count - RESOLUTION_SETTINGS.mode_offset) * pi * _wave_number_over_mean(rod)
     wave_numbers = np.hypot(RESOLUTION_SETTINGS.wave_safety_factor * amplified_q, unloaded_q)
-    order_increase = 0 if _is_piecewise_constant(rod) else ARM_RESOLUTION_SETTINGS.profile_order_increase
+    order_increase = (
+        0 if rod.material.is_piecewise_constant(rod.taper) else ARM_RESOLUTION_SETTINGS.profile_order_increase
+    )
     elements = _elements_for_wave(
         rod, wave_numbers * weights, accuracy, RESOLUTION_SETTINGS.max_order, order_increase
     )
@@ -60,12 +63,6 @@ def arm_mesh(rod: Rod, mode_count: int, accuracy: float) -> ArmMesh:
 def _cached_mesh(edges: tuple[float, ...], order: int) -> ArmMesh:
     """The `ArmMesh` with these edges and this order, cached with its computed properties."""
     return ArmMesh(edges, order)
-
-
-def _is_piecewise_constant(rod: Rod) -> bool:
-    """Whether the coefficients of an arm are constant between the breaks of its profile."""
-    profile = rod.material.profile
-    return rod.taper == 1 and (profile is None or profile.is_piecewise_constant)
 
 
 def graded_towards_ends(rod: Rod, mesh: ArmMesh) -> ArmMesh:
@@ -118,25 +115,31 @@ def _elements_for_wave(
     """Elements that resolve a wave along an arm to a relative accuracy. phases: phase of the wave over each
     sample interval, |q| times length, (n,). max_order: maximum order of an element without `order_increase`.
     order_increase: increase of the order that uniform pieces need."""
-    breaks = rod.material.breaks
-    phases_between_breaks = phases.reshape(len(breaks) - 1, -1).sum(axis=1)
-    max_count = first_excessive_element_count(max_order)
+    intervals = len(rod.material.breaks) - 1
+    interval_phases = phases.reshape(intervals, -1).sum(axis=1).tolist()
+    min_counts = tuple(required_element_count(phase, accuracy, max_order) for phase in interval_phases)
+    edges, counts = _edges_and_counts(rod.material, rod.taper, min_counts)
+    if max(min_counts) == first_excessive_element_count(max_order):
+        return Elements(edges, max_order)  # more unknowns than allowed, whatever the order
+    max_phase = max(phase / count for phase, count in zip(interval_phases, counts, strict=True))
+    order = max(RESOLUTION_SETTINGS.min_order, ceil(required_order(hypot(max_phase, 1.0), accuracy)))
+    return Elements(edges, order + order_increase)
+
+
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_mesh_pairs)
+def _edges_and_counts(
+    material: RodMaterial, taper: float, min_counts: tuple[int, ...]
+) -> tuple[tuple[float, ...], tuple[int, ...]]:
+    """Returns (edges, counts): edges of the elements of an arm, increasing, and the number of elements of
+    each interval between breaks: at least `min_counts`, and as many as `max_radius_ratio` requires."""
     edges = [0.0]
-    max_element_phase = 0.0
-    is_too_fine = False
-    for start, stop, phase in zip(breaks[:-1], breaks[1:], phases_between_breaks, strict=True):
-        log_radius_ratio = abs(log(_relative_radius_at(rod, stop) / _relative_radius_at(rod, start)))
-        min_count = required_element_count(float(phase), accuracy, max_order)
-        is_too_fine |= min_count == max_count
-        element_count = max(
-            1, ceil(log_radius_ratio / log(ARM_RESOLUTION_SETTINGS.max_radius_ratio)), min_count
-        )
-        edges += _graded_edges(rod, start, stop, element_count)
-        max_element_phase = max(max_element_phase, float(phase) / element_count)
-    if is_too_fine:  # more unknowns than allowed, whatever the order
-        return Elements(tuple(edges), max_order)
-    order = max(RESOLUTION_SETTINGS.min_order, ceil(required_order(hypot(max_element_phase, 1.0), accuracy)))
-    return Elements(tuple(edges), order + order_increase)
+    counts = []
+    for start, stop, min_count in zip(material.breaks[:-1], material.breaks[1:], min_counts, strict=True):
+        radius_ratio = _relative_radius_at(taper, stop) / _relative_radius_at(taper, start)
+        count = ceil(abs(log(radius_ratio)) / log(ARM_RESOLUTION_SETTINGS.max_radius_ratio))
+        counts.append(max(1, count, min_count))
+        edges += _graded_edges(taper, start, stop, counts[-1])
+    return tuple(edges), tuple(counts)
 
 
 def finer_arm_mesh(rod: Rod, mesh: ArmMesh) -> ArmMesh:
@@ -147,27 +150,27 @@ def finer_arm_mesh(rod: Rod, mesh: ArmMesh) -> ArmMesh:
         return ArmMesh(mesh.edges, order)
     edges = [0.0]
     for start, stop in zip(mesh.edges[:-1], mesh.edges[1:], strict=True):
-        edges += _graded_edges(rod, start, stop, 2)
+        edges += _graded_edges(rod.taper, start, stop, 2)
     return ArmMesh(tuple(edges), ceil(RESOLUTION_SETTINGS.finer_unknowns_ratio / 2 * mesh.order))
 
 
-def _relative_radius_at(rod: Rod, u: float) -> float:
+def _relative_radius_at(taper: float, u: float) -> float:
     """Radius of a cone at u, divided by the radius at the base."""
-    return 1 - (1 - rod.taper) * u
+    return 1 - (1 - taper) * u
 
 
-def _graded_edges(rod: Rod, start: float, stop: float, element_count: int) -> list[float]:
+def _graded_edges(taper: float, start: float, stop: float, element_count: int) -> list[float]:
     """Edges of `element_count` elements from start to stop, without start. All elements have equal ratios of
     the radii at both ends."""
     if element_count == 1:
         return [float(stop)]
     # The break itself, unrounded: edges are compared exactly with the positions of jumps.
-    if rod.taper == 1:
+    if taper == 1:
         edges: Array = np.linspace(start, stop, element_count + 1)[1:]
     else:
         radii = np.geomspace(
-            _relative_radius_at(rod, start), _relative_radius_at(rod, stop), element_count + 1
+            _relative_radius_at(taper, start), _relative_radius_at(taper, stop), element_count + 1
         )[1:]
-        edges = (1 - radii) / (1 - rod.taper)
+        edges = (1 - radii) / (1 - taper)
     # The last edge is the break itself, unrounded, as it is compared exactly with the positions of jumps.
     return [*edges[:-1].tolist(), float(stop)]

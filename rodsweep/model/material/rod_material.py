@@ -55,6 +55,10 @@ class RodMaterial:
         """Whether the material is linear and constant along the arm."""
         return self.profile is None and self.constitutive_law is LINEAR_CONSTITUTIVE_LAW
 
+    def is_piecewise_constant(self, taper: float) -> bool:
+        """Whether all coefficients of an arm with the taper `taper` are constant between `breaks`."""
+        return taper == 1 and (self.profile is None or self.profile.is_piecewise_constant)
+
     @property
     def constitutive_law(self) -> Law:
         """The `Law` with the key (law, section) in `LAWS`."""

@@ -49,7 +49,7 @@ def averaged_regions(u: Array, coefficients: Array, F: float, only_smallest: boo
     """Constants (a, c) of the region of each trial weight, (trials, 2); inf if a trial gives no bound. u:
     points of an arm from clamp to tip, (points,), two at a jump. coefficients: `LocalCoefficients` at the
     points, (6, points), with c2 > 0 and g > 0. F: force. only_smallest: whether a trial may end, with inf, as
-    soon as its a exceeds the smallest a of a region with c = 0."""
+    soon as its a reaches the smallest a of a region with c = 0."""
     regions = np.full((AVERAGED_WEIGHT_SETTINGS.trial_count, 2), math.inf)
     _, c2, c3, gamma2, gamma3, _ = coefficients
     loads = abs(F) * np.sqrt(c2 * c3 * gamma3 / gamma2)
@@ -67,7 +67,7 @@ def averaged_regions(u: Array, coefficients: Array, F: float, only_smallest: boo
             weight = _trial_weight(points, factors[m], log_t[m])
             trial = (F, factors[m], h, max_a2)
             # The point that limited a in an earlier trial mostly limits a again.
-            if not _exceeds_limit_at(limiting_source, points, weight, trial):
+            if not _reaches_limit_at(limiting_source, points, weight, trial):
                 limiting_source = _write_regions_of_trial(regions[row : row + 2], points, weight, trial)
             if only_smallest:
                 max_a2 = min(max_a2, regions[row + 1, 0] ** 2)
@@ -99,16 +99,16 @@ def _weight_before_averaging(points: TrialPoints, i: int, factor: float) -> floa
 
 
 @compiled
-def _exceeds_limit_at(
+def _reaches_limit_at(
     source: int, points: TrialPoints, weight: TrialWeight, trial: tuple[float, float, float, float]
 ) -> bool:
-    """Whether a^2 of both regions of a trial exceeds the limit at the arm's point number `source`. Other
+    """Whether a^2 of both regions of a trial reaches the limit at the arm's point number `source`. Other
     arguments: as in `_write_regions_of_trial`."""
     i = source
     while points.sources[i] != source:  # added points shift the points of the arm
         i += 1
     _, clamp, drag = _squared_norms(points, weight, i, trial)
-    return min(clamp, drag) > trial[3]
+    return min(clamp, drag) >= trial[3]
 
 
 @compiled
@@ -122,7 +122,7 @@ def _write_regions_of_trial(
     nu is bounded by theta(0) = 0, in the second by the rotational drag. Returns the index of the arm's point
     that limits a.
 
-    trial: force F, factor f, half-width h, and the a^2 above which both regions are left unchanged.
+    trial: force F, factor f, half-width h, and the a^2 from which on both regions are left unchanged.
     """
     u = points.u
     a2_clamp = 0.0
@@ -141,7 +141,7 @@ def _write_regions_of_trial(
         if min(clamp, drag) > largest_norm:
             largest_norm = min(clamp, drag)
             limiting_source = source
-        if min(a2_clamp, a2_drag) > trial[3]:
+        if min(a2_clamp, a2_drag) >= trial[3]:
             return limiting_source
         nu, c2, c3 = points.coefficients[:3, i]
         if i > 0:
