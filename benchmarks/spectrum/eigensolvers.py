@@ -16,7 +16,7 @@ import scipy.sparse.linalg
 from rodsweep.arrays import Array
 from rodsweep.bench.spectrum import arm_race
 from rodsweep.bench.spectrum.arm_race import mesh_of_arm, solve_next_arm
-from rodsweep.bench.spectrum.rodsweep_spectrum import MODE_COUNT, PENCIL_GROUP, leading_eigenvalues
+from rodsweep.bench.spectrum.exact import MODE_COUNT, PENCIL_GROUP, leading_eigenvalues
 from rodsweep.bench.spectrum.study import ELEMENT_ORDERS, pencil_mesh
 from rodsweep.bench.study import TimedMethod
 from rodsweep.determinant.roots.newton import refine_eigenvalue

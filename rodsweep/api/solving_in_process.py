@@ -25,10 +25,14 @@ from ..sweep.progress import (
     display_listener,
 )
 from ..tasks.protocol import NamedArrays, Solver, SweepWideResult, SweepWideSolver
-from ..tasks.running.failures import FailureReasons, failure_reasons_of_changed_points
 from ..tasks.running.in_memory import blas_pool, view_in_memory
 from ..tasks.running.job import Job, plan_in_memory
-from ..tasks.running.unforeseen_exceptions import PointExceptionNote, guarded_solver
+from ..tasks.running.unforeseen_exceptions import (
+    FailureReasons,
+    PointExceptionNote,
+    failure_reasons_of_changed_points,
+    guarded_solver,
+)
 from .keyword_arguments import plain_keyword
 from .solved import SolvedPoints
 

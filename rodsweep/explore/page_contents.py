@@ -9,19 +9,17 @@ from bokeh.events import DocumentReady, Pan, Tap
 from bokeh.models import Button
 
 from .controls import ChangeCallback, Controls
-from .page_style import colour_script, style_sheet, template_text
-from .pictures.branches import BranchPicture
 from .pictures.card import Card
 from .pictures.diagram import DiagramPicture
-from .pictures.growth import GrowthPicture
 from .pictures.moving_arm import MovingArmPicture
 from .pictures.numbers import NumbersTable
+from .pictures.over_load import BranchPicture, GrowthPicture
 from .pictures.spectrum import ModePicture, SpectrumPicture
 from .sharing import ExportPanel
 from .slider_scales import SLIDER_SCALES, length_axis, load_axis
 from .solving.diagrams import can_follow_cycle_curves
 from .state import PageState
-from .texts import SolvingIndicator, add_texts
+from .texts import SolvingIndicator, add_texts, colour_script, style_sheet, template_text
 
 NO_CYCLE_CURVES_FOUND_SENTENCE = "No folds and no torus points of cycles were found in this diagram."
 """Sentence above the diagram after a search that found no curves of cycles."""

@@ -13,10 +13,10 @@ from bokeh.models import Button, Column, CustomJS, Div, FileInput, GlyphRenderer
 from ..config.document.parsing import parsed_yaml
 from ..config.document.reading import validated_config
 from ..errors import InputError
-from .page_style import style_sheet, template_text
 from .pictures.card import Card
 from .state import PAGE_F_MAX, PageState
 from .state_of_file import state_from_config
+from .texts import style_sheet, template_text
 
 ADDRESS_SCRIPT = 'history.replaceState(null, "", location.pathname + "?" + address.tags[0])'
 """Browser script that writes the state of the page into the address bar."""

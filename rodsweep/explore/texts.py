@@ -1,16 +1,37 @@
-"""Texts of the page that change with every answer. These texts are outside Bokeh's layout, because each
-change of a Bokeh `Div` causes a new layout of the whole page."""
+"""Template, style sheets and scripts of the page, and texts that change with every answer. These texts are
+outside Bokeh's layout, because each change of a Bokeh `Div` causes a new layout of the whole page."""
 
 from collections.abc import Mapping, Sequence
 from html import escape
+from pathlib import Path
 
 from bokeh.core.properties import Bool, List, String
 from bokeh.document import Document
 from bokeh.events import DocumentReady
 from bokeh.model import DataModel
-from bokeh.models import CustomJS
+from bokeh.models import CustomJS, InlineStyleSheet
+from bokeh.plotting import figure
 
-from .page_style import template_text
+TEMPLATE_FOLDER = Path(__file__).parent / "templates"
+"""Directory of the templates, style sheets and scripts."""
+
+
+def template_text(name: str) -> str:
+    """Text of the file `name` in TEMPLATE_FOLDER."""
+    return (TEMPLATE_FOLDER / name).read_text(encoding="utf-8")
+
+
+def style_sheet(name: str) -> InlineStyleSheet:
+    """Style sheet for Bokeh's widgets, from the file `name` in TEMPLATE_FOLDER. A widget inherits the colours
+    of the page, but not its style sheets."""
+    return InlineStyleSheet(css=template_text(name))
+
+
+def colour_script(figures: Sequence[figure]) -> CustomJS:
+    """Browser script that gives the figures the colours of the light or dark colour scheme, at once and after
+    every change of the scheme."""
+    return CustomJS(args={"figures": list(figures)}, code=template_text("colours.js"))
+
 
 KIND_WORDS = {"cycles": "folds and torus points", "growth": "growth rates", "branch": "branches"}
 """Name of a kind of request in the text "solving ..."; a kind that is not listed is its own name."""

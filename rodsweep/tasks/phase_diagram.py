@@ -11,8 +11,7 @@ from ..model.rod import Crushed, Rod
 from ..results.layouts.phase_diagram import MAX_CYCLE_SPECIAL_POINTS
 from ..sweep.branch_cost import branches_cost
 from ..sweep.cost_estimate import CostEstimate, sampled_points_with_rod
-from ..sweep.pulled_row_cost import MAX_SAMPLED_ROWS, pulled_rows_seconds
-from ..sweep.search_cost import diagram_cost, soft_searches_seconds
+from ..sweep.search_cost import MAX_SAMPLED_ROWS, diagram_cost, pulled_rows_seconds, soft_searches_seconds
 from .base_classes import CertifiedTask
 from .diagram.curve_variables import cycles_record
 from .diagram.curves import DiagramCurves

@@ -33,12 +33,13 @@ from rodsweep.bench.spectrum.arm_race import (
     exact_arm_spectrum,
     measure_arm_spectra,
 )
-from rodsweep.bench.spectrum.exact import exact_spectrum, relative_error
-from rodsweep.bench.spectrum.rodsweep_spectrum import (
+from rodsweep.bench.spectrum.exact import (
     CERTIFIED_NAME,
     KRYLOV_SCHUR,
     MODE_COUNT,
     UNCERTIFIED_NAME,
+    exact_spectrum,
+    relative_error,
     rodsweep_spectrum,
 )
 from rodsweep.bench.spectrum.study import (

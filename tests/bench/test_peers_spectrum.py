@@ -11,8 +11,7 @@ from benchmarks.spectrum.eigensolvers import (
     displacement_elements,
 )
 from rodsweep.bench.spectrum.arm_race import ARM_RACE, ARM_RODS, UncachedArms, exact_arm_spectrum
-from rodsweep.bench.spectrum.exact import exact_spectrum, relative_error
-from rodsweep.bench.spectrum.rodsweep_spectrum import MODE_COUNT
+from rodsweep.bench.spectrum.exact import MODE_COUNT, exact_spectrum, relative_error
 from rodsweep.bench.spectrum.study import HARD_RODS, SPECTRUM_RACE
 from rodsweep.bench.study import grouped_by_fields
 from rodsweep.model.rod import Rod

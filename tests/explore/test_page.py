@@ -12,15 +12,14 @@ import rodsweep as rs
 from rodsweep.errors import UserError
 from rodsweep.explore.page import SOLVE_STOPPED_SENTENCE, Page
 from rodsweep.explore.page_contents import NO_CYCLE_CURVES_FOUND_SENTENCE
-from rodsweep.explore.page_style import template_text
 from rodsweep.explore.pictures.card import AXIS_ALPHA_NAMES, STABLE_COLOUR
 from rodsweep.explore.pictures.diagram import (
     BOUNDARY_COLOURS,
     DiagramCell,
     diagram_cells,
+    region_table,
     unstable_count_words,
 )
-from rodsweep.explore.pictures.diagram_regions import region_table
 from rodsweep.explore.pictures.numbers import NumbersTable, number_text
 from rodsweep.explore.solving.curves_and_counts import DiagramCurve
 from rodsweep.explore.solving.diagrams import CRUSHED_CODE, UNKNOWN_CODE
@@ -28,6 +27,7 @@ from rodsweep.explore.solving.request_inputs import INSTANT_KINDS
 from rodsweep.explore.solving.requests import Reply, SolveRequest, answer_to, answer_variables
 from rodsweep.explore.state import PageState
 from rodsweep.explore.state_of_file import page_state_of_file
+from rodsweep.explore.texts import template_text
 from rodsweep.verdict import relative_load
 
 PLANE = """task: phase_diagram

@@ -18,7 +18,7 @@ from rodsweep.api.dataset import view_of_dataset
 from rodsweep.post.figures import draw
 from rodsweep.post.figures.cycle.animation import prepared_animation
 from rodsweep.post.figures.cycle.selection import chosen_cycles
-from rodsweep.post.figures.layout import cached_ticks
+from rodsweep.post.figures.layout import ticks
 from rodsweep.post.figures.layout.fitting import WORD_PATTERN, break_lines, fit_layout
 from rodsweep.post.figures.layout.ticks import visible_labels
 from rodsweep.post.figures.request import FigureLook
@@ -317,7 +317,7 @@ def places(axis_ticks_remembered):
     below.secondary_xaxis("top", functions=(lambda x: 2 * x, lambda x: x / 2)).set_xlabel("twice")
     with pytest.MonkeyPatch.context() as patch:
         if not axis_ticks_remembered:
-            patch.setattr(cached_ticks, "CACHED_METHODS", ("absent in other releases",))
+            patch.setattr(ticks, "CACHED_METHODS", ("absent in other releases",))
         fit_layout(figure)
     found = [panel.get_position().bounds for panel in figure.axes]
     for panel in figure.axes:

@@ -7,8 +7,7 @@ import pytest
 
 from rodsweep.post.figures.stability.class_bars import draw_class_bars
 from rodsweep.post.figures.stability.diagram_curves import labelled_curve_paths, plane_force_text
-from rodsweep.post.plane_curves import PlaneParameters
-from rodsweep.post.stability_curves import is_stability_boundary_by_curve
+from rodsweep.post.plane_curves import PlaneParameters, is_stability_boundary_by_curve
 from rodsweep.results.file.view import ResultView
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS
 

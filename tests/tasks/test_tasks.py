@@ -31,8 +31,7 @@ from rodsweep.solve.continuation.curve_search import TracedCurves
 from rodsweep.solve.spectrum.search import Spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
 from rodsweep.tasks import modes, spectrum, thresholds
-from rodsweep.tasks.diagram.curve_variables import fold_and_torus_curve_values
-from rodsweep.tasks.diagram.fold_curve_extrema import fold_curve_extremum_values
+from rodsweep.tasks.diagram.curve_variables import fold_and_torus_curve_values, fold_curve_extremum_values
 from rodsweep.tasks.running.job import job_of_file
 from rodsweep.tasks.thresholds import crossing_values
 

@@ -19,14 +19,14 @@ from ...solve.spectrum.arm_solver import arm_solver
 from ...solve.spectrum.problem import ArmProblem
 from ...wording import counted
 from ..study import Measurement, TimedMethod, measure_case
-from .exact import error_as_measurement_field
-from .rodsweep_spectrum import (
+from .exact import (
     CERTIFIED_NAME,
     KRYLOV_SCHUR,
     MODE_COUNT,
     PENCIL_GROUP,
     RODSWEEP_GROUP,
     UNCERTIFIED_NAME,
+    error_as_measurement_field,
     leading_eigenvalues,
     rodsweep_spectrum,
     table_by_case,

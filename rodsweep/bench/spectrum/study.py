@@ -31,15 +31,17 @@ from ..study import (
     time_runs,
 )
 from .arm_race import ARM_RACE, arm_table, measure_arm_spectra
-from .exact import error_as_measurement_field, exact_spectrum, relative_error
-from .rodsweep_spectrum import (
+from .exact import (
     CERTIFIED_NAME,
     KRYLOV_SCHUR,
     MODE_COUNT,
     PENCIL_GROUP,
     RODSWEEP_GROUP,
     UNCERTIFIED_NAME,
+    error_as_measurement_field,
+    exact_spectrum,
     leading_eigenvalues,
+    relative_error,
     rodsweep_spectrum,
     table_by_case,
 )

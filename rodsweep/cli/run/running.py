@@ -18,9 +18,12 @@ from ...sweep.points.ranges import IndexRange, index_count
 from ...sweep.ranks import Ranks
 from ...sweep.stop import StopRequest
 from ...tasks.protocol import SweepWideResult
-from ...tasks.running.failures import failure_reasons_of_changed_points
 from ...tasks.running.job import Job, job_of_config, plan_of
-from ...tasks.running.unforeseen_exceptions import TracebackLog, guarded_solver
+from ...tasks.running.unforeseen_exceptions import (
+    TracebackLog,
+    failure_reasons_of_changed_points,
+    guarded_solver,
+)
 from ...wording import counted
 from ..shared_computations import report_stop, shared_flutter_forces, with_variables_from_config
 from .run_end import MAX_FAILURES_PRINTED, RunContribution, RunStatistics, last_run_attributes, run_history

@@ -23,8 +23,8 @@ from ...sweep.progress import ProgressReporter, SilentProgress
 from ...sweep.ranks import Ranks
 from ...sweep.stop import StopRequest
 from ...tasks.protocol import Solver
-from ...tasks.running.failures import FailureReasons
 from ...tasks.running.job import Job
+from ...tasks.running.unforeseen_exceptions import FailureReasons
 from .run_end import RunContribution
 
 

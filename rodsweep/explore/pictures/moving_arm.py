@@ -10,9 +10,9 @@ from bokeh.models import CustomJS, Range1d
 
 from ...arrays import Array
 from ...post.figures.cycle.tip_path import smooth_tip_path
-from ..page_style import template_text
 from ..slider_scales import PictureAxis
 from ..solving.tip_release import TipPosition
+from ..texts import template_text
 from . import card
 
 PERIOD_SECONDS = 2.0

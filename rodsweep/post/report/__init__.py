@@ -20,9 +20,8 @@ from ...results.file.view import ResultView
 from ...wording import counted
 from ..figures.request import CycleShapeSolver
 from ..output_files import atomic_write, require_output_path
-from .page_tables import MAX_ROWS
 from .pictures import Pictures, pictures_of
-from .report_contents import ReportContents, report_contents
+from .report_contents import MAX_ROWS, ReportContents, report_contents
 from .vector_picture import VectorPicture, dark_page_colour
 
 QUOTED_TEXT_PATTERN = re.compile("`([^`]*)`")

@@ -1,15 +1,99 @@
 """Contents of an HTML page about one result as plain text, tables and pictures, before conversion to HTML."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+
+import numpy as np
 
 from ...config.document.reading import tree_yaml
 from ...config.values import printable
 from ...results.file.view import ResultView
 from ..summary import summary_of
 from ..summary.summary_lines import Summary, TextTable, region_text
-from .page_tables import PageTable, page_tables
+from ..tables.column import Column
+from ..tables.table_names import DEFAULT_TABLE, POINTS_TABLE
+from ..tables.tables import Table, Tables
 from .pictures import Pictures
+
+MAX_ROWS = 60
+"""Largest number of rows of a table on the page. `rodsweep export` writes all rows."""
+CELL_DIGITS = 6
+"""Number of significant digits of a number in a table; all digits are shown under the pointer."""
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """Cell of a table. text: rounded value. full_text: value with all digits; empty if `text` has all
+    digits."""
+
+    text: str
+    full_text: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class PageTable:
+    """Table on the page.
+
+    column_heads: (name, unit, meaning) of each shown column. rows: cells of the shown rows. total_rows:
+    number of rows of the result, of which at most MAX_ROWS are shown. constant_columns: (name, cell, unit,
+    meaning) of each column with equal values in all rows; these columns are listed outside the table.
+    """
+
+    name: str
+    column_heads: tuple[tuple[str, str, str], ...]
+    rows: tuple[tuple[Cell, ...], ...]
+    total_rows: int
+    constant_columns: tuple[tuple[str, Cell, str, str], ...]
+
+
+def page_tables(view: ResultView) -> Iterator[PageTable]:
+    """Yields all nonempty tables of a result: first the default table of the task, then the table of points,
+    then the other tables."""
+    tables = Tables(view)
+    for name in dict.fromkeys((DEFAULT_TABLE[view.task], POINTS_TABLE, *tables.contents.tables)):
+        if name in tables.contents.tables and (table := tables.table(name)).rows:
+            yield _table_for_page(table)
+
+
+def _table_for_page(table: Table) -> PageTable:
+    """The table in a form for the page: without empty columns; columns with equal values in all rows are
+    listed separately."""
+    filled_columns = [column for column in table.columns if not column.absent.all()]
+    constant_columns = [column for column in filled_columns if table.rows > 1 and _is_constant(column)]
+    varied_columns = [column for column in filled_columns if column not in constant_columns]
+    cells = [_cells(column.rows(slice(0, MAX_ROWS))) for column in varied_columns]
+    firsts = ((column, _cells(column.rows(slice(0, 1)))[0]) for column in constant_columns)
+    return PageTable(
+        name=table.name,
+        column_heads=tuple((column.name, column.printed_unit, column.meaning) for column in varied_columns),
+        rows=tuple(zip(*cells, strict=True)),
+        total_rows=table.rows,
+        constant_columns=tuple(
+            (column.name, first, column.printed_unit, column.meaning) for column, first in firsts
+        ),
+    )
+
+
+def _is_constant(column: Column) -> bool:
+    """Whether all rows of a column have the same value; False for "status" and for absent values."""
+    has_all_values = column.name != "status" and not column.absent.any()
+    return has_all_values and len(np.unique(column.values)) == 1
+
+
+def _cells(column: Column) -> list[Cell]:
+    """Cells for all values of a column."""
+    return [_cell(column, text, value) for text, value in zip(column.texts(), column.values, strict=True)]
+
+
+def _cell(column: Column, text: str, value: float) -> Cell:
+    """Cell for the value `value` of a column. text: the value with all digits; empty if the value is
+    missing."""
+    is_number = column.values.dtype.kind == "f" and not column.flag_meanings and not column.is_estimate
+    if not text or not is_number:
+        return Cell(text)
+    rounded_text = f"{value:.{CELL_DIGITS}g}"
+    return Cell(rounded_text, text) if len(rounded_text) < len(text) else Cell(text)
+
 
 VERSION_WORDS = {
     "rodsweep_version": "rodsweep",

@@ -6,12 +6,14 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from math import isnan
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ...results.file.view import ResultView
+from ...results.layouts.fold_curve_extrema import EXTREMA_UNLOCATED, fold_curve_extremum_variables
 from ...results.layouts.phase_diagram import (
     CYCLE_SPECIAL_DIMENSION,
     MAX_CYCLE_SPECIAL_POINTS,
@@ -31,6 +33,25 @@ if TYPE_CHECKING:
     from ...solve.continuation.curve_search import TracedCurves
     from ...solve.hopf.bautin_curves import BautinCurve
     from ...solve.hopf.bautin_points import CurveCriticality
+
+
+def fold_curve_extremum_values(
+    traced: "TracedCurves[SpecialPointCurve]", plane: tuple[str, str]
+) -> list[FilledVariable]:
+    """Variables of the extrema of the row parameter along the curves `traced`, located or not; [] if there
+    are none. plane: (parameter along a row, parameter that differs between rows)."""
+    rows = [
+        (number, point.parameter_value, point.row_value, point.error, point.row_extremum_error)
+        for number, curve in enumerate(traced.curves, 1)
+        for point in curve.points
+        if point.row_extremum_error > 0
+    ]
+    variables = fold_curve_extremum_variables(*plane).values() if rows else ()
+    columns = zip(variables, zip(*rows, strict=True), strict=True)
+    filled = [(variable, np.array(column)) for variable, column in columns]
+    points = (point for curve in traced.curves for point in curve.points)
+    unlocated_count = sum(isnan(point.row_extremum_error) for point in points)
+    return filled + ([(EXTREMA_UNLOCATED, np.array(unlocated_count))] if unlocated_count else [])
 
 
 def boundary_curve_values(

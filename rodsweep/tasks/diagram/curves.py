@@ -16,6 +16,7 @@ from .curve_variables import (
     boundary_curve_values,
     criticality_and_bautin_record,
     fold_and_torus_curve_values,
+    fold_curve_extremum_values,
     unstored_special_count,
     with_ends_on_hopf_curves,
 )
@@ -30,7 +31,6 @@ from .detached_branches import (
     special_points_of_row,
     special_points_of_rows,
 )
-from .fold_curve_extrema import fold_curve_extremum_values
 
 if TYPE_CHECKING:
     from ...determinant.parameter_plane import ParameterPlane

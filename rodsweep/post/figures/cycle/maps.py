@@ -24,7 +24,7 @@ from ....results.layouts.limit_cycle import CYCLE_STATUSES
 from ....sweep.points.points import ParameterLine
 from ...located_thresholds import LocatedThreshold, StoredThresholds
 from .. import style
-from .amplitudes.hopf_marks import HOPF_SYMBOL
+from .amplitudes.square_root import HOPF_SYMBOL
 from .point_map import PointGrid, axis_coordinates_and_inverse, cell_edges, point_map
 from .selection import shared_and_own_of_arms
 from .units_and_labels import units_of_files

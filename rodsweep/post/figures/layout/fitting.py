@@ -13,8 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from matplotlib.text import Text
 
-from .cached_ticks import cached_ticks
-from .ticks import thin_ticks
+from .ticks import cached_ticks, thin_ticks
 
 MIN_ASPECT = 0.45
 """Smallest ratio of height to width of a panel. If a panel is flatter, the height of the figure is

@@ -18,8 +18,7 @@ from ...grid_slices import infinite_values_clause
 from ..selection import shared_and_own_of_arms, shared_and_own_texts
 from ..units_and_labels import units_of_files
 from .amplitude_series import AmplitudeSeries, abscissa_parameter, amplitude_series
-from .hopf_marks import draw_square_root_laws, mark_hopf_points
-from .square_root import square_root_laws
+from .square_root import draw_square_root_laws, mark_hopf_points, square_root_laws
 
 SERIES_LOOKS = tuple(zip(style.LINE_COLOURS, ("o", "s", "^", "D", "v", "P"), strict=True))
 """(colour, marker) of each line."""
