@@ -79,7 +79,10 @@ class Controls:
         self._is_updating = False
         sheets: list[StyleSheet] = [style_sheet]
         self.fields = {
-            tab: {name: SliderField(scale, self._field_changed, sheets) for name, scale in scales.items()}
+            tab: {
+                name: SliderField(scale, lambda name, text: changed(values={name: text}), sheets)
+                for name, scale in scales.items()
+            }
             for tab, scales in SLIDER_SCALES.items()
         }
         panels = [
@@ -124,9 +127,6 @@ class Controls:
         force."""
         pressure_clause = f": {state.largest_force() * axis.factor:.4g} kPa" if state.tab == "arm" else ""
         self.F_max.title = LABEL_OF_MAX_FORCE + pressure_clause
-
-    def _field_changed(self, name: str, text: str) -> None:
-        self._changed(values={name: text})
 
     def _tab_changed(self, attribute: str, previous: int, tab: int) -> None:
         if not self._is_updating:

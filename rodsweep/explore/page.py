@@ -197,14 +197,10 @@ class Page:
         self.progress.pop(kind, None)
 
         def receive(reply: Reply) -> None:
-            self._pass_to_event_loop(request, reply)
+            if self.is_open:  # only the event loop of the document may change the document
+                self.document.add_next_tick_callback(lambda: self._on_answer(request, reply))
 
         self.solvers.ask(self.session, request, receive, receive)
-
-    def _pass_to_event_loop(self, request: SolveRequest, reply: Reply) -> None:
-        """Passes a reply to the event loop of the document; only this loop may change the document."""
-        if self.is_open:
-            self.document.add_next_tick_callback(lambda: self._on_answer(request, reply))
 
     def _on_answer(self, request: SolveRequest, reply: Reply) -> None:
         kind = request.kind

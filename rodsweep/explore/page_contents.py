@@ -6,7 +6,7 @@ from typing import Any
 
 from bokeh.document import Document
 from bokeh.events import DocumentReady, Pan, Tap
-from bokeh.models import Button
+from bokeh.models import Button, CustomJS
 
 from .controls import ChangeCallback, Controls
 from .pictures.card import Card
@@ -19,7 +19,7 @@ from .sharing import ExportPanel
 from .slider_scales import SLIDER_SCALES, length_axis, load_axis
 from .solving.diagrams import can_follow_cycle_curves
 from .state import PageState
-from .texts import SolvingIndicator, add_texts, colour_script, style_sheet, template_text
+from .texts import SolvingIndicator, add_texts, style_sheet, template_text
 
 NO_CYCLE_CURVES_FOUND_SENTENCE = "No folds and no torus points of cycles were found in this diagram."
 """Sentence above the diagram after a search that found no curves of cycles."""
@@ -82,7 +82,8 @@ class PageContents:
             ):  # fmt: skip
                 document.add_root(root)
             add_texts(document, (self.sign, self.numbers.root))
-        document.js_on_event(DocumentReady, colour_script([card.figure for card in self.cards]))
+        colours = CustomJS(args={"figures": [c.figure for c in self.cards]}, code=template_text("colours.js"))
+        document.js_on_event(DocumentReady, colours)
         document.js_on_event(DocumentReady, self.beating.animation_script())
         document.title = "rodsweep explore"
         document.template = template_text("page.html")

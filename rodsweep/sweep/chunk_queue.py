@@ -87,9 +87,8 @@ class ChunkQueue:
                 self.seconds_per_item[rank] = report.seconds / report.finished_items
             start, end = report.returned_items
             if end > start and not self.is_stopped:
-                self.seconds_per_item[rank] = (
-                    report.seconds
-                )  # pessimistic, so that its next chunk is one item
+                # Pessimistic, so that its next chunk is one item.
+                self.seconds_per_item[rank] = report.seconds
                 # At the front, so that points are still solved nearly in the order of the file.
                 self.unsolved.appendleft(report.returned_items)
                 self.items_left += end - start

@@ -62,9 +62,10 @@ class CertifiedTask(Task):
         return largest_first_mesh(self.points, mesh_of, self.searched_range_ends())
 
     def searched_range_ends(self) -> dict[str, np.ndarray]:
-        """Ends of the searched range, (1,) or (2,), by name of the parameter; empty for tasks without a
-        search."""
-        return {}
+        """Ends of the searched range, (1,) or (2,), by name of the parameter: the largest F of a search along
+        F; empty for tasks without a search."""
+        options = getattr(self.config, self.config.task)
+        return {"F": np.array([options.F_max])} if hasattr(options, "F_max") else {}
 
     def certificate(self) -> tuple[bool, str]:
         """Returns (whether the run proves completeness, method of the proof or reason why there is no

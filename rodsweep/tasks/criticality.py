@@ -3,8 +3,6 @@
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from ..config.task.criticality import CriticalityConfig
 from ..results.layouts.criticality import ABSENT_FROM_HOPF_SEARCH, NORMAL_FORM_VARIABLES
 from ..results.layouts.variables import outcome_values, value_lists
@@ -38,10 +36,6 @@ class CriticalityTask(HopfPointTask):
             ("Hopf points and their normal forms", True, f"at most {max_thresholds} are stored for each rod"),
             ("cycles", False, "only to third order in the amplitude; task: limit_cycle computes cycles"),
         ]
-
-    def searched_range_ends(self) -> dict[str, np.ndarray]:
-        """The largest F of the search, (1,), by the name of the parameter."""
-        return {"F": np.array([self.config.criticality.F_max])}
 
     def cost(self) -> CostEstimate:
         is_varying = not self.config.is_uniform_and_linear

@@ -49,10 +49,6 @@ class ThresholdsTask(CertifiedTask):
             ("all other crossings", True, f"at most {max_thresholds} are stored for each point"),
         ]
 
-    def searched_range_ends(self) -> dict[str, np.ndarray]:
-        """The largest F of the search, (1,), by the name of the parameter."""
-        return {"F": np.array([self.config.thresholds.F_max])}
-
     def cost(self) -> CostEstimate:
         is_varying = not self.config.is_uniform_and_linear
         options = self.config.thresholds

@@ -24,7 +24,7 @@ from rodsweep.post.figures.grid_slices import slice_at_values
 from rodsweep.post.figures.point_lists import label_point_numbers
 from rodsweep.post.figures.request import FigureLook
 from rodsweep.post.figures.spectra.line import mark_thresholds, select_roots, with_gaps_between_roots
-from rodsweep.post.figures.stability.class_colours import CLASS_COLOURS
+from rodsweep.post.figures.stability.class_bars import CLASS_COLOURS
 from rodsweep.post.figures.stability.diagram_curves import mark_cycles_on_rows
 from rodsweep.post.figures.stability.regions import (
     PIXEL_COUNT,

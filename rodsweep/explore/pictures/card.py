@@ -1,11 +1,12 @@
 """Card of a picture (a figure, or a sentence in its place), and the common style of all figures."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from html import escape
+from math import nan
 from textwrap import wrap
 from typing import Any
 
-from bokeh.models import Column, ColumnDataSource, Div, InlineStyleSheet, Range1d, Span
+from bokeh.models import Column, ColumnDataSource, Div, InlineStyleSheet, Legend, LegendItem, Range1d, Span
 from bokeh.plotting import figure
 
 from ...arrays import Array
@@ -59,6 +60,20 @@ def vertical_line(colour: str, dash: str = "solid") -> Span:
     only the top canvas."""
     look: dict[str, Any] = {"line_color": colour, "line_dash": dash, "line_width": 1.5}
     return Span(location=0, dimension="height", level="overlay", **look)
+
+
+def add_line_legend(
+    plot: figure, looks: Iterable[tuple[str, str, str]], line_width: float, visible: bool = True
+) -> Legend:
+    """Adds a legend of lines to a figure, and returns it. looks: (entry, colour, line style) of each line."""
+    lines = {text: {"color": colour, "line_dash": dash} for text, colour, dash in looks}
+    items = [
+        LegendItem(label=text, renderers=[plot.line([nan], [nan], line_width=line_width, **look)])
+        for text, look in lines.items()
+    ]
+    legend = Legend(items=items, location="top_left", visible=visible)
+    plot.add_layout(legend)
+    return legend
 
 
 def empty_source(names: Sequence[str], name: str | None = None) -> ColumnDataSource:

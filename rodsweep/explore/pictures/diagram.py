@@ -4,11 +4,10 @@ points and by the crushing load as in the figures of `rodsweep plot`."""
 
 from collections.abc import Iterable, Sequence
 from itertools import groupby
-from math import nan
 from typing import Any, NamedTuple
 
 import numpy as np
-from bokeh.models import HoverTool, Legend, LegendItem, Range1d
+from bokeh.models import HoverTool, Range1d
 
 from ...arrays import Array
 from ...post.figures.phase_diagram import CURVE_END_CRUSHING_RATIO
@@ -162,14 +161,7 @@ class DiagramPicture:
         figure.multi_line("x", "y", color="colour", line_width=2, source=self.curve_source)
         look = {"color": "colour", "line_dash": "dash", "line_width": 3}
         figure.multi_line("x", "y", **look, source=self.cycle_curve_source)
-        legend_items = [
-            LegendItem(
-                label=text, renderers=[figure.line([nan], [nan], color=colour, line_dash=dash, line_width=3)]
-            )
-            for text, colour, dash in CYCLE_CURVE_LOOKS.values()
-        ]
-        self.legend = Legend(items=legend_items, location="top_left", visible=False)
-        figure.add_layout(self.legend)
+        self.legend = card.add_line_legend(figure, CYCLE_CURVE_LOOKS.values(), 3, visible=False)
         figure.scatter("x", "y", size=6, color="colour", source=self.crossing_source)
         look = {"marker": "cross", "size": 22, "line_width": 3, "color": card.POINT_COLOUR}
         figure.scatter("x", "y", **look, source=self.point_source, level="overlay")

@@ -1,11 +1,10 @@
 """Pictures over the load: the growth rates of the leading modes with the thresholds of stability, and the
 bifurcation diagram, the largest tip deflection of stable and unstable cycles."""
 
-from math import nan
 from typing import Any
 
 import numpy as np
-from bokeh.models import HoverTool, Legend, LegendItem, Range1d, Span
+from bokeh.models import HoverTool, Range1d, Span
 
 from ..slider_scales import PictureAxis
 from . import card
@@ -91,15 +90,17 @@ def threshold_title(answer: dict[str, Any], load: PictureAxis) -> str:
     return text[0].upper() + text[1:]
 
 
-STABILITY_COLOURS = {1: card.STABLE_COLOUR, 0: card.UNSTABLE_COLOUR, -1: card.NEUTRAL_COLOUR}
-"""Colour of a branch, by stability: 1 stable, 0 unstable, -1 unknown."""
+STABILITY_LOOKS = {
+    1: ("stable", card.STABLE_COLOUR, "solid"),
+    0: ("unstable", card.UNSTABLE_COLOUR, "dashed"),
+    -1: ("", card.NEUTRAL_COLOUR, "dotted"),
+}
+"""(legend entry, colour, line style) of a branch, by stability: 1 stable, 0 unstable, -1 unknown."""
 NO_CYCLE_COLUMNS = {"F": np.zeros(0), "y": np.zeros(0), "stable": np.zeros(0, dtype=int)}
 """Columns without values, for an answer that has branches but no separately solved cycles."""
 SIDE_MARGIN = 0.03
 """Margin left and right of the dots of separately solved cycles, as a fraction of their range of loads.
 Without a margin the outermost dots would be cut off."""
-STABILITY_DASHES = {1: "solid", 0: "dashed", -1: "dotted"}
-"""Line style of a branch, by stability: 1 stable, 0 unstable, -1 unknown."""
 
 
 class BranchPicture:
@@ -120,15 +121,7 @@ class BranchPicture:
         special_glyphs = figure.scatter("F", "y", size=9, **colours, source=self.special_point_source)
         tooltips = [("", "@kind"), ("load", "@F{0.0000000}"), ("period", "@period{0.00000000}")]
         figure.add_tools(HoverTool(renderers=[special_glyphs], tooltips=tooltips))
-        legend_items = []
-        for text, stability in (("stable", 1), ("unstable", 0)):
-            look = {
-                "color": STABILITY_COLOURS[stability],
-                "line_dash": STABILITY_DASHES[stability],
-                "line_width": 2.5,
-            }
-            legend_items.append(LegendItem(label=text, renderers=[figure.line([nan], [nan], **look)]))
-        figure.add_layout(Legend(items=legend_items, location="top_left"))
+        card.add_line_legend(figure, [STABILITY_LOOKS[1], STABILITY_LOOKS[0]], 2.5)
         self.load_line = card.vertical_line(card.POINT_COLOUR)
         figure.add_layout(self.load_line)
         self.card = card.Card("branches", figure)
@@ -141,14 +134,14 @@ class BranchPicture:
         self.branch_source.data = {
             "F": [forces * load.factor for forces, _, _ in pieces],
             "y": [y * length.factor for _, y, _ in pieces],
-            "colour": [STABILITY_COLOURS[stable] for _, _, stable in pieces],
-            "dash": [STABILITY_DASHES[stable] for _, _, stable in pieces],
+            "colour": [STABILITY_LOOKS[stable][1] for _, _, stable in pieces],
+            "dash": [STABILITY_LOOKS[stable][2] for _, _, stable in pieces],
         }
         cycles = answer.get("cycles", NO_CYCLE_COLUMNS)
         self.cycle_source.data = {
             "F": cycles["F"] * load.factor,
             "y": cycles["y"] * length.factor,
-            "colour": [STABILITY_COLOURS[stable] for stable in cycles["stable"]],
+            "colour": [STABILITY_LOOKS[stable][1] for stable in cycles["stable"]],
         }
         if pieces or len(cycles["F"]):
             lines = [*(piece[:2] for piece in pieces), (cycles["F"], cycles["y"])]

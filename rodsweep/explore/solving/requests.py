@@ -75,11 +75,6 @@ def answer_variables(answer: Answer) -> AnswerVariables:
     }  # fmt: skip
 
 
-def spectrum_answer(state: PageState) -> AnswerVariables:
-    """Leading eigenvalues and modes of the straight rod, and the number of unstable modes."""
-    return answer_variables(state.subject().spectrum(modes=MODE_COUNT, vectors=True, progress=False))
-
-
 def thresholds_answer(state: PageState) -> AnswerVariables:
     """Thresholds of the straight rod along F, as variables by name. kinds: kind of each threshold, in
     words."""
@@ -108,11 +103,6 @@ def cycle_answer(state: PageState) -> AnswerVariables:
     the user can drag."""
     cycle = state.subject().cycle(shapes=SHAPE_COUNT, progress=False)
     return answer_variables(cycle) | dragged_equilibrium(state, None)
-
-
-def load_force_answer(state: PageState) -> AnswerVariables:
-    """The load F in k3/L^2. For a load relative to flutter the flutter threshold is solved first."""
-    return {"F": dimensionless_parameters_of(state.subject())["F"]}
 
 
 def film_answer(state: PageState) -> AnswerVariables:
@@ -147,8 +137,10 @@ def crushing_force(rod: Mapping[str, float]) -> float:
 
 
 STATE_SOLVERS: dict[str, Callable[[PageState], AnswerVariables]] = {
-    "load": load_force_answer,
-    "spectrum": spectrum_answer,
+    "load": lambda state: {"F": dimensionless_parameters_of(state.subject())["F"]},  # in k3/L^2
+    "spectrum": lambda state: answer_variables(
+        state.subject().spectrum(modes=MODE_COUNT, vectors=True, progress=False)
+    ),
     "thresholds": thresholds_answer,
     "growth": growth_answer,
     "cycle": cycle_answer,

@@ -50,20 +50,15 @@ def draw_modes(request: FigureRequest) -> str:
         panel.set_xlabel("material coordinate $u/L$")
     texts = _parameters_and_eigenvalue_texts(view, int(drawn_points[0])) if point_count == 1 else ()
     set_heading(figure, view, *texts)
-    draw_legend_below(figure, _part_entries(view, drawn_points), column_count=2)
+    oscillates = bool(view.by_point("frequency")[drawn_points, 0].any())
+    parts = (("real part", "-"), ("imaginary part", ":"))[: 1 + oscillates]
+    handles = [Line2D([], [], color="0.3", lw=1.5, ls=style, label=word) for word, style in parts]
+    draw_legend_below(figure, handles, column_count=2)
     omission_clause = ""
     if point_indices.size > point_count:
         first_words = f"first {point_count}" if point_count > 1 else "first"
         omission_clause = f" of the {first_words} of {point_indices.size} points (--at chooses others)"
     return request.write(figure, f"the leading mode{omission_clause}: real part solid, imaginary part dotted")
-
-
-def _part_entries(view: ResultView, points: np.ndarray) -> list[Line2D]:
-    """Legend entries for the real part (solid) and, if a drawn mode oscillates, for the imaginary part
-    (dotted). points: indices of the drawn points, (n,)."""
-    oscillates = view.by_point("frequency")[points, 0].any()
-    line_styles = (("real part", "-"), ("imaginary part", ":"))[: 1 + bool(oscillates)]
-    return [Line2D([], [], color="0.3", lw=1.5, ls=style, label=word) for word, style in line_styles]
 
 
 def _draw_mode_fields(panel: Axes, view: ResultView, point: int, fields: tuple[tuple[str, str], ...]) -> None:

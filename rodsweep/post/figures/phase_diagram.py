@@ -22,8 +22,7 @@ from .arm.validity_hatches import hatch_compressed
 from .grid_slices import infinite_values_clause
 from .layout.fitting import MAP_ASPECT
 from .request import FigureRequest
-from .stability.class_bars import BAR_ASPECT
-from .stability.class_colours import CLASS_PALETTE, STATE_PALETTE, Palette
+from .stability.class_bars import BAR_ASPECT, CLASS_PALETTE, STATE_PALETTE, Palette
 from .stability.diagram_curves import (
     draw_boundary_curves,
     draw_cycle_curves,

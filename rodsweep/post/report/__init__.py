@@ -20,8 +20,7 @@ from ...results.file.view import ResultView
 from ...wording import counted
 from ..figures.request import CycleShapeSolver
 from ..output_files import atomic_write, require_output_path
-from .pictures import Pictures, pictures_of
-from .report_contents import MAX_ROWS, ReportContents, report_contents
+from .report_contents import MAX_ROWS, Pictures, ReportContents, pictures_of, report_contents
 from .vector_picture import VectorPicture, dark_page_colour
 
 QUOTED_TEXT_PATTERN = re.compile("`([^`]*)`")
@@ -65,13 +64,10 @@ def rendered_template(template: str, page_pictures: Sequence[VectorPicture], **c
     loader = PackageLoader(__name__)
     environment = Environment(loader=loader, autoescape=True, undefined=StrictUndefined, **spaces)
     environment.filters["svg"] = Markup  # made here from numbers and escaped texts
-    environment.filters["with_code"] = _with_code
+    environment.filters["with_code"] = lambda text: Markup(
+        QUOTED_TEXT_PATTERN.sub(r"<code>\1</code>", str(escape(text)))
+    )
     colours = sorted(set[str]().union(*(picture.colours for picture in page_pictures)))
     contents["colours"] = [(colour, dark_page_colour(colour)) for colour in colours]
     contents |= {"max_rows": MAX_ROWS, "version": __version__, "written": utc_time()}
     return environment.get_template(template).render(contents)
-
-
-def _with_code(text: str) -> Markup:
-    """A sentence as HTML, with texts between backquotes as code."""
-    return Markup(QUOTED_TEXT_PATTERN.sub(r"<code>\1</code>", str(escape(text))))

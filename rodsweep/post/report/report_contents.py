@@ -1,19 +1,80 @@
-"""Contents of an HTML page about one result as plain text, tables and pictures, before conversion to HTML."""
+"""Contents of an HTML page about one result as plain text, tables and pictures, before conversion to HTML:
+all figures of `rodsweep plot` that can be drawn from the result, and its tables."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import count
+from pathlib import Path
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from ...config.document.reading import tree_yaml
 from ...config.values import printable
+from ...errors import InputError
 from ...results.file.view import ResultView
+from ..figures import draw
+from ..figures.request import FIGURE_KINDS_BY_TASK, CycleShapeSolver
 from ..summary import summary_of
 from ..summary.summary_lines import Summary, TextTable, region_text
 from ..tables.column import Column
 from ..tables.table_names import DEFAULT_TABLE, POINTS_TABLE
 from ..tables.tables import Table, Tables
-from .pictures import Pictures
+from .vector_picture import VectorPicture, vector_picture
+
+ANIMATION_KIND = "animation"
+"""Kind of figure that the page leaves out, because it is an animation."""
+SVG_REQUEST_NAME = Path("figure.svg")
+"""Output name with which figures for the page are requested; no file with this name is written."""
+
+
+@dataclass(frozen=True, slots=True)
+class CaptionedPicture:
+    """A picture with its caption."""
+
+    caption: str
+    picture: VectorPicture
+
+
+@dataclass(frozen=True, slots=True)
+class Pictures:
+    """Pictures of a result. shown: pictures in their order on the page. refusal: reason for which there is no
+    picture; empty if there are pictures."""
+
+    shown: tuple[CaptionedPicture, ...]
+    refusal: str = ""
+
+
+def pictures_of(
+    views: Sequence[ResultView], shapes: CycleShapeSolver | None, numbers: "count[int]"
+) -> Pictures:
+    """Figures of every kind that show all `views`, the default figure of `rodsweep plot` first.
+
+    shapes: function that computes the shapes of cycles for the default figure, if the file has no shapes.
+    numbers: counter that numbers the pictures of the page.
+    """
+    # Remove the folders from the paths, so that no sentence on the page names a folder.
+    views = [replace(view, path=Path(view.path.name)) for view in views]
+    figure_kinds = [kind for kind in FIGURE_KINDS_BY_TASK.get(views[0].task, ()) if kind != ANIMATION_KIND]
+    by_kind: dict[str, CaptionedPicture] = {}
+    first_refusal_text = ""
+    for kind in (None, *figure_kinds):
+        figures: list[Figure] = []
+        drawn_shapes = shapes if kind is None else None
+
+        def keep(figure: Figure, figures: list[Figure] = figures) -> None:
+            figures.append(figure)
+
+        try:
+            sentence = draw(views, SVG_REQUEST_NAME, what=kind, shapes=drawn_shapes, figure_callback=keep)
+        except InputError as error:
+            first_refusal_text = first_refusal_text or str(error)
+            continue
+        caption = sentence.removeprefix(f"wrote {SVG_REQUEST_NAME}: ")
+        if caption not in by_kind:
+            by_kind[caption] = CaptionedPicture(caption, vector_picture(figures[0], next(numbers), caption))
+    return Pictures(tuple(by_kind.values()), "" if by_kind else first_refusal_text)
+
 
 MAX_ROWS = 60
 """Largest number of rows of a table on the page. `rodsweep export` writes all rows."""
@@ -59,7 +120,8 @@ def _table_for_page(table: Table) -> PageTable:
     """The table in a form for the page: without empty columns; columns with equal values in all rows are
     listed separately."""
     filled_columns = [column for column in table.columns if not column.absent.all()]
-    constant_columns = [column for column in filled_columns if table.rows > 1 and _is_constant(column)]
+    complete = [c for c in filled_columns if table.rows > 1 and c.name != "status" and not c.absent.any()]
+    constant_columns = [column for column in complete if len(np.unique(column.values)) == 1]
     varied_columns = [column for column in filled_columns if column not in constant_columns]
     cells = [_cells(column.rows(slice(0, MAX_ROWS))) for column in varied_columns]
     firsts = ((column, _cells(column.rows(slice(0, 1)))[0]) for column in constant_columns)
@@ -72,12 +134,6 @@ def _table_for_page(table: Table) -> PageTable:
             (column.name, first, column.printed_unit, column.meaning) for column, first in firsts
         ),
     )
-
-
-def _is_constant(column: Column) -> bool:
-    """Whether all rows of a column have the same value; False for "status" and for absent values."""
-    has_all_values = column.name != "status" and not column.absent.any()
-    return has_all_values and len(np.unique(column.values)) == 1
 
 
 def _cells(column: Column) -> list[Cell]:
@@ -170,10 +226,10 @@ def _with_parameter_ranges(view: ResultView, statuses: TextTable) -> TextTable:
         return statuses
     list_view = view.as_list
     rows = []
-    for word, count, meaning in statuses.rows:
+    for word, count_text, meaning in statuses.rows:
         ranges_text = (
             region_text(list_view, list_view.has_status(word)) if word in view.flags.values() else ""
         )
-        rows.append((word, count, ranges_text, meaning))
+        rows.append((word, count_text, ranges_text, meaning))
     status_heading, count_heading, meaning_heading = statuses.headings
     return TextTable((status_heading, count_heading, "where", meaning_heading), tuple(rows))

@@ -17,8 +17,7 @@ from ...results.layouts.limit_cycle import CYCLE_STATUSES
 from ..figures import style
 from ..figures.branch import BRANCH_COLOURS, draw_branch_curves, draw_straight_rod, stability_entries
 from ..figures.cycle.portrait import ARROW_LENGTH, UNUSED_COLOUR_FRACTION, draw_clamp, draw_force_arrow
-from ..figures.stability.class_bars import draw_class_bar, mark_thresholds_on_bars
-from ..figures.stability.class_colours import class_legend_entries
+from ..figures.stability.class_bars import class_legend_entries, draw_class_bar, mark_thresholds_on_bars
 from .paragraph import paragraph
 from .portrait_units import rescale_panel
 from .results import RodResults

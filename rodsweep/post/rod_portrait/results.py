@@ -31,8 +31,10 @@ class DescribedRod:
     @property
     def description(self) -> str:
         """Description of the rod as text: quantities of an arm, parameters other than F, and material."""
+        # A quantity as the user wrote it, or the values of all segments from base to tip.
         quantity_texts = [
-            f"{name.replace('_', ' ')} {_quantity_text(value)}" for name, value in self.arm.items()
+            f"{name.replace('_', ' ')} {' | '.join(map(str, v)) if isinstance(v, list | tuple) else v}"
+            for name, v in self.arm.items()
         ]
         quantity_texts += [f"{name} = {value:g}" for name, value in self.parameters.items() if name != "F"]
         quantity_texts += [
@@ -69,10 +71,3 @@ class RodResults:
     def branches(self) -> RodBranches | None:
         """Branches of cycles of the rod; None if the result "branch" is missing."""
         return RodBranches(self.views["branch"]) if "branch" in self.views else None
-
-
-def _quantity_text(value: Any) -> str:
-    """A quantity of an arm as text: as the user wrote it, or the values of all segments from base to tip."""
-    if isinstance(value, str) or not isinstance(value, Sequence):
-        return str(value)
-    return " | ".join(map(str, value))

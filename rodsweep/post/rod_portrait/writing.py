@@ -6,8 +6,7 @@ from ...wording import enumeration
 from ..cost_and_provenance import provenance_lines
 from ..output_files import atomic_write, require_output_path, save_figure
 from ..report import rendered_template
-from ..report.pictures import CaptionedPicture, Pictures
-from ..report.report_contents import page_tables
+from ..report.report_contents import CaptionedPicture, Pictures, page_tables
 from ..report.vector_picture import vector_picture
 from .paragraph import paragraph
 from .picture import portrait_figure

@@ -40,8 +40,12 @@ def phase_diagram_summary(view: ResultView, computed: np.ndarray) -> SummaryLine
     """Summary of a phase diagram. computed: mask of the computed rows, of the shape of the rows."""
     variables = view.variables
     parameters = plane_parameters(view)
+    classes = variables["class"][computed]
+    counts = {word: int((classes == value).sum()) for value, word in STABILITY_CLASSES}
+    counts = {word: count for word, count in counts.items() if count}
+    percents = ", ".join(f"{100 * count / classes.size:.1f} % {word}" for word, count in counts.items())
     answer = [
-        *class_fraction_lines(variables["class"][computed]),
+        f"behaviour of the straight rod, in % of the grid points: {percents}",
         *lines_about_rows(view, computed, parameters),
     ]
     if "stable_states" in variables:
@@ -50,8 +54,9 @@ def phase_diagram_summary(view: ResultView, computed: np.ndarray) -> SummaryLine
     if "stable_states" in variables:
         followed_text = followed_beyond_range_text(view, computed, parameters.line, "cycle_followed_")
         reliability.append(f"{followed_text}, unless a curve of folds or torus points crosses the row there")
+    counts_text = ", ".join(f"{count} {word}" for word, count in counts.items())
     details = [
-        *class_count_lines(variables["class"][computed]),
+        f"of {counted(classes.size, 'grid point')} on the rows: {counts_text}",
         *cost_lines(view, computed),
         *cost_saving_lines(view, computed, parameters),
     ]
@@ -64,14 +69,6 @@ def phase_diagram_summary(view: ResultView, computed: np.ndarray) -> SummaryLine
     if "curve_criticality" in variables:
         details += criticality_lines(view)
     return SummaryLines(answer, reliability, details, straight_arm_threshold_lines(view, computed))
-
-
-def class_count_lines(classes: np.ndarray) -> list[str]:
-    """List with a line on the number of grid points in each class. classes: class of each point, of any
-    shape."""
-    counts = ((int((classes == value).sum()), word) for value, word in STABILITY_CLASSES)
-    texts = ", ".join(f"{count} {word}" for count, word in counts if count)
-    return [f"of {counted(classes.size, 'grid point')} on the rows: {texts}"]
 
 
 def cost_saving_lines(view: ResultView, computed: np.ndarray, parameters: PlaneParameters) -> list[str]:
@@ -92,14 +89,6 @@ def cost_saving_lines(view: ResultView, computed: np.ndarray, parameters: PlaneP
         f"grid that resolves {parameters.line} to {COMPARED_GRID_SPACING:g} on these rows has {uniform:.2g} "
         f"points, {float(f'{uniform / max(solve_count + boxes, 1):.1g}'):g} times as many"
     ]
-
-
-def class_fraction_lines(classes: np.ndarray) -> list[str]:
-    """List with a line on the fraction of the grid points in each class. classes: class of each point, of any
-    shape."""
-    percents = ((100 * float((classes == value).mean()), word) for value, word in STABILITY_CLASSES)
-    texts = ", ".join(f"{percent:.1f} % {word}" for percent, word in percents if percent)
-    return [f"behaviour of the straight rod, in % of the grid points: {texts}"]
 
 
 def row_start_lines(view: ResultView, computed: np.ndarray, parameters: PlaneParameters) -> list[str]:

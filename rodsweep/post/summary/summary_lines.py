@@ -38,26 +38,19 @@ class SummaryLines:
     """Table of numbers below the answer."""
 
 
-@dataclass(frozen=True, slots=True)
-class Summary:
-    """All lines and tables that `rodsweep show` prints about a file."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Summary(SummaryLines):
+    """All lines and tables that `rodsweep show` prints about a file: the summary of the task's result, with
+    lines about unfinished points, and what is printed for every task."""
 
-    answer: Sequence[str]
-    """Lines with the main results of the task."""
-    reliability: Sequence[str]
-    """Lines about unfinished points, accuracy and proved completeness."""
     statuses: TextTable
     """Number of points with each status, and the meaning of the status."""
-    details: Sequence[str]
-    """Lines about further results."""
     material: Sequence[str]
     """Lines about law, profile and segments of the arms; empty for uniform arms of linear material."""
     axes: TextTable
     """Values or ranges of the parameters."""
     provenance: Sequence[str]
     """Lines about computing time, MPI ranks, dates and versions."""
-    numbers: TextTable | None = None
-    """Table of numbers below the answer."""
 
 
 def varied_parameters_at_points(view: ResultView) -> dict[str, np.ndarray]:

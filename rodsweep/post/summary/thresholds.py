@@ -81,7 +81,8 @@ def first_threshold_line(view: ResultView, computed: np.ndarray, event: str) -> 
     unknown_text = unknown_clause(int((computed.ravel() & ~mask & ~decided).sum()))
     if not mask.any():
         return f"{phrase}: at none of {counted(rods, 'rod')}{unknown_text}"
-    errors = crossing_errors(view, F)
+    table, stored_errors = map(view.by_point, ("crossing_F", "crossing_error"))
+    errors = np.where(table == F[:, None], stored_errors, 0.0).max(axis=1)
     ends = (int(np.nanargmin(F)), int(np.nanargmax(F)))
     extremes = [f"{rounded_text(F[i], errors[i])}{in_brackets(point_text(view, i))}" for i in ends]
     forces_text = " to ".join(extremes if extremes[0] != extremes[1] else extremes[:1])
@@ -96,14 +97,6 @@ def unknown_beyond_clause(view: ResultView, F: float) -> str:
     search."""
     clause = f"; not known beyond F = {F:.6g}, where the search ended early"
     return clause if view.has_status(ENDED_EARLY).all() else ""
-
-
-def crossing_errors(view: ResultView, F: np.ndarray) -> np.ndarray:
-    """Absolute errors of one crossing per point, (points,), from the list of crossings; 0 for a force that is
-    not in the list of its point. F: force of the crossing, (points,); NaN for a point without this
-    crossing."""
-    table, errors = map(view.by_point, ("crossing_F", "crossing_error"))
-    return np.where(table == F[:, None], errors, 0.0).max(axis=1)
 
 
 def single_rod_crossing_lines(view: ResultView) -> list[str]:

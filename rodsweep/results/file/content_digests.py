@@ -140,9 +140,8 @@ def _dimensions(name: str, dataset: h5py.Dataset) -> list[str]:
     name_text = printable_name(name, 40)
     changed = ValueError(f"the dimensions of {name_text} were changed after rodsweep wrote them")
     if "CLASS" in attributes:
-        dimension_id = attributes.get(
-            "_Netcdf4Dimid", 0
-        )  # number of the dimension, in files that xarray wrote
+        # Number of the dimension, in files that xarray wrote.
+        dimension_id = attributes.get("_Netcdf4Dimid", 0)
         stored = [
             attributes["CLASS"],
             attributes.get("NAME"),

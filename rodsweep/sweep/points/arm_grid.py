@@ -63,7 +63,7 @@ def grid_of_arms(
         if arm_config.load_key in LOAD_OF_RATIO:
             units[arm_config.load] = table["F"] * units[SCALE_NAMES[arm_config.load]]
     table |= {name: _array_along(2, column.ravel()) for name, column in grid.items()}
-    materials = _materials_of(arms) if arm_config.is_nonuniform else ()
+    materials = tuple(arm.material if arm else DEFAULT_MATERIAL for arm in arms if arm_config.is_nonuniform)
     if "F" in table:
         ratios = material.relative_crushing_forces(table.get("taper", np.ones(1)))
         if materials:
@@ -80,11 +80,6 @@ def grid_of_arms(
     failures = _search_failures(codes, forces)
     validity_codes = codes.astype(np.int8).ravel()
     return Points(names, columns, False, values, units, DEFAULT_MATERIAL, materials, validity_codes, failures)
-
-
-def _materials_of(arms: Sequence[SlenderArm | None]) -> tuple[RodMaterial, ...]:
-    """Materials of arms; the default material for an arm to which the rod model does not apply."""
-    return tuple(arm.material if arm else DEFAULT_MATERIAL for arm in arms)
 
 
 def _quantity_of_arms(arms: Sequence[SlenderArm | None], quantity: Callable[[SlenderArm], float]) -> Array:

@@ -1,9 +1,8 @@
 """Points of an arm: points to which the rod model does not apply get a status, and each rank solves equal
 rods only once."""
 
-from collections import OrderedDict
 from collections.abc import Callable, Hashable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -106,13 +105,18 @@ def solver_with_outcome_cache(solver: Solver, points: Points, layout: Layout) ->
     rods = None if solver.grouped else rod_numbers(points)
     if rods is None:
         return solver
-    memory = _OutcomeCache(max(1, int(CACHE_BYTES // max(layout.bytes_per_point, MIN_OUTCOME_BYTES))))
+    max_outcomes = max(1, int(CACHE_BYTES // max(layout.bytes_per_point, MIN_OUTCOME_BYTES)))
+    cache: dict[Hashable, tuple[Any, State]] = {}  # the latest outcomes are last
 
     def once(index: int, start: State, solve: Callable[[], tuple[Any, State]]) -> tuple[Any, State]:
-        (outcome, state), is_repeated = memory.get_or_solve((int(rods[index]), start), solve)
-        if is_repeated:
-            outcome = RepeatedOutcome(outcome, outcome.status, outcome.message)
-        return outcome, state
+        key = int(rods[index]), start
+        if key in cache:
+            cache[key] = outcome, state = cache.pop(key)
+            return RepeatedOutcome(outcome, outcome.status, outcome.message), state
+        cache[key] = solved = solve()
+        if len(cache) > max_outcomes:
+            del cache[next(iter(cache))]
+        return solved
 
     def record(index: int, outcome: Any) -> dict[str, Any]:
         if isinstance(outcome, RepeatedOutcome):
@@ -120,26 +124,6 @@ def solver_with_outcome_cache(solver: Solver, points: Points, layout: Layout) ->
         return solver.record(index, outcome)
 
     return solver.with_wrapper(once, record=record)
-
-
-@dataclass(slots=True)
-class _OutcomeCache:
-    """Cache of the outcomes of a rank's latest solves. max_outcomes: maximum number of outcomes. outcomes:
-    cached outcomes by key, the least recently used first."""
-
-    max_outcomes: int
-    outcomes: OrderedDict[Hashable, Any] = field(default_factory=OrderedDict)
-
-    def get_or_solve(self, key: Hashable, solve: Callable[[], Any]) -> tuple[Any, bool]:
-        """Returns (result, was_cached). result: outcome with the key `key`, from the cache or else from
-        calling `solve`."""
-        if key in self.outcomes:
-            self.outcomes.move_to_end(key)
-            return self.outcomes[key], True
-        solved = self.outcomes[key] = solve()
-        if len(self.outcomes) > self.max_outcomes:
-            self.outcomes.popitem(last=False)
-        return solved, False
 
 
 @dataclass(frozen=True, slots=True)

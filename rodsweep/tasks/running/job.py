@@ -135,9 +135,8 @@ def job_of_config(
     None: the forces are computed here. Raises InputError if the axes do not fit into memory, or the results
     into a file, or if the results of one point exceed MAX_POINT_RESULT_BYTES.
     """
-    axis_value_count = sum(
-        axis.size for axis in config.parameters.axes.values()
-    )  # checked before arrays are made
+    # Checked before arrays are made.
+    axis_value_count = sum(axis.size for axis in config.parameters.axes.values())
     if axis_value_count * SETUP_BYTES_PER_AXIS_VALUE > machine_memory():
         raise InputError(
             f"the grid has {parameter_grid_size(config):.6g} points; the {axis_value_count:.6g} values "

@@ -1,7 +1,6 @@
 """Black lines and white markers of a figure, exchanged if a style draws on a dark background."""
 
 from matplotlib import rcParams
-from matplotlib.axes import Axes
 from matplotlib.collections import Collection, QuadMesh
 from matplotlib.colors import to_rgba, to_rgba_array
 from matplotlib.figure import Figure
@@ -21,7 +20,7 @@ def adapt_to_dark_background(figure: Figure) -> None:
     background of the figure is dark. Lines on maps stay black: the colours of maps are light."""
     if not _is_dark(figure.get_facecolor()):
         return
-    maps = [axes for axes in figure.axes if _is_map(axes)]
+    maps = [a for a in figure.axes if a.images or any(isinstance(c, QuadMesh) for c in a.collections)]
     for axes in figure.axes:
         if axes not in maps:
             for artist in [*axes.lines, *axes.collections]:
@@ -37,11 +36,6 @@ def adapt_to_dark_background(figure: Figure) -> None:
         else:
             for handle in legend.legend_handles:
                 _exchange_colours(handle, figure.get_facecolor())
-
-
-def _is_map(axes: Axes) -> bool:
-    """Whether axes are filled with colours of a map."""
-    return bool(axes.images) or any(isinstance(collection, QuadMesh) for collection in axes.collections)
 
 
 def _exchange_colours(artist: object, background: ColorType) -> None:

@@ -144,9 +144,8 @@ def _mark_curve_folds(axes: Axes, view: ResultView, parameters: PlaneParameters)
     variables = view.variables
     handles = []
     for i in range(len(variables["fold"])):
-        if (
-            variables["fold_kind"][i] == 1 and variables["fold_of"][i] == 1
-        ):  # a window of flutter closes at this fold
+        # A window of flutter closes at a fold of this kind.
+        if variables["fold_kind"][i] == 1 and variables["fold_of"][i] == 1:
             F, row_value = (variables[f"fold_{name}"][i] for name in parameters)
             axes.plot(F, row_value, "ko", ms=4)
             label = (

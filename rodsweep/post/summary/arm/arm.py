@@ -119,19 +119,14 @@ def quantity_range(view: ResultView, name: str, column: np.ndarray, mask: np.nda
     if name == "drag":
         names = [DRAG_ESTIMATE_NAMES[int(index)] for index in np.unique(values)]
         return "" if len(names) == len(np.unique(column)) else f"drag {' and '.join(names)}".replace("_", " ")
-    unit = _quantity_unit(view, name)
-    factor = value_in_unit(1.0, unit, ALL_QUANTITIES[name].unit) if unit else 1.0
+    si = ALL_QUANTITIES[name].unit
+    unit = "" if si == "1" else view.typed_units.get(name, printing_unit(view, si, 1.0)[1])
+    factor = value_in_unit(1.0, unit, si) if unit else 1.0
     ends = [float(f"{factor * end:.{AXIS_DIGITS}g}") for end in (values.min(), values.max())]
     range_text = " to ".join(f"{end:.{AXIS_DIGITS + 1}g}" for end in sorted(set(ends)))
     if name in LOAD_OF_RATIO:
         return f"{range_text} of flutter"
     return f"{quantity_words(name)} {range_text} {unit}".rstrip()
-
-
-def _quantity_unit(view: ResultView, name: str) -> str:
-    """Unit in which the quantity `name` is printed; empty for a dimensionless quantity."""
-    si = ALL_QUANTITIES[name].unit
-    return "" if si == "1" else view.typed_units.get(name, printing_unit(view, si, 1.0)[1])
 
 
 def arm_lines(view: ResultView, computed: np.ndarray) -> list[str]:
@@ -163,7 +158,9 @@ def arm_lines(view: ResultView, computed: np.ndarray) -> list[str]:
         rows.append(f"{variable.name.removesuffix('_si').removesuffix('_hz')} = {numbers_text} {unit}")
     if not rows:
         return []
-    return ["in the arm's units:", *wrapped_lines("; ".join(row.replace(" ", "\xa0") for row in rows))]
+    text = "; ".join(row.replace(" ", "\xa0") for row in rows)  # no line ends at a no-break space
+    lines = textwrap.wrap(text, SI_LINE_WIDTH - 2, break_long_words=False, break_on_hyphens=False)
+    return ["in the arm's units:", *("  " + line.replace("\xa0", " ") for line in lines)]
 
 
 def _numbers_text(values: np.ndarray, errors: np.ndarray) -> str:
@@ -175,12 +172,6 @@ def _numbers_text(values: np.ndarray, errors: np.ndarray) -> str:
     if values.ndim > 1 and 1 < finite.size <= FEW_ITEMS:
         return ", ".join(map(rounded_text, finite, np.nan_to_num(finite_errors)))
     return span_text(finite, finite_errors)
-
-
-def wrapped_lines(text: str) -> list[str]:
-    """`text` as indented lines of at most SI_LINE_WIDTH characters; no line ends at a no-break space."""
-    lines = textwrap.wrap(text, SI_LINE_WIDTH - 2, break_long_words=False, break_on_hyphens=False)
-    return ["  " + line.replace("\xa0", " ") for line in lines]
 
 
 def errors_in_si(variables: Mapping[str, np.ndarray], name: str, si_name: str) -> np.ndarray:
