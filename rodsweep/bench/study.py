@@ -17,6 +17,7 @@ from ..results.file.benchmark_file import Table
 
 Outcome = TypeVar("Outcome")
 """Type of the result of a timed function."""
+Item = TypeVar("Item", "TimedMethod", "Measurement")
 MAX_CACHE_SENSITIVE_SECONDS = 0.02
 """If a run takes less than this duration, in s, its time depends on the contents of the processor caches
 after the previous run."""
@@ -197,28 +198,18 @@ def measure_cases(
     return measurements
 
 
-def grouped_by_fields(
-    measurements: Iterable[Measurement], *names: str
-) -> dict[tuple[str, ...], list[Measurement]]:
-    """Lists of measurements with equal values of the fields `names`, by these values, in order of first
-    appearance."""
-    groups: dict[tuple[str, ...], list[Measurement]] = {}
-    for m in measurements:
-        groups.setdefault(tuple(getattr(m, name) for name in names), []).append(m)
+def grouped_by_fields(items: Iterable[Item], *names: str) -> dict[tuple[str, ...], list[Item]]:
+    """Lists of contenders or measurements with equal values of the fields `names`, by these values, in order
+    of first appearance."""
+    groups: dict[tuple[str, ...], list[Item]] = {}
+    for item in items:
+        groups.setdefault(tuple(getattr(item, name) for name in names), []).append(item)
     return groups
 
 
 def every_nth_setting(contenders: Iterable[TimedMethod], stride: int) -> list[TimedMethod]:
     """Contenders with every n-th setting of each method, from the first, for a quick run. stride: n."""
-    return [contender for settings in by_method(contenders).values() for contender in settings[::stride]]
-
-
-def by_method(contenders: Iterable[TimedMethod]) -> dict[str, list[TimedMethod]]:
-    """Contenders of each method, in the given order, by the name of the method."""
-    methods: dict[str, list[TimedMethod]] = {}
-    for contender in contenders:
-        methods.setdefault(contender.method, []).append(contender)
-    return methods
+    return [c for settings in grouped_by_fields(contenders, "method").values() for c in settings[::stride]]
 
 
 def nan_median(values: Iterable[float]) -> float:

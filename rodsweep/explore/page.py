@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from html import escape
 from typing import Any
 
 from bokeh.document import Document
@@ -20,7 +21,7 @@ from .solving.requests import Reply, SolveRequest
 from .solving.solvers import Solvers
 from .solving.tip_release import TipPosition
 from .state import PageState, dimensionless_parameters_of, from_address
-from .texts import progress_text, solving_text
+from .texts import KIND_WORDS
 
 SOLVE_STOPPED_SENTENCE = "Stopped. A change of the rod starts the solve again."
 """Sentence shown in place of a picture after the user has stopped its solve."""
@@ -209,7 +210,9 @@ class Page:
         is_newest = newest == inputs_of_request(request)
         if reply.outcome == "progress":
             if is_newest and kind in self.solving:
-                self.progress[kind] = progress_text(**reply.content)
+                fraction = reply.content["completed_fraction"]
+                percent = "" if fraction is None else f", {fraction:.0%}"
+                self.progress[kind] = f" ({escape(reply.content['text'])}{percent})"
                 self._show_solving()
             return
         if is_newest:
@@ -230,7 +233,8 @@ class Page:
         shown_kinds = (kinds.LOAD_KIND, *kinds.INSTANT_KINDS, *kinds.IDLE_KINDS, *kinds.MANUAL_KINDS)
         solving = [kind for kind in shown_kinds if kind in self.solving]
         is_stoppable = any(kind in kinds.STOPPABLE_KINDS for kind in solving)
-        text = solving_text(solving, self.progress)
+        names = [KIND_WORDS.get(kind, kind) + self.progress.get(kind, "") for kind in solving]
+        text = f"solving {', '.join(names)} ..." if names else ""
         self.contents.sign.update(text=text, kinds=solving, is_stoppable=is_stoppable)
 
     def _move_in_diagram(self, event: Tap | Pan) -> None:

@@ -1,8 +1,7 @@
 """Template, style sheets and scripts of the page, and texts that change with every answer. These texts are
 outside Bokeh's layout, because each change of a Bokeh `Div` causes a new layout of the whole page."""
 
-from collections.abc import Mapping, Sequence
-from html import escape
+from collections.abc import Sequence
 from pathlib import Path
 
 from bokeh.core.properties import Bool, List, String
@@ -53,17 +52,3 @@ def add_texts(document: Document, texts: Sequence[PageText]) -> None:
         for name in text.properties() & {"text", "kinds", "is_stoppable"}:
             text.js_on_change(name, callback)
         document.js_on_event(DocumentReady, callback)
-
-
-def solving_text(kinds: Sequence[str], progress: Mapping[str, str]) -> str:
-    """Text "solving ..." for the given kinds of requests; empty if `kinds` is empty. progress: progress as
-    text, by kind."""
-    names = [KIND_WORDS.get(kind, kind) + progress.get(kind, "") for kind in kinds]
-    return f"solving {', '.join(names)} ..." if names else ""
-
-
-def progress_text(text: str, completed_fraction: float | None) -> str:
-    """Progress of a solve as text in parentheses. text: current step of the solve. completed_fraction:
-    completed fraction of the work; None if unknown."""
-    percent = "" if completed_fraction is None else f", {completed_fraction:.0%}"
-    return f" ({escape(text)}{percent})"

@@ -9,7 +9,7 @@ from math import inf, isfinite, log, nan
 import numpy as np
 
 from ...solve.motion.leading_mode import leading_mode
-from ..study import TimedMethod, TimedRuns, by_method, markdown_table, time_runs
+from ..study import TimedMethod, TimedRuns, grouped_by_fields, markdown_table, time_runs
 from .default_integrator import IntegrationTask
 from .tracking import (
     CYCLE_FORCE,
@@ -76,8 +76,8 @@ def compare_settling(reference: ReferenceCycle, contenders: Sequence[TimedMethod
     """Runs all methods that reach the cycle, at F = 50 and near the Hopf point, and returns the table of the
     methods with its explanation. reference: reference cycle at F = 50. contenders: contenders of the race
     WAITING_RACE."""
-    settings = by_method(contenders)
-    waiting = {method: _integrate_until_periodic(reference, runs) for method, runs in settings.items()}
+    settings = grouped_by_fields(contenders, "method")
+    waiting = {method: _integrate_until_periodic(reference, runs) for (method,), runs in settings.items()}
     cycle = solve_cycle_at_force(CYCLE_FORCE)
     error = _cycle_error(reference, cycle.measures.period, cycle.measures.tip_y_max)
     methods = [_solve_method(CYCLE_FORCE, cycle.periods, error), *waiting.values()]

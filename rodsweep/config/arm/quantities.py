@@ -63,10 +63,11 @@ def with_load_over_flutter(section: Mapping[str, Any]) -> dict[str, Any]:
     """
     result = dict(section)
     for name, load in LOAD_OF_RATIO.items():
-        ratios, is_relative = _loads_over_flutter_load(section.get(load))
-        if not is_relative:
+        values = _written_values(section.get(load))
+        ratios = [None if value is None else load_over_flutter(value) for value in values]
+        if all(ratio is None for ratio in ratios):
             continue
-        if not all(ratio is not None for ratio in ratios):
+        if None in ratios:
             raise ValueError(
                 f"parameters.arm.{load} = {short_repr(section[load])} has relative and absolute values; "
                 "write all values like '1.2 of flutter', or all as absolute loads"
@@ -78,13 +79,6 @@ def with_load_over_flutter(section: Mapping[str, Any]) -> dict[str, Any]:
         result[name] = {**section[load], **dict(zip(RANGE_ENDS, ratios, strict=True))} if is_range else ratios
         del result[load]
     return result
-
-
-def _loads_over_flutter_load(value: Any) -> tuple[list[float | None], bool]:
-    """Returns (ratios, is_relative). ratios: each value of a load divided by the flutter load, None for an
-    absolute value. is_relative: whether any value is relative to flutter."""
-    ratios = [None if written is None else load_over_flutter(written) for written in _written_values(value)]
-    return ratios, any(ratio is not None for ratio in ratios)
 
 
 def drag_axis(value: Any) -> Axis:

@@ -15,7 +15,6 @@ from ...results.layouts.variables import MISSING_STATUS
 from ...wording import count_of_total, counted, has_or_have, is_or_are
 from ..branch_curves import RodBranches, StoredBranch, followed_parameter, stability_runs
 from ..crushing import uncrushed_ranges
-from ..range_unions import ParameterRange
 from . import style
 from .cycle.selection import shared_and_own_of_points
 from .request import FigureRequest
@@ -107,7 +106,10 @@ def draw_branch_curves(
 def draw_straight_rod(axes: Axes, rod: RodBranches) -> None:
     """Draws the straight rod, where its stability is known, as the line y = 0; the line style shows the
     stability."""
-    for stable, ranges in zip((1, 0), rod.straight_ranges(_drawn_straight_rod_range(rod)), strict=True):
+    [(start, end)] = uncrushed_ranges(rod.view, [rod.index])
+    if rod.curves:
+        end = min(end, 1.1 * max(float(np.nanmax(curve.parameter)) for curve in rod.curves))
+    for stable, ranges in zip((1, 0), rod.straight_ranges((start, end)), strict=True):
         for low, high in ranges:
             axes.plot([low, high], [0, 0], STABILITY_LOOKS[stable][0], color="k", lw=1.4)
 
@@ -133,15 +135,6 @@ def _omissions_clause(rods: Sequence[RodBranches], cycling: int, drawn_count: in
     if straight > 0:
         clause += f"; {count_of_total(straight, computed, 'rod')} {has_or_have(straight)} no branch"
     return clause
-
-
-def _drawn_straight_rod_range(rod: RodBranches) -> ParameterRange:
-    """Range of the parameter in which the straight rod is drawn: the followed range, without crushed rods,
-    and up to 1.1 times the largest parameter of the branches."""
-    [(range_start, range_end)] = uncrushed_ranges(rod.view, [rod.index])
-    if rod.curves:
-        range_end = min(range_end, 1.1 * max(float(np.nanmax(curve.parameter)) for curve in rod.curves))
-    return range_start, range_end
 
 
 def _draw_pieces(

@@ -7,7 +7,6 @@ import matplotlib.cm
 import matplotlib.colors
 import numpy as np
 from matplotlib.artist import Artist
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
@@ -174,19 +173,14 @@ def _growth_map(view: ResultView, names: list[str]) -> Figure:
     axes.set(xlabel=style.LABELS[horizontal], ylabel=style.LABELS[vertical])
     colours = matplotlib.cm.ScalarMappable(norm, MAP_COLOURS)
     figure.colorbar(colours, ax=axes, label=GROWTH_LABEL)
-    _add_invisible_points_for_report(axes, x, y, growth)
-    note = "black: zero growth, interpolated between the points"
-    set_heading(figure, view, style.constant_parameters_text(view, *names), note)
-    return figure
-
-
-def _add_invisible_points_for_report(axes: Axes, x: np.ndarray, y: np.ndarray, growth: np.ndarray) -> None:
-    """Adds an invisible scatter plot of the points of a map, from which `rodsweep report` reads the values.
-    x, y: values along the axes, (nx,) and (ny,). growth: growth rates, (nx, ny)."""
+    # Invisible points, from which `rodsweep report` reads the values.
     limits = axes.axis()
     x_grid, y_grid = np.meshgrid(x, y, indexing="ij")
     axes.scatter(x_grid.ravel(), y_grid.ravel(), c=growth.ravel(), visible=False, label=GROWTH_LABEL)
     axes.axis(limits)
+    note = "black: zero growth, interpolated between the points"
+    set_heading(figure, view, style.constant_parameters_text(view, *names), note)
+    return figure
 
 
 def draw_panels(views: Sequence[ResultView], roots: str, is_narrow: bool) -> Figure:

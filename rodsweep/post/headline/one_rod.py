@@ -118,7 +118,10 @@ class SingleRodResult:
     def __init__(self, view: ResultView):
         self.view = view
         self.tables = Tables(view)
-        self.si_names = _si_variable_names(view)
+        # Name of the SI variable of an arm, by dimensionless variable.
+        has_arm = view.config["parameters"].get("arm") is not None
+        si_variables = si_variables_of(layout_of(view.config), view.config) if has_arm else {}
+        self.si_names = {name: variable.name for name, variable in si_variables.items()}
         answer_columns = [column for column in self.tables.table(POINTS_TABLE).columns if not column.is_input]
         self.list_texts: dict[str, ColumnTexts] = {
             name: ColumnTexts(self.tables.list_columns(name), self.si_names)
@@ -168,11 +171,3 @@ class SingleRodResult:
     def words(self, table: str, name: str) -> list[str]:
         """Words in the column `name` of the table `table`, one for each row."""
         return self.list_texts[table].columns[name].texts()
-
-
-def _si_variable_names(view: ResultView) -> dict[str, str]:
-    """Name of the SI variable of an arm, by dimensionless variable; empty for a rod."""
-    if view.config["parameters"].get("arm") is None:
-        return {}
-    layout = layout_of(view.config)
-    return {name: variable.name for name, variable in si_variables_of(layout, view.config).items()}

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator, SymmetricalLogLocator
 
-from ....arrays import Array, Complex
+from ....arrays import Complex
 from ....results.file.view import ResultView
 from ....sweep.points.points import lines_along
 from ...located_thresholds import LocatedThreshold, StoredThresholds
@@ -106,14 +106,6 @@ def _followed_roots(view: ResultView, roots: str) -> Complex:
     return select_roots(view.by_point("growth_rate"), view.by_point("frequency"), roots)
 
 
-def _draw_all_roots_in_plane(axes: Axes, x: Array, w: Complex, label: str) -> None:
-    """Draws all roots w, (n, modes), in the complex plane, in colours that show the parameter x, (n,)."""
-    x_of_roots = np.broadcast_to(x[:, None], w.shape)
-    dots = axes.scatter(w.real.ravel(), w.imag.ravel(), s=6, c=x_of_roots.ravel(), cmap="viridis_r")
-    scale_if_spread(axes, w.real, w.imag)
-    axes.figure.colorbar(dots, ax=axes, label=label)
-
-
 def draw_line(view: ResultView, name: str, roots: str) -> Figure:
     """Figure of the roots against the parameter `name`, and in the complex plane."""
     figure = Figure(figsize=(5.2, 6.6), layout="constrained")
@@ -125,7 +117,10 @@ def draw_line(view: ResultView, name: str, roots: str) -> Figure:
             bottom.plot(w[:, i].real, w[:, i].imag, ".-", color=colour, lw=0.8, ms=3)
             _draw_direction_arrow(bottom, w[:, i], colour)
     else:
-        _draw_all_roots_in_plane(bottom, view.parameter_values[name], w, style.LABELS[name])
+        x_of_roots = np.broadcast_to(view.parameter_values[name][:, None], w.shape)
+        dots = bottom.scatter(w.real.ravel(), w.imag.ravel(), s=6, c=x_of_roots.ravel(), cmap="viridis_r")
+        scale_if_spread(bottom, w.real, w.imag)
+        figure.colorbar(dots, ax=bottom, label=style.LABELS[name])
     bottom.axvline(0, color="0.5", lw=0.6)
     bottom.set(xlabel=r"$\mathrm{Re}\,\omega\,\tau_2$", ylabel=r"$\mathrm{Im}\,\omega\,\tau_2$")
     style.draw_legend_below(figure, top.get_legend_handles_labels()[0], 2)

@@ -171,19 +171,12 @@ def _draw_one_series(panels: Sequence[Axes], series: AmplitudeSeries, keywords: 
     """Draws a line in all panels, with open markers for unstable cycles; returns the statuses of points
     without a known amplitude."""
     unstable = series.status_names == "unstable"
-    unknown_statuses: set[str] = set()
+    is_unknown = ~np.isin(series.status_names, (*CYCLE_STATUSES, "straight", "missing"))
+    look: dict[str, Any] = {"color": keywords["color"], "ms": 5, "clip_on": False}
     for axes, values in zip(panels, series.measures, strict=True):
         axes.plot(*series.with_gap_at_onset(values), **keywords)
         if unstable.any():
             axes.plot(series.x[unstable], values[unstable], **keywords | UNSTABLE_LOOK)
-        unknown_statuses |= _mark_unknown_amplitudes(axes, series, keywords["color"])
-    return unknown_statuses
-
-
-def _mark_unknown_amplitudes(axes: Axes, series: AmplitudeSeries, colour: str) -> set[str]:
-    """Marks points without a known amplitude at the top of a panel, in the colour of the series; returns the
-    statuses of these points. Points with status missing are not marked."""
-    is_unknown = ~np.isin(series.status_names, (*CYCLE_STATUSES, "straight", "missing"))
-    for x in series.x[is_unknown]:
-        axes.plot(x, 1.0, "x", color=colour, ms=5, clip_on=False, transform=axes.get_xaxis_transform())
+        for x in series.x[is_unknown]:
+            axes.plot(x, 1.0, "x", transform=axes.get_xaxis_transform(), **look)
     return {str(word).replace("_", " ") for word in series.status_names[is_unknown]}
