@@ -16,6 +16,7 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ...discretization.stress.form import StressForm
+from ..orbit.element_order_ratios import without_excess_orders
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.measures import CycleMotion
 from ..orbit.mesh_choice import regraded_coarser
@@ -143,11 +144,11 @@ def _next_mesh_and_calibration(
             calibration if calibration.keeps_space_errors else calibration.with_outdated_errors,
         )
     max_cost = inf if not is_accurate else _max_cost_ratio(refined, previous, name)
-    target_mesh = (
-        regraded_coarser(cheapest_mesh(calibration, accuracy), refined.orbit) if max_cost else current_mesh
-    )
-    if max_cost and target_mesh.cost <= max_cost * current_mesh.cost:
-        return target_mesh, calibration.with_outdated_errors
+    if max_cost:
+        cheapest = regraded_coarser(cheapest_mesh(calibration, accuracy), refined.orbit)
+        target_mesh = without_excess_orders(cheapest, refined.orbit)
+        if target_mesh.cost <= max_cost * current_mesh.cost:
+            return target_mesh, calibration.with_outdated_errors
     return current_mesh, calibration
 
 

@@ -10,6 +10,7 @@ from ...arrays import Array
 from ...determinant.exponents import EXPONENT_SETTINGS
 from ...model.compiled.kernel_constants import KernelConstants
 from .orbit import Orbit
+from .orbit_mesh import OrbitMesh, mesh_of
 from .tails import coefficients_of_elements
 
 
@@ -25,7 +26,11 @@ class OrderRatioSettings(KernelConstants):
     ratios_per_unit: int = 64
     """Ratios are rounded up to multiples of 1 over this number, which is less than one order at every allowed
     order."""
-    field_ranges: ClassVar = {"min_ratio": (0.0, 1.0)}
+    max_neglected_ratio: float = 1 / 3
+    """Largest neglected coefficient of an element that loses orders, divided by that of the elements of the
+    largest order. Errors are quadratic in the coefficients: the largest error of twelve meshes of three arms
+    grew by half at most, and mostly did not grow."""
+    field_ranges: ClassVar = {"min_ratio": (0.0, 1.0), "max_neglected_ratio": (0.0, 1.0)}
 
 
 ORDER_RATIO_SETTINGS = OrderRatioSettings()
@@ -37,22 +42,53 @@ def element_order_ratios(orbit: Orbit, order: int, max_tail: float) -> tuple[flo
     order: largest order, with which the Legendre coefficients in space are expected to fall to `max_tail`
     times the largest coefficient.
     """
-    coefficients = coefficients_of_elements(orbit)
+    coefficients = _relative_coefficients(orbit)
     if len(coefficients) == 1:
         return ()
-    largest_coefficients = np.max([c.max(axis=1) for c in coefficients], axis=0)
-    largest_coefficients = np.maximum(largest_coefficients, EXPONENT_SETTINGS.min_divisor)
-    orders = np.array(
-        [
-            _needed_order((c / largest_coefficients[:, None]).max(axis=0), max_tail, order)
-            for c in coefficients
-        ]
-    )
+    orders = np.array([_needed_order(c, max_tail, order) for c in coefficients])
     settings = ORDER_RATIO_SETTINGS
     orders = np.maximum(orders, settings.min_order)
     ratios = np.maximum(orders / max(orders), settings.min_ratio)
     ratios = np.ceil(settings.ratios_per_unit * ratios) / settings.ratios_per_unit
     return () if min(ratios) == 1 else tuple(ratios.tolist())
+
+
+def without_excess_orders(mesh: OrbitMesh, orbit: Orbit) -> OrbitMesh:
+    """`mesh` with lower orders of the elements whose neglected coefficients are then still far smaller than
+    those of the elements of the largest order (`max_neglected_ratio`): a change of the largest order changes
+    all orders in proportion, and coefficients of short or stiff segments fall faster. Coefficients are those
+    of the solved `orbit`. Returns `mesh` itself if its orders are equal, or if those of the orbit are not in
+    the same ratios and larger by 2."""
+    solved_mesh = mesh_of(orbit)
+    if (
+        not mesh.order_ratios
+        or not mesh.has_same_edges_and_order_ratios(solved_mesh)
+        or mesh.order + 2 > solved_mesh.order
+    ):
+        return mesh
+    coefficients = _relative_coefficients(orbit)
+    max_neglected = ORDER_RATIO_SETTINGS.max_neglected_ratio * max(
+        c[p + 1 : p + 3].max() for c, p in zip(coefficients, mesh.orders, strict=True) if p == mesh.order
+    )
+    orders = []
+    for c, p in zip(coefficients, mesh.orders, strict=True):
+        order = p
+        while (
+            ORDER_RATIO_SETTINGS.min_order < order < min(mesh.order, len(c) - 1)
+            and c[order : order + 2].max() <= max_neglected
+        ):
+            order -= 1
+        orders.append(order)
+    return mesh if tuple(orders) == mesh.orders else mesh.with_orders(orders)
+
+
+def _relative_coefficients(orbit: Orbit) -> list[Array]:
+    """Largest moduli of the Legendre coefficients in space of each element, (p + 1,) each, p: order of the
+    element, each field divided by its largest coefficient along the rod."""
+    coefficients = coefficients_of_elements(orbit)
+    scale = np.max([c.max(axis=1) for c in coefficients], axis=0)
+    scale = np.maximum(scale, EXPONENT_SETTINGS.min_divisor)
+    return [(c / scale[:, None]).max(axis=0) for c in coefficients]
 
 
 def _needed_order(c: Array, max_tail: float, order: int) -> int:

@@ -1,5 +1,6 @@
 """Meshes of an orbit in space and time."""
 
+from collections.abc import Sequence
 from dataclasses import astuple, dataclass, replace
 from math import ceil
 
@@ -129,8 +130,12 @@ class OrbitMesh:
     @property
     def unknown_count(self) -> int:
         """Number of unknowns of a state."""
-        orders = element_orders(self.element_count, self.order, self.order_ratios)
-        return plane_layout(sum(orders)).unknown_count
+        return plane_layout(sum(self.orders)).unknown_count
+
+    @property
+    def orders(self) -> tuple[int, ...]:
+        """Order of each element."""
+        return element_orders(self.element_count, self.order, self.order_ratios)
 
     @property
     def as_array(self) -> Array:
@@ -170,13 +175,17 @@ class OrbitMesh:
         cycles on both meshes contains the errors of every element."""
         if order == self.order or not self.order_ratios:
             return replace(self, order=order)
-        present_orders = element_orders(self.element_count, self.order, self.order_ratios)
         scaled_orders = element_orders(self.element_count, order, self.order_ratios)
         change = min(ORBIT_MESH_SETTINGS.min_element_order_change, abs(order - self.order))
         if order > self.order:
-            orders = [max(p + change, q) for p, q in zip(present_orders, scaled_orders, strict=True)]
+            orders = [max(p + change, q) for p, q in zip(self.orders, scaled_orders, strict=True)]
         else:
-            orders = [min(max(p - change, 1), q) for p, q in zip(present_orders, scaled_orders, strict=True)]
+            orders = [min(max(p - change, 1), q) for p, q in zip(self.orders, scaled_orders, strict=True)]
+        return self.with_orders(orders)
+
+    def with_orders(self, orders: Sequence[int]) -> "OrbitMesh":
+        """This mesh with elements of the orders `orders`, (elements,)."""
+        order = max(orders)
         # Half an order less, because `element_orders` rounds up: no rounding error can add an order.
         ratios = tuple(1.0 if p == order else (p - 1 / 2) / order for p in orders)
         return replace(self, order=order, order_ratios=ratios)

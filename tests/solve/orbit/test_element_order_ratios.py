@@ -1,6 +1,7 @@
 """Elements of unequal orders: where the cycle of an arm of segments needs a low order, it gets one."""
 
 import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,7 +14,11 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
 from rodsweep.solve.cycle.transient.motion_mesh import coarse_mesh_along_branch
-from rodsweep.solve.orbit.element_order_ratios import ORDER_RATIO_SETTINGS, element_order_ratios
+from rodsweep.solve.orbit.element_order_ratios import (
+    ORDER_RATIO_SETTINGS,
+    element_order_ratios,
+    without_excess_orders,
+)
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CycleMotion
 from rodsweep.solve.orbit.newton import newton
@@ -99,3 +104,33 @@ def test_a_mesh_with_unequal_orders_is_stored_and_refined():
     sent = pickle.loads(pickle.dumps(orbit))
     assert mesh_of(sent) == mesh_of(orbit)
     assert mesh_of(sent).order_ratios
+
+
+@pytest.mark.parametrize("name", RODS)
+def test_an_element_loses_the_orders_that_do_not_reduce_the_error(name):
+    found, memory = refined(name)
+    orders = found.orbit.form.mesh.orders
+    high = max(orders) - 5
+
+    def mesh_with_orders(low):
+        return mesh_of(found.orbit).with_orders([high if p == max(orders) else low for p in orders])
+
+    def solved(mesh):
+        return newton(mesh.interpolated_orbit(found.orbit), 1e-12, memory).orbit
+
+    def measures(mesh):
+        orbit = solved(mesh)
+        return np.array([orbit.period, *CycleMotion(orbit).extrema.values()])
+
+    start = mesh_with_orders(high - 2)
+    finer = replace(start, order=high + 3)
+    trimmed = without_excess_orders(start, solved(finer))
+    low = min(trimmed.orders)
+    assert max(trimmed.orders) == high >= 2 * low
+    exact = measures(finer.with_orders((high + 9,) * 2))
+    kept, lost, too_low = (
+        abs(measures(mesh) / exact - 1).max() for mesh in (start, trimmed, mesh_with_orders(low - 2))
+    )
+    assert lost <= 1.6 * kept
+    assert too_low >= 5 * kept
+    assert without_excess_orders(start, found.orbit) is start
