@@ -4,7 +4,7 @@ Equations use `coefficients` and `material` of a `Rod`, never a stiffness or dra
 parameter, because other parameters may multiply the stiffness or drag.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import inf
 from typing import Any, NamedTuple
@@ -93,20 +93,6 @@ class Rod:
         """`RodMaterial.local_coefficients` of this rod at points u, (points,), away from breaks."""
         at_base = stiffnesses_and_drags_at_base(self.values)
         return self.material.local_coefficients(self.F, at_base, u, remainder)
-
-    @staticmethod
-    def local_coefficients_of_rods(
-        rods: Sequence["Rod"], u: Array, remainder: Array | None = None
-    ) -> LocalCoefficients:
-        """Results of `local_coefficients` at points u of n rods with the same material, (n, *u.shape)."""
-        if len(rods) == 1:
-            return LocalCoefficients(*(x[None] for x in rods[0].local_coefficients(u, remainder)))
-        shape = (len(rods), *(1,) * u.ndim)
-        values = {name: np.array([getattr(rod, name) for rod in rods]).reshape(shape) for name in PARAMETERS}
-        at_base = stiffnesses_and_drags_at_base(values)
-        coefficients = rods[0].material.local_coefficients(values["F"], at_base, u, remainder)
-        full = (len(rods), *u.shape)
-        return LocalCoefficients(*(x if x.shape == full else np.broadcast_to(x, full) for x in coefficients))
 
     @property
     def crushing_force(self) -> float:

@@ -13,6 +13,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...model.dispersion import sampled_arm
+from ...model.local_coefficients import local_coefficient_array
 from ...model.material.rod_material import LocalCoefficients
 from ...model.rod import Rod
 from ..value import DeterminantValue, eigenvalue_error_and_scales
@@ -113,7 +114,7 @@ def coefficient_samples(rods: list[Rod]) -> CoefficientSamples:
     """Samples of the arms `rods`, whose profiles have equal breaks."""
     # Along the taper, coefficients are constant in a single arm only: the points of another arm serve all.
     points, weights, _ = sampled_arm(min(rods, key=lambda rod: rod.material.is_piecewise_constant(rod.taper)))
-    coefficients = Rod.local_coefficients_of_rods(rods, points)
+    coefficients = LocalCoefficients(*local_coefficient_array(rods, points))
     forces = np.array([[rod.F] for rod in rods])
     return CoefficientSamples(points, coefficients, exponent_samples(forces, coefficients, weights).squares)
 
@@ -129,11 +130,8 @@ def elements_for(rods: list[Rod], samples: CoefficientSamples, W: float) -> ArmE
         if not len(edges) <= ARM_ELEMENT_SETTINGS.max_elements:
             break
         lengths = edges[1:] - edges[:-1]
-        coefficients = np.array(
-            Rod.local_coefficients_of_rods(
-                rods, *sum_and_remainder(edges[:-1, None], lengths[:, None] * points)
-            )
-        )
+        u, remainder = sum_and_remainder(edges[:-1, None], lengths[:, None] * points)
+        coefficients = local_coefficient_array(rods, u, remainder)
         halved_edges = halved_where_coarse(edges, W, forces, coefficients)
         if halved_edges is edges:
             return ArmElements(lengths, coefficients)

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...model.compiled.compilation import compiled
+from ...model.local_coefficients import local_coefficient_array
 from ...model.rod import Rod
 from ..elements.basis import differentiation_matrix, lagrange_interpolation_matrix
 from ..elements.quadrature import gauss_legendre_rule, gauss_lobatto_rule
@@ -98,7 +99,7 @@ class ArmPencil:
         """The matrices of the pencil of the arm `rod`."""
         return PencilMatrices(
             *_pencil_of_coefficients(
-                float(rod.F), np.array(rod.local_coefficients(self._sample_points)), self._mesh_matrices
+                float(rod.F), local_coefficient_array([rod], self._sample_points)[:, 0], self._mesh_matrices
             )
         )
 

@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 
@@ -27,13 +26,12 @@ FACTOR_CACHE_SETTINGS = FactorCacheSettings()
 
 
 def factors_along(
-    profile: Profile | None, taper: Any, u: Array, remainder: Array | None = None
+    profile: Profile | None, taper: float, u: Array, remainder: Array | None = None
 ) -> dict[str, Array]:
     """Stiffnesses and drags at points u, divided by their values at the base, by name: arrays of the shape of
-    u. Callers must not write into these arrays, because they may be shared through the cache. taper: a
-    number, or an array for n arms, (n, 1, ...), with which factors that depend on the taper have the shape
-    (n, *u.shape). remainder: exact coordinates of the points minus u, (*u.shape); None: u is exact."""
-    if isinstance(taper, np.ndarray) or u.size > FACTOR_CACHE_SETTINGS.max_points:
+    u. Callers must not write into these arrays, because they may be shared through the cache. remainder:
+    exact coordinates of the points minus u, (*u.shape); None: u is exact."""
+    if u.size > FACTOR_CACHE_SETTINGS.max_points:
         return _factors_along(profile, taper, u, np.zeros(u.shape) if remainder is None else remainder)
     # Arrays cannot be keys of a cache, but their bytes can.
     remainder_bytes = b"" if remainder is None else remainder.tobytes()
@@ -52,14 +50,14 @@ def _cached_factors(
     return _factors_along(profile, taper, u, remainder)
 
 
-def _factors_along(profile: Profile | None, taper: Any, u: Array, remainder: Array) -> dict[str, Array]:
+def _factors_along(profile: Profile | None, taper: float, u: Array, remainder: Array) -> dict[str, Array]:
     """The result of `factors_along`, computed anew."""
     if profile is None:
         factors = dict.fromkeys(FACTOR_NAMES, np.ones(u.shape))
     else:
         factors = dict(zip(FACTOR_NAMES, profile.factors_at(u, remainder), strict=True))
     # A uniform rod skips the products with 1, the most frequent case.
-    if isinstance(taper, np.ndarray) or taper != 1:
+    if taper != 1:
         radius = relative_radius(taper, u, remainder)
         square = radius * radius  # a power of NumPy takes as long as ten products
         radius_to_power = {2: square, 4: square * square}

@@ -142,21 +142,14 @@ class Profile:
         return factors
 
 
-def relative_radius(taper: Any, u: Any, remainder: Any = 0.0) -> Any:
+def relative_radius(taper: float, u: Any, remainder: Any = 0.0) -> Any:
     """Radius of a cone at points u, divided by the radius at the base, to nearly all digits.
 
     taper: tip radius over base radius. remainder: exact coordinates of the points minus u; near a thin tip
-    the rounding of u itself changes the radius. All are numbers or arrays that broadcast.
+    the rounding of u itself changes the radius. Both are numbers or arrays of one shape.
     """
     # Both formulas add positive numbers only: the radius is summed from the thinner end.
-    if np.ndim(taper):
-        return np.where(taper < 1, _radius_from_tip(taper, u, remainder), 1 + (taper - 1) * u)
-    return _radius_from_tip(taper, u, remainder) if taper < 1 else 1 + (taper - 1) * u
-
-
-def _radius_from_tip(taper: Any, u: Any, remainder: Any) -> Any:
-    """`relative_radius`, summed from the tip."""
-    return taper + (1 - taper) * (1 - u - remainder)
+    return taper + (1 - taper) * (1 - u - remainder) if taper < 1 else 1 + (taper - 1) * u
 
 
 def _hermite_cubics(first: Array, last: Array, first_slope: Array, last_slope: Array) -> Array:

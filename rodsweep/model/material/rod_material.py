@@ -4,7 +4,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -134,11 +134,11 @@ class RodMaterial:
         return np.array(forces).reshape(tapers.shape)
 
     def local_coefficients(
-        self, F: Any, at_base: Mapping[str, Any], u: Array, remainder: Array | None = None
+        self, F: float, at_base: Mapping[str, float], u: Array, remainder: Array | None = None
     ) -> LocalCoefficients:
         """Coefficients at points u, (...,), under the force F. No point may be a break of the profile.
-        at_base: stiffnesses and drags at u = 0, and taper, by name. F and at_base contain numbers, or arrays
-        for n arms, (n, 1, ...). remainder: exact coordinates of the points minus u; None: u is exact."""
+        at_base: stiffnesses and drags at u = 0, and taper, by name. remainder: exact coordinates of the
+        points minus u; None: u is exact."""
         factors = factors_along(self.profile, at_base["taper"], u, remainder)
         law = self.constitutive_law
         # No load acts along the arm, so the force in every section is F.

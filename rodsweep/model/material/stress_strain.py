@@ -10,10 +10,11 @@ with the stretch energy W and the bending factor B of `laws`. No formula divides
 allowed. A linear rod has N = q1 and M = q3.
 """
 
+import math
 from typing import NamedTuple
 
 from ..compiled.compilation import compiled
-from .laws import LAWS
+from .laws import CUBIC_LOAD, LAWS, SHORTENING_NEWTON_STEPS
 
 LINEAR_LAW_NUMBER, FIXED_SECTION_LAW_NUMBER, SWELLING_SECTION_LAW_NUMBER = range(len(LAWS))
 """Numbers of the constitutive laws in compiled code, in the order of `LAWS`."""
@@ -44,7 +45,7 @@ class TangentMatrix(NamedTuple):
 
 
 @compiled
-def _bending_factor(law: int, h: float) -> tuple[float, float, float]:
+def bending_factor(law: int, h: float) -> tuple[float, float, float]:
     """Returns (B, B', B''): bending factor of the law number `law` at the stretch h, and derivatives."""
     if law == SWELLING_SECTION_LAW_NUMBER:
         # The law is that of an incompressible rubber whose section shrinks as the rod is stretched.
@@ -52,6 +53,27 @@ def _bending_factor(law: int, h: float) -> tuple[float, float, float]:
         b = 1 / h**4
         return (a + 2 * b) / 3, -(a + 8 * b) / (3 * h), (2 * a + 40 * b) / (3 * h * h)
     return 1.0, 0.0, 0.0
+
+
+@compiled
+def shortening(law: int, x: float) -> float:
+    """1 - nu at the load x = F/k1 of the law number `law`, as `Law.shortening`."""
+    if law == LINEAR_LAW_NUMBER:
+        return x
+    if x < -CUBIC_LOAD:
+        return 1 + 3 * x
+    discriminant = 0.25 - x * x * x
+    if discriminant < 0:
+        nu = 0.5 / (math.sqrt(x) * math.cos(math.acos(min(0.5 / x**1.5, 1.0)) / 3))
+    else:
+        root = (0.5 + math.sqrt(discriminant)) ** (1 / 3)
+        nu = root * root - x + (x / root) * (x / root)
+    e = 1 - nu
+    for _ in range(SHORTENING_NEWTON_STEPS):
+        nu = 1 - e
+        residual = 3 * x * nu * nu - e * (3 - 3 * e + e * e)
+        e += residual / (3 * nu * (nu + 2 * x))
+    return e
 
 
 @compiled
@@ -70,7 +92,7 @@ def stress_beyond_rest(law: int, material: LocalSection, q1: float, q3: float) -
         return Stress(q1, q3)
     h = material.nu + material.c1 * q1
     # The energy of bending depends on the stretch, so a bent rod has an axial force from it.
-    B, B1, _ = _bending_factor(law, h)
+    B, B1, _ = bending_factor(law, h)
     return Stress(q1 * _neo_hookean_secant(material.nu, h) + B1 * material.c3 * q3 * q3 / 2, B * q3)
 
 
@@ -81,7 +103,7 @@ def stress_tangent(law: int, material: LocalSection, q1: float, q3: float) -> Ta
     if law == LINEAR_LAW_NUMBER:
         return TangentMatrix(1.0, 0.0, 0.0, 1.0)
     h = material.nu + material.c1 * q1
-    B, B1, B2 = _bending_factor(law, h)
+    B, B1, B2 = bending_factor(law, h)
     stiffness = (1 + 2 / h**3) / 3  # W''(h)
     coupling = B1 * q3
     return TangentMatrix(
@@ -107,7 +129,7 @@ def stress_parameter_derivative(
     # Derivatives of the secant [W'(h) - W'(nu)]/(h - nu) with respect to nu and h.
     secant_nu = -a * a * b * (2 * a + b) / 3
     secant_h = -a * b * b * (a + 2 * b) / 3
-    _, B1, B2 = _bending_factor(law, h)
+    _, B1, B2 = bending_factor(law, h)
     bending_part = q3 * q3 / 2 * (B2 * h_derivative * material.c3 + B1 * change.c3)
     return Stress(
         q1 * (secant_nu * change.nu + secant_h * h_derivative) + bending_part, B1 * h_derivative * q3

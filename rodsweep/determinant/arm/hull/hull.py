@@ -31,6 +31,7 @@ import numpy as np
 
 from ....arrays import Array
 from ....model.compiled.compilation import compiled
+from ....model.local_coefficients import local_coefficient_array
 from ....model.material.rod_material import RodMaterial
 from ....model.rod import Rod
 from ...parameter_path import ParameterPath
@@ -88,7 +89,7 @@ def _hull_samples(rods: Sequence[Rod]) -> HullSamples:
     material = rods[0].material
     lengths, u, end_to_end_u = _chebyshev_points_of_material(material)
     F = np.array([rod.F for rod in rods], float)
-    coefficients = np.array(Rod.local_coefficients_of_rods(rods, u))
+    coefficients = local_coefficient_array(rods, u)
     averaged_regions = np.empty((len(rods), 0, 2))
     if material.jump_positions:
         averaged_regions = averaged_regions_of_arms(F, end_to_end_u, coefficients.reshape(6, len(F), -1))
