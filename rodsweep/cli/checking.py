@@ -24,8 +24,10 @@ from ..verdict.checks import tube_flattening_check
 from ..wording import count_of_total, counted
 
 
+@np.errstate(over="ignore")
 def print_job_check(job: Job) -> None:
-    """Prints the points, the modelled effects and the expected cost of a valid config."""
+    """Prints the points, the modelled effects and the expected cost of a valid config. Numbers of extreme
+    rods that overflow are limited in the estimates."""
     console = Console(highlight=False, markup=False)
     console.print(f"{job.path}: valid. {job.config.title}".rstrip())
     console.print(job.task.headline())

@@ -144,13 +144,10 @@ def followed_spectra_cost(
     point_ms = (
         FOLLOWED_ARM_POINT_MS if any(not rod.is_uniform_and_linear for rod in rods) else FOLLOWED_POINT_MS
     )
-    unstable = np.array([0.0 if rod.is_uniform_and_linear else expected_unstable_count(rod) for rod in rods])
+    unstable = _unstable_counts_of_arms(rods)
     # Such arms are not followed, so each of their points is solved alone.
-    extra_ms = np.where(
-        unstable > mode_count + MAX_EXTRA_MODES_OF_FOLLOWED_ARM,
-        ARM_MS_PER_SQUARED_UNSTABLE_MODE * unstable**2,
-        0.0,
-    )
+    are_alone = unstable > mode_count + MAX_EXTRA_MODES_OF_FOLLOWED_ARM
+    extra_ms = ARM_MS_PER_SQUARED_UNSTABLE_MODE * unstable**2 * are_alone
     point_ms += float(extra_ms.mean()) if rods else 0.0
     # Groups shorter than the cost of their first point would make following look dearer than it can be.
     return replace(alone, seconds=alone.seconds * min(1.0, ratio) + points.count * 1e-3 * point_ms)
@@ -164,10 +161,8 @@ def two_meshes_cost(points: Points, mode_count: int, accuracy: float) -> CostEst
     extra = points.count * 1e-3 * float(np.mean([_soft_or_pulled_rod_ms(rod) for rod in rods] or [0.0]))
     # The part for soft and pulled rods is taken out of the factor, as it has a factor of its own.
     seconds = TWO_MESHES_TO_ROOTS_TIME * (one_mesh.seconds - extra) + TWO_MESHES_TO_ROOTS_EXTRA_TIME * extra
-    unknowns = one_mesh.unknowns and (
-        one_mesh.unknowns[0],
-        math.ceil(FINER_MESH_RATIO * one_mesh.unknowns[1]),
-    )
+    low, high = one_mesh.unknowns or (0, 0)
+    unknowns = one_mesh.unknowns and (low, math.ceil(FINER_MESH_RATIO * high))
     return replace(one_mesh, seconds=seconds, unknowns=unknowns)
 
 
@@ -186,7 +181,7 @@ def spectra_cost(points: Points, mode_count: int, accuracy: float, certify: bool
     point_ms = np.where(n <= MIN_SPARSE_UNKNOWNS, dense_ms, SPARSE_MS_PER_UNKNOWN * n) + (
         CERTIFICATE_MS if certify else 0
     )
-    unstable = np.array([0.0 if rod.is_uniform_and_linear else expected_unstable_count(rod) for rod in rods])
+    unstable = _unstable_counts_of_arms(rods)
     point_ms += arm_fraction * CERTIFIED_ARM_SPECTRUM_MS + ARM_MS_PER_SQUARED_UNSTABLE_MODE * unstable**2
     point_ms += np.array([_soft_or_pulled_rod_ms(rod) for rod in rods])
     memory = BASE_MEMORY + int(n.max()) * MEMORY_PER_UNKNOWN
@@ -195,6 +190,12 @@ def spectra_cost(points: Points, mode_count: int, accuracy: float, certify: bool
     return CostEstimate(
         float(point_ms.mean()) * 1e-3 * points.count, memory, (min(counts), max(counts)), too_large
     )
+
+
+def _unstable_counts_of_arms(rods: list[Rod]) -> NDArray[np.float64]:
+    """Expected unstable modes of each rod, (rods,), 0 for uniform linear rods; no mesh has more unknowns."""
+    counts = [0.0 if rod.is_uniform_and_linear else expected_unstable_count(rod) for rod in rods]
+    return np.minimum(counts, RESOLUTION_SETTINGS.max_unknowns)
 
 
 def _soft_or_pulled_rod_ms(rod: Rod) -> float:

@@ -125,6 +125,24 @@ def test_rubber_compressed_beyond_its_digits_is_refused(section, F, taper, limit
     assert rs.Rod(F=0.9 * float(limit), **rod).parameters["F"] == 0.9 * float(limit)
 
 
+@pytest.mark.parametrize(("F", "taper", "limit"), [(-1.001e54, 1, "-1e+54"), (-1e300, 0.5, "-2.5e+53")])
+def test_swelling_rubber_stretched_until_its_law_overflows_is_refused(F, taper, limit):
+    rod = {"k1": 1e4, "k2": 1e3, "gamma3": 1e-3, "taper": taper, "law": "neo_hookean"}
+    with pytest.raises(InputError, match=f"is below {re.escape(limit)}; the stretch of swelling rubber"):
+        rs.sweep("spectrum", F=[F, 1], section="swelling", **rod)
+    assert np.isfinite(rs.Rod(F=0.9 * float(limit), section="swelling", **rod).parameters["F"])
+    assert rs.Rod(F=F, **rod).parameters["F"] == F
+
+
+@pytest.mark.parametrize("task", ["spectrum", "modes"])
+def test_check_states_a_finite_time_of_pulls_whose_waves_overflow(command, task):
+    text = BASE.format(task=task, more=", taper: 0.5", rest="").replace("[1, 2]", "[-1.0e+202, 2]")
+    checked = command("check", command.write("a.yaml", text))
+    assert checked.stderr == ""
+    seconds = re.search(r"expected cost: (\S+) s on one rank", checked.stdout)
+    assert np.isfinite(float(seconds[1]))
+
+
 def test_searches_that_compress_rubber_beyond_its_digits_are_refused():
     rod = rs.Rod(k1=0.01, k2=1e3, gamma3=1e-3, law="neo_hookean")
     with pytest.raises(InputError, match="thresholds: F = 11 is above 10, 1000 times the stretch stiffness"):

@@ -21,6 +21,9 @@ FloatOrArray = Any
 LARGEST_RUBBER_LOAD = 1e3
 """Largest load F/k1 of rubber, which compresses rubber to nu = 0.018 of its length. There the rounding error
 of 1 - nu is 6e-15 of nu. At F/k1 = 1e9 it is 6e-12: errors of eigenvalues were 400 times the stated ones."""
+LARGEST_SWELLING_PULL = 1e50
+"""Largest pull -F/k1 of swelling rubber. The sixth power of nu = 3 |F|/k1, which the law contains, overflows
+from 8e50 on."""
 CUBIC_LOAD = 1e6
 """Pull -F/k1 beyond which nu = 3 |F|/k1 to all digits; the cube of |F|/k1 may overflow."""
 SHORTENING_NEWTON_STEPS = 2
@@ -38,7 +41,8 @@ class Law:
     bending_factor: B(h1). bending_factor_slope, bending_factor_second_derivative: B' and B''. shortening: 1 -
     nu at the load x = F/k1, from W'(nu) = -x, without cancellation for small loads. crushing_load: the load x
     that crushes the rod; inf if no force crushes the rod. largest_load: largest load x at which nu = 1 -
-    shortening has nearly all digits; inf if the rod is crushed before."""
+    shortening has nearly all digits; inf if the rod is crushed before. largest_pull: largest pull -x at which
+    no function overflows; inf if any pull is allowed."""
 
     law_name: str
     section_name: str
@@ -53,6 +57,7 @@ class Law:
     shortening: Callable[[FloatOrArray], FloatOrArray]
     crushing_load: float = np.inf
     largest_load: float = np.inf
+    largest_pull: float = np.inf
 
 
 def _neo_hookean_shortening(x: FloatOrArray) -> FloatOrArray:
@@ -118,6 +123,7 @@ SWELLING_CONSTITUTIVE_LAW = replace(
     bending_factor=lambda h: (1 + 2 / h**3) / (3 * h),
     bending_factor_slope=lambda h: -(1 + 8 / h**3) / (3 * h**2),
     bending_factor_second_derivative=lambda h: (2 / h**3 + 40 / h**6) / 3,
+    largest_pull=LARGEST_SWELLING_PULL,
 )
 LAWS = {
     (law.law_name, law.section_name): law

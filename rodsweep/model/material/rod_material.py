@@ -102,15 +102,22 @@ class RodMaterial:
         crushes the arm. taper: taper of the arm."""
         return self.constitutive_law.crushing_load * smallest_factor_along(self.profile, taper, "k1")
 
-    def refuse_extreme_compression(self, F: float, k1: float, taper: float) -> None:
-        """Raises ValueError if the force compresses the weakest section beyond the law's `largest_load`. F:
-        force. k1: stretch stiffness at the base. taper: tip radius over base radius."""
-        largest_load = self.constitutive_law.largest_load
-        limit = largest_load * smallest_factor_along(self.profile, taper, "k1") * k1
-        if limit < F:
+    def refuse_extreme_load(self, forces: Array | float, k1: float, taper: float) -> None:
+        """Raises ValueError if a force compresses the weakest section beyond the law's `largest_load`, or
+        stretches it beyond the law's `largest_pull`. forces: a number, or numbers, (n,). k1: stretch
+        stiffness at the base. taper: tip radius over base radius."""
+        law = self.constitutive_law
+        weakest_k1 = smallest_factor_along(self.profile, taper, "k1") * k1
+        low, high = -law.largest_pull * weakest_k1, law.largest_load * weakest_k1
+        if (F := np.max(forces)) > high:
             raise ValueError(
-                f"F = {F:.15g} is above {limit:.15g}, {largest_load:g} times the stretch stiffness of the "
+                f"F = {F:.15g} is above {high:.15g}, {law.largest_load:g} times the stretch stiffness of the "
                 "weakest section; rubber this compressed cannot be computed, so give a smaller force"
+            )
+        if (F := np.min(forces)) < low:
+            raise ValueError(
+                f"F = {F:.15g} is below {low:.15g}; the stretch of swelling rubber under such a pull "
+                "overflows, so give a weaker pull"
             )
 
     def crushing_ratio(self, F: float, k1: float, taper: float) -> float:

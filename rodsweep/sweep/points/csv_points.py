@@ -96,7 +96,7 @@ def _row_numbers(row: list[str], header: list[str], row_text: str, material: Rod
     try:
         # The rod itself checks combinations such as F below k1, so that no rule is written twice.
         rod = Rod(**parameters, material=material)
-        material.refuse_extreme_compression(rod.F, rod.k1, rod.taper)
+        material.refuse_extreme_load(rod.F, rod.k1, rod.taper)
     except ValueError as error:
         raise InputError(f"{row_text}: {error}") from None
     return numbers

@@ -166,7 +166,7 @@ def job_of_config(
 
 
 def _refuse_extreme_search(task: Task, points: Points) -> None:
-    """Raises InputError if a search compresses rubber beyond the largest load of its law."""
+    """Raises InputError if a search compresses or stretches rubber beyond the limits of its law."""
     if not isinstance(task, CertifiedTask) or not task.searched_range_ends():
         return
     values = task.parameter_values
@@ -174,7 +174,7 @@ def _refuse_extreme_search(task: Task, points: Points) -> None:
         return
     taper = values["taper"].min() if "taper" in values else 1.0
     try:
-        points.material.refuse_extreme_compression(values["F"].max(), values["k1"].min(), taper)
+        points.material.refuse_extreme_load(values["F"], values["k1"].min(), taper)
     except ValueError as error:
         raise InputError(f"{task.config.task}: {error}") from None
 
