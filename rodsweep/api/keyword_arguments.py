@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Collection, Mapping
+from enum import Enum
 from pathlib import Path
 from typing import Any, TypedDict, TypeVar
 
@@ -195,11 +196,14 @@ def _axis_range(start: float | str, stop: float | str, num: int, spacing: str) -
 
 def plain_value(value: Any) -> Any:
     """A value in the types of a YAML config. Arrays and tuples become lists. NumPy scalars, also as keys,
-    become numbers, booleans or texts of Python. Paths become texts.
+    become numbers, booleans or texts of Python, and so do members of an IntEnum or StrEnum. Paths become
+    texts.
 
     A pint quantity becomes a text with its unit, and an array of pint quantities a list of such texts. Raises
     ValueError for masked values.
     """
+    if isinstance(value, Enum) and isinstance(value, int | float | str):
+        value = value.value
     if isinstance(value, dict):
         return {plain_value(key): plain_value(item) for key, item in value.items()}
     if isinstance(value, list | tuple | range):

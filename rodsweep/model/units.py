@@ -97,9 +97,13 @@ def _number_in_si(name: str, quantity: Any, si_unit: str, allowed_text: str) -> 
             f"{name} = '{quantity!s:.60}'", f"{quantity.units:C}", si_unit, allowed_text
         )
     try:
-        if isinstance(quantity, bool | np.bool_ | complex) or np.ma.is_masked(quantity):
+        if np.ndim(quantity) or np.ma.is_masked(quantity):
             raise TypeError
-        return float(quantity)
+        number = quantity.item() if hasattr(quantity, "item") else quantity
+        # Texts in bytes or arrays have no unit either, so they are refused as all other texts without a unit.
+        if isinstance(number, bool | complex | str | bytes):
+            raise TypeError
+        return float(number)
     except (TypeError, ValueError, OverflowError):
         raise InputError(
             f"{name} = {_shortened_text(quantity)} is not one quantity; write {allowed_text}, or one number "

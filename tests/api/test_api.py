@@ -8,6 +8,7 @@ import shutil
 import signal
 import subprocess
 import sys
+from enum import IntEnum, StrEnum
 from pathlib import Path
 
 import numpy as np
@@ -256,6 +257,26 @@ def test_numpy_scalars_are_taken_by_every_door():
     assert rs.Arm(**SILICONE, poisson=np.array(0.49)) == rs.Arm(**SILICONE, poisson=0.49)
     with pytest.raises(rs.InputError, match="length = True is not one quantity"):
         rs.Arm(**SILICONE | {"length": np.bool_(True)})
+
+
+@pytest.mark.parametrize(
+    "length", [np.array(["30"]), np.array("30"), b"30", np.array([True]), np.array(True), np.array([[0.1]])]
+)
+def test_an_array_or_a_text_without_unit_is_no_quantity_of_an_arm(length):
+    with pytest.raises(rs.InputError, match="length = .* is not one quantity; write a number with a unit"):
+        rs.Arm(**SILICONE | {"length": length})
+
+
+def test_members_of_enumerations_are_their_numbers_and_texts():
+    class Modes(IntEnum):
+        one = 1
+
+    class Methods(StrEnum):
+        roots = "determinant"
+
+    rod = rs.Rod(**ROD | {"k1": IntEnum("Stiffnesses", {"soft": 200}).soft})
+    assert rod.parameters["k1"] == 200
+    assert rs.Rod(**ROD).spectrum(modes=Modes.one, method=Methods.roots).growth_rate.shape == (1,)
 
 
 def test_an_empty_profile_and_an_empty_list_of_segments_are_called_empty():
