@@ -31,8 +31,6 @@ class ElementSettings:
     """Maximum number of cached pencils; a pencil for 300 growing modes takes 10 MB."""
     max_cached_mesh_pairs: int = 256
     """Maximum number of cached interpolation matrices between two meshes, and of cached lists of edges."""
-    max_dense_unknowns: int = 120
-    """Matrices about the straight rod with up to this number of unknowns are factorised as dense."""
 
 
 ELEMENT_SETTINGS = ElementSettings()

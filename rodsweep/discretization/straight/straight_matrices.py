@@ -4,16 +4,14 @@ About the straight rod longitudinal and transverse components are decoupled and 
 Unknowns of different elements are coupled only at the nodes between elements.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg.lapack import zgetrf, zgetrs
 from scipy.sparse import csc_array
-from scipy.sparse.linalg import splu
+from scipy.sparse.linalg import SuperLU, splu
 
 from ...arrays import Array, Complex
 from ...model.balance import Values, ad, coad
@@ -33,7 +31,7 @@ class _Pattern(NamedTuple):
     """Sparsity pattern of A for some components on a mesh; it contains the full diagonal. i, j: node indices
     of the nonzero entries of W D without the column of the tip, (m,). positions: index in the pattern of each
     value that `StraightMatrices.A` concatenates. indices, indptr: rows and column starts in scipy's order.
-    diagonal, columns: indices in the pattern of the diagonal entries, (n,), and column of each entry."""
+    diagonal: indices in the pattern of the diagonal entries, (n,)."""
 
     i: NDArray[np.int_]
     j: NDArray[np.int_]
@@ -41,7 +39,6 @@ class _Pattern(NamedTuple):
     indices: NDArray[np.int32]
     indptr: NDArray[np.int32]
     diagonal: NDArray[np.int_]
-    columns: NDArray[np.int_]
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
@@ -65,7 +62,7 @@ def _pattern(mesh: Mesh, component_count: int) -> _Pattern:
     columns, indices = np.divmod(pattern, size)
     indptr = np.searchsorted(columns, np.arange(size + 1)).astype(np.int32)
     diagonal = np.flatnonzero(columns == indices)
-    return _Pattern(i, j, positions, indices.astype(np.int32), indptr, diagonal, columns)
+    return _Pattern(i, j, positions, indices.astype(np.int32), indptr, diagonal)
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,15 +141,8 @@ class StraightMatrices:
         pattern = self._pattern
         values = self.A.data.astype(complex)
         values[pattern.diagonal] -= shift * self.M
-        if len(self.M) > ELEMENT_SETTINGS.max_dense_unknowns:
-            sparse = splu(csc_array((values, pattern.indices, pattern.indptr), shape=self.A.shape))
-            return StraightFactors(self, lambda b, adjoint: sparse.solve(b, trans="H" if adjoint else "N"))
-        K = np.zeros(self.A.shape, complex, order="F")
-        K[pattern.indices, pattern.columns] = values
-        factors, pivots, _ = zgetrf(K, overwrite_a=True)
-        return StraightFactors(
-            self, lambda b, adjoint: zgetrs(factors, pivots, b, trans=2 if adjoint else 0)[0]
-        )
+        K = csc_array((values, pattern.indices, pattern.indptr), shape=self.A.shape)
+        return StraightFactors(self, splu(K))
 
     def _scatter(self, values: Values) -> Values:
         """A state, (unknowns,), with `values`, (n,), in the unknowns of `components`, 0 in all others."""
@@ -163,14 +153,14 @@ class StraightMatrices:
 
 @dataclass(frozen=True, eq=False)
 class StraightFactors:
-    """LU factorisation of the matrix K = A - shift M; solutions are inf or nan if K is singular. solve_own:
-    function of (right-hand side, adjoint) that solves for the n unknowns of `matrices.components`, (n,)."""
+    """LU factorisation of the matrix K = A - shift M. lu: of the rows and columns of K for the n unknowns of
+    `matrices.components`, (n, n)."""
 
     matrices: StraightMatrices
-    solve_own: Callable[[Complex, bool], Complex]
+    lu: SuperLU
 
     def solve(self, b: Values, adjoint: bool = False) -> Complex:
         """The solution x, (unknowns,), of K x = b or, if `adjoint`, of K^H x = b; b: (unknowns,)."""
         matrices = self.matrices
         right_side = b[matrices.state_indices].astype(complex)
-        return matrices._scatter(self.solve_own(right_side, adjoint))
+        return matrices._scatter(self.lu.solve(right_side, "H" if adjoint else "N"))

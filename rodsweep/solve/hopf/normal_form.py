@@ -212,6 +212,8 @@ def _eigenvalue_and_modes(matrices: StraightMatrices, guess: complex) -> tuple[c
     docstring. Two-sided inverse iteration, shifted by the Rayleigh quotient. Raises Unsolvable."""
     w = complex(guess)
     for _ in range(NORMAL_FORM_SETTINGS.max_shifts):
+        if not np.isfinite(w):  # a factorisation would raise an error
+            continue
         # At the eigenvalue itself the matrix would be singular.
         shift = w * (1 + NORMAL_FORM_SETTINGS.shift_offset)
         factors = matrices.lu_factors(shift)

@@ -86,11 +86,9 @@ def torus_of(found):
 
 def test_further_stages_replace_time_intervals_on_the_first_mesh_of_a_special_point():
     """The errors of a cone of taper 0.19: with four stages 114 intervals are needed, with five about 50."""
-    errors = np.full(ERROR_COUNT, 1e-8)
     known = Calibration(
         OrbitMesh((0.0, 0.5, 1.0), 20, 38, 4),
-        errors,
-        errors,
+        np.full((2, ERROR_COUNT), 1e-8),
         np.full(ERROR_COUNT, 1.0),
         np.full(ERROR_COUNT, 6.0),
         np.array([1e-4, 1e-4, 1.0]),

@@ -10,8 +10,8 @@ from surveyed import RODS
 from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
-from rodsweep.solve.spectrum.path import arm_count, carried_arm_count, neighbouring_rods
-from rodsweep.solve.spectrum.path.carried_arm_count import confirmed_count_at
+from rodsweep.solve.spectrum.path import carried_arm_count, neighbouring_rods
+from rodsweep.solve.spectrum.path.carried_arm_count import ArmCountCarrier, confirmed_count_at
 from rodsweep.solve.spectrum.path.followed_arms import FollowedArms
 from rodsweep.solve.spectrum.path.neighbouring_rods import NeighbouringRods, follow_spectra_of_arms
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
@@ -69,8 +69,10 @@ def test_a_cone_is_followed_and_proved_without_single_points():
 def test_counts_carried_along_a_path_are_those_of_single_points(monkeypatch):
     """Beyond F = 20 D'/D no longer proves the cone: a few counts serve all points up to F = 60."""
     counted = []
-    count = arm_count.count_right_of
-    monkeypatch.setattr(arm_count, "count_right_of", lambda *words: counted.append(words[0]) or count(*words))
+    count = carried_arm_count.count_right_of
+    monkeypatch.setattr(
+        carried_arm_count, "count_right_of", lambda *words: counted.append(words[0]) or count(*words)
+    )
     path, values = (
         ParameterPath(Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2, taper=0.5), "F"),
         np.linspace(20, 60, 160),
@@ -93,11 +95,11 @@ def test_a_second_count_that_disagrees_takes_the_carried_counts_back(monkeypatch
         ParameterPath(Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2, taper=0.5), "F"),
         np.linspace(40, 42, 40),
     )
-    confirmed = carried_arm_count.confirmed_line
+    line_at = ArmCountCarrier._confirmed_line_at_or_left_of
     monkeypatch.setattr(
-        carried_arm_count,
-        "confirmed_line",
-        lambda path, found, p, *rest: None if p > 40.5 else confirmed(path, found, p, *rest),
+        ArmCountCarrier,
+        "_confirmed_line_at_or_left_of",
+        lambda self, i, *rest: None if self.interval.p[i] > 40.5 else line_at(self, i, *rest),
     )
     single = []
     monkeypatch.setattr(
