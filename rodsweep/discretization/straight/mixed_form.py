@@ -65,6 +65,21 @@ class MixedForm(RodOnMesh):
         weighted = self.nodal_rod.compliance * self.mesh.quadrature
         return self.layout.state(weighted, np.zeros(weighted.shape))
 
+    @cached_property
+    def terms_without_derivative(self) -> tuple[Array, Array]:
+        """Returns (W ad_E, W (ad*_E T + ad*_{C .} Sigma)), the terms of A without D and drag, by equation and
+        component at each node but the tip, (3, 3, nodes) each: the terms of V in the equations of S, and of S
+        in the equations of V; T: tangent of the law. The tip contributes nothing: s = 0, and E enters only
+        the equation of S(1), which is not solved."""
+        nodal = self.nodal_rod
+        W = self.mesh.quadrature[:-1]
+        identity = np.eye(SE2_DIMENSION)[:, :, None]
+        E = nodal.rest_strain[:, None, :-1]
+        stress_part = identity * self.law_derivatives.tangent[None, :, :-1]
+        strain_part = identity * nodal.compliance[None, :, :-1]
+        forces = coad(E, stress_part) + coad(strain_part, nodal.tip_stress[:, None, None])
+        return W * ad(E, identity), W * forces
+
     def times_force_derivative_of_A(self, X: Values) -> Values:
         """Product (dA/dF) X for states X, (..., unknowns): dA/dF is the derivative of A by the force."""
         S, V = self.stresses_and_velocities(X)

@@ -14,7 +14,7 @@ from scipy.sparse import csc_array
 from scipy.sparse.linalg import SuperLU, splu
 
 from ...arrays import Array, Complex
-from ...model.balance import Values, ad, coad
+from ...model.balance import Values
 from ..elements.elements import ELEMENT_SETTINGS
 from ..elements.mesh import Mesh
 from ..state_layout import SE2_DIMENSION
@@ -92,7 +92,7 @@ class StraightMatrices:
         own = list(self.components)
         pattern = self._pattern
         WD = -form.mesh.matrices.weak_derivative.T[pattern.i, pattern.j]
-        strain_rates, forces = (terms[np.ix_(own, own)] for terms in self._terms_without_derivative())
+        strain_rates, forces = (terms[np.ix_(own, own)] for terms in form.terms_without_derivative)
         values = (
             np.tile(-WD, len(own)),
             WD * form.law_derivatives.tangent[own][:, pattern.j],
@@ -103,20 +103,6 @@ class StraightMatrices:
         )
         entries = np.bincount(pattern.positions, np.concatenate([part.ravel() for part in values]))
         return csc_array((entries, pattern.indices, pattern.indptr), shape=2 * (len(pattern.diagonal),))
-
-    def _terms_without_derivative(self) -> tuple[Array, Array]:
-        """Returns (W ad_E, W (ad*_E T + ad*_{C .} Sigma)), the terms of A without D and drag, by equation and
-        component at each node but the tip, (3, 3, nodes) each: the terms of V in the equations of S, and of S
-        in the equations of V; T: tangent of the law. The tip contributes nothing: s = 0, and E enters only
-        the equation of S(1), which is not solved."""
-        nodal = self.form.nodal_rod
-        W = self.form.mesh.quadrature[:-1]
-        identity = np.eye(SE2_DIMENSION)[:, :, None]
-        E = nodal.rest_strain[:, None, :-1]
-        stress_part = identity * self.form.law_derivatives.tangent[None, :, :-1]
-        strain_part = identity * nodal.compliance[None, :, :-1]
-        forces = coad(E, stress_part) + coad(strain_part, nodal.tip_stress[:, None, None])
-        return W * ad(E, identity), W * forces
 
     @cached_property
     def M(self) -> Array:

@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 
 from ...determinant.parameter_path import ParameterPath
 from ...discretization.elements.elements import Elements
-from ...discretization.straight.straight_matrices import TRANSVERSE_COMPONENTS, StraightMatrices
 from ...model.rod import Rod
 from ..changes.arm.path import path_problem
 from ..changes.threshold_kinds import Threshold
@@ -116,9 +115,7 @@ def hopf_coefficients(rod: Rod, hopf: Threshold, accuracy: float) -> HopfCoeffic
         fine_form = normal_form_on(finer_elements, rod, w, accuracy)
         landau_change = abs(fine_form.landau - coarse_form.landau) / abs(fine_form.landau)
         # The rounding error of c follows from the condition number of the eigenvalue.
-        product_sizes = StraightMatrices(fine_form.form, TRANSVERSE_COMPONENTS).A_product_magnitude(
-            fine_form.p, fine_form.q
-        )
+        product_sizes = fine_form.transverse.A_product_magnitude(fine_form.p, fine_form.q)
         rounding_error = settings.landau_rounding_per_condition_number * product_sizes / abs(fine_form.w)
         if landau_change <= max(accuracy, rounding_error):
             break

@@ -70,16 +70,17 @@ HARMONIC_WAVE_NUMBER_RATIO = 2
 """Wave number of h20 and h11, which determine c, divided by the wave number of q."""
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False)
 class NormalForm:
     """Normal form of a rod on a mesh, about the straight rod, for one eigenvalue w with Im w > 0.
 
     w in 1/tau2, eigenvalue_slope = dw/dF in L^2/(k3 tau2), landau = c in 1/(tau2 L^2). q, p, h20 (complex)
-    and h11 (real): coefficients of the state X of `form`, (unknowns,). At a Hopf point w = i Im w up to the
-    error of the mesh.
+    and h11 (real): coefficients of the state X of `form`, (unknowns,). transverse: matrices of the transverse
+    components. At a Hopf point w = i Im w up to the error of the mesh.
     """
 
     form: MixedForm
+    transverse: StraightMatrices
     w: complex
     eigenvalue_slope: complex
     landau: complex
@@ -140,10 +141,8 @@ def normal_form(form: MixedForm, guess: complex) -> NormalForm:
     c = np.vdot(p, form.bilinear(q.conj(), h20) / 2 + form.bilinear(q, h11))
     if form.law_derivatives.is_nonlinear:
         c += np.vdot(p, form.trilinear(q, q, q.conj())) / 2
-    slope = np.vdot(p, form.times_force_derivative_of_A(q))
-    return NormalForm(
-        form=form, w=w, eigenvalue_slope=complex(slope), landau=complex(c), q=q, p=p, h20=h20, h11=h11
-    )
+    slope = complex(np.vdot(p, form.times_force_derivative_of_A(q)))
+    return NormalForm(form, transverse, w, slope, complex(c), q=q, p=p, h20=h20, h11=h11)
 
 
 def normal_form_by_mesh_rule(rod: Rod, w: complex, accuracy: float) -> NormalForm:
