@@ -11,13 +11,13 @@ from ...wording import counted
 from ..unsolvable import Unsolvable
 from .arc_length_step import ARC_STEP_CONTROL, BranchCycle, arc_length_between, cycle_at_length, next_cycle
 from .branch_curve import BranchCurve, BranchEnd, RangePassage
-from .branch_end_settings import BRANCH_END_SETTINGS
 from .branch_limits import BranchLimits
 from .branch_mesh_choice import is_measurement_due
 from .branch_record import BranchRecord, branch_end_point
 from .computing_time import fraction_done
 from .mirror_image_end import end_or_shorter_step_at_mirror_image
 from .range_end import cycle_at_end_beside_zero, cycle_within_range, range_end_condition
+from .settings import BRANCH_END_SETTINGS
 from .special.detection import fold_and_breaking_between, lie_on_one_branch, special_points_between
 from .special.locating import special_point_between
 from .special.special_point import SpecialKind, SpecialPoint

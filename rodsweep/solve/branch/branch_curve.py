@@ -8,7 +8,7 @@ import numpy as np
 
 from ...model.floquet import min_unstable_count
 from ..cycle.accuracy.cycle_errors import CycleErrors
-from ..cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
+from ..cycle.accuracy.settings import REFINEMENT_SETTINGS
 from ..orbit.measures import CycleMeasures
 from .arc_length_step import BranchCycle
 from .special.special_point import SPECIAL_POINT_SETTINGS, SpecialPoint

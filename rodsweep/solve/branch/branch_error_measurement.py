@@ -19,9 +19,9 @@ from ..orbit.path_differences import path_differences
 from ..unsolvable import Unsolvable
 from .bordered.condition import BorderCondition, moved_orbit
 from .bordered.scale import ALONG_PARAMETER
-from .branch_error_settings import BRANCH_ERROR_SETTINGS
 from .branch_errors import BranchCalibration, BranchDerivatives, branch_newton_tolerance
 from .multiplier_sensitivity import MultiplierSensitivity
+from .settings import BRANCH_ERROR_SETTINGS
 
 
 def measured_branch_calibration(

@@ -17,15 +17,15 @@ import numpy as np
 from ...arrays import Array
 from ...determinant.exponents import EXPONENT_SETTINGS
 from ..cycle.accuracy.calibration import ERROR_COUNT, Calibration
-from ..cycle.accuracy.calibration_settings import CALIBRATION_SETTINGS
 from ..cycle.accuracy.cheapest_mesh import cheapest_mesh
 from ..cycle.accuracy.cycle_errors import CYCLE_ERROR_SETTINGS, MULTIPLIER_ERROR_INDEX
 from ..cycle.accuracy.refinement import newton_tolerance
+from ..cycle.accuracy.settings import CALIBRATION_SETTINGS
 from ..orbit.orbit_mesh import OrbitMesh
 from ..orbit.path_differences import EXTREMUM_INDEX, PATH_INDEX, PERIOD_INDEX, Y_INDEX
 from .bordered.scale import ArcLengthScale
-from .branch_error_settings import BRANCH_ERROR_SETTINGS
 from .multiplier_sensitivity import MultiplierSensitivity
+from .settings import BRANCH_ERROR_SETTINGS
 
 
 def branch_newton_tolerance(accuracy: float) -> float:

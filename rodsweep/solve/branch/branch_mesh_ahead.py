@@ -13,8 +13,7 @@ from ..cycle.accuracy.error_indicators import error_growth_factors, tails_and_si
 from ..orbit.mesh_choice import finer_orbit_mesh, regraded_coarser
 from ..orbit.orbit_mesh import OrbitMesh, mesh_of
 from .arc_length_step import BranchCycle
-from .branch_error_settings import BRANCH_ERROR_SETTINGS
-from .branch_mesh_settings import BRANCH_MESH_SETTINGS
+from .settings import BRANCH_ERROR_SETTINGS, BRANCH_MESH_SETTINGS
 
 
 def expected_error_growth(

@@ -23,8 +23,8 @@ from .bordered.scale import ArcLengthScale
 from .branch_error_measurement import measured_branch_calibration, parameter_sensitivities
 from .branch_errors import BranchCalibration, branch_newton_tolerance
 from .branch_mesh_ahead import expected_error_growth, mesh_ahead
-from .branch_mesh_settings import BRANCH_MESH_SETTINGS
 from .multiplier_sensitivity import MultiplierSensitivity
+from .settings import BRANCH_MESH_SETTINGS
 
 
 def first_measured_cycle(

@@ -26,8 +26,8 @@ from .branch_curve import BranchCurve
 from .branch_errors import branch_newton_tolerance
 from .branch_limits import BranchLimits
 from .branch_mesh_choice import first_measured_cycle
+from .settings import BRANCH_START_SETTINGS
 from .special.special_point import SpecialKind, SpecialPoint
-from .start.branch_start_settings import BRANCH_START_SETTINGS
 from .start.first_asymmetric_cycle import ASYMMETRIC_START_SETTINGS
 from .start.first_cycle import DEFLECTION_UNIT_VECTOR
 

@@ -10,14 +10,14 @@ from ..unsolvable import Unsolvable
 from .arc_length_step import ARC_STEP_CONTROL, BranchCycle, arc_length_between
 from .bordered.scale import deflection_of
 from .branch_curve import BranchEnd
-from .branch_end_settings import BRANCH_END_SETTINGS, is_extrapolated_to
 from .branch_limits import BranchLimits
 from .branch_record import branch_end_point
 from .range_end_near_hopf import end_at_range_end_near_hopf, has_accurate_range_end
+from .settings import BRANCH_END_SETTINGS
 from .start.hopf_point import HopfBranchStart, hopf_as_special_point
 from .start.near_hopf_points import min_last_amplitude
 from .status import BranchEndReason
-from .symmetry_breaking import reaches_symmetric_cycle, symmetry_breaking_index_between
+from .symmetry_breaking import is_extrapolated_to, reaches_symmetric_cycle, symmetry_breaking_index_between
 
 
 def passes_hopf_point(start: BranchCycle, end: BranchCycle) -> bool:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...determinant.exponents import EXPONENT_SETTINGS
-from ..cycle.accuracy.calibration_settings import CALIBRATION_SETTINGS
+from ..cycle.accuracy.settings import CALIBRATION_SETTINGS
 from ..orbit.newton import ConvergedOrbit
 
 

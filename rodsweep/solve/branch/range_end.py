@@ -20,8 +20,8 @@ from .arc_length_step import (
 from .bordered.condition import BorderCondition, moved_orbit
 from .bordered.corrected_linearisation import linearisation_of
 from .bordered.scale import ALONG_PARAMETER
-from .branch_end_settings import BRANCH_END_SETTINGS
 from .branch_errors import branch_newton_tolerance
+from .settings import BRANCH_END_SETTINGS
 from .special.branch_segment import BranchSegment
 
 

@@ -14,8 +14,8 @@ from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import mesh_of
 from .arc_length_step import BranchCycle
 from .branch_curve import BranchEnd, RangePassage
-from .branch_end_settings import BRANCH_END_SETTINGS
 from .branch_limits import BranchLimits
+from .settings import BRANCH_END_SETTINGS
 from .special.special_point import SpecialKind, SpecialPoint
 from .start.hopf_point import HopfBranchStart
 

@@ -16,11 +16,11 @@ from ...solve_progress import solve_part
 from ..point_outcome import FAILURES
 from ..unsolvable import Unsolvable, WorkLimitReached
 from .arc_length_step import ARC_STEP_CONTROL, BranchCycle, cycle_at_length
-from .beyond_range_settings import BEYOND_RANGE_SETTINGS
 from .branch_continuation import follow_asymmetric_branch, follow_from_cycle, index_of_passed_range_end
 from .branch_curve import BranchCurve, RangePassage, unstable_count_bounds
 from .branch_limits import WORK_UNIT, BranchLimits
 from .detached_branch import complete_branch_through, lies_on_a_branch, reversed_cycle
+from .settings import BEYOND_RANGE_SETTINGS
 from .special.special_point import SpecialKind, SpecialPoint
 from .start.first_cycle import first_cycle
 from .start.hopf_point import HopfBranchStart, accuracy_near_hopf_points

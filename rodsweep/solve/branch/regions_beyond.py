@@ -9,9 +9,9 @@ from ...model.crushing import uncrushed_interval
 from ...model.parameters import PARAMETERS
 from ..changes.thresholds_along_path import ThresholdSearchResult, find_axis_crossings
 from ..point_outcome import FAILURES
-from .beyond_range_settings import BEYOND_RANGE_SETTINGS
 from .branch_limits import BranchLimits
 from .region_beyond import RegionBeyond
+from .settings import BEYOND_RANGE_SETTINGS
 from .start.hopf_point import HopfBranchStart, hopf_branch_start
 from .status import BranchEndReason
 

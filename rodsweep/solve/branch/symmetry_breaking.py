@@ -18,7 +18,7 @@ from ..orbit.orbit import Orbit, node_times
 from ..orbit.symmetry import NO_SYMMETRY
 from ..unsolvable import Unsolvable
 from .arc_length_step import ARC_STEP_CONTROL, BranchCycle, arc_length_between
-from .branch_end_settings import BRANCH_END_SETTINGS, is_extrapolated_to
+from .settings import BRANCH_END_SETTINGS
 from .special.special_point import SpecialKind, SpecialPoint
 
 
@@ -114,6 +114,25 @@ def symmetry_breaking_index_between(
             "the cycles pass a symmetric cycle within the shortest step along the branch, far from symmetry"
         )
     return None
+
+
+def is_extrapolated_to(
+    extrapolated: tuple[float, float], last: tuple[float, float], end: tuple[float, float], accuracy: float
+) -> bool:
+    """Whether a branch ends at a Hopf point or a symmetry breaking, within tolerances.
+
+    Each point is (parameter coordinate, period): extrapolated along the branch from its last cycle, of this
+    cycle, and at the end. accuracy: relative accuracy of the branch.
+    """
+    settings = BRANCH_END_SETTINGS
+    # The extrapolation is exact at the end, where only the errors of the last cycle and of the end remain.
+    tolerances = settings.extrapolated_parameter_tolerance, settings.extrapolated_period_tolerance
+    return all(
+        abs(value - end_value)
+        <= settings.extrapolation_tolerance * abs(last_value - end_value)
+        + max(tolerance, accuracy) * abs(end_value)
+        for value, last_value, end_value, tolerance in zip(extrapolated, last, end, tolerances, strict=True)
+    )
 
 
 def _symmetry_breaking_index_ahead(

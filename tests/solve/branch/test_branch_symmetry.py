@@ -20,7 +20,6 @@ from rodsweep.solve.branch.branch_continuation import (
     follow_from_cycle,
 )
 from rodsweep.solve.branch.branch_curve import BranchCurve
-from rodsweep.solve.branch.branch_end_settings import is_extrapolated_to
 from rodsweep.solve.branch.branch_limits import BranchLimits
 from rodsweep.solve.branch.branch_mesh_choice import solve_on_sufficient_mesh
 from rodsweep.solve.branch.branches import BranchesOfRod
@@ -33,6 +32,7 @@ from rodsweep.solve.branch.status import BranchEndReason, BranchStatus
 from rodsweep.solve.branch.symmetry_breaking import (
     asymmetry,
     extended_to_whole_period,
+    is_extrapolated_to,
     symmetry_breakings_in,
 )
 from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings

@@ -12,7 +12,7 @@ from rodsweep.solve.branch.multiplier_sensitivity import MultiplierSensitivity
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
 from rodsweep.solve.branch.status import BranchEndReason
 from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings
-from rodsweep.solve.cycle.accuracy.calibration_settings import CALIBRATION_SETTINGS
+from rodsweep.solve.cycle.accuracy.settings import CALIBRATION_SETTINGS
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 
 RUBBER_ROD = Rod(

@@ -8,9 +8,9 @@ import pytest
 from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
-from rodsweep.solve.cycle.accuracy.calibration_settings import CALIBRATION_SETTINGS
 from rodsweep.solve.cycle.accuracy.coarser_meshes import CoarserMeshes
 from rodsweep.solve.cycle.accuracy.refinement import refined_cycle_of_any_period
+from rodsweep.solve.cycle.accuracy.settings import CALIBRATION_SETTINGS
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
 from rodsweep.solve.cycle.transient.motion_mesh import coarse_mesh_along_branch
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace

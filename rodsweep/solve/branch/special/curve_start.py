@@ -14,7 +14,7 @@ from ...unsolvable import Unsolvable
 from ..arc_length_step import tangent_at
 from ..bordered.matrix import BorderedMatrix
 from ..bordered.scale import ArcLengthScale, deflection_of
-from ..start.branch_start_settings import BRANCH_START_SETTINGS
+from ..settings import BRANCH_START_SETTINGS
 from ..start.first_cycle import DEFLECTION_UNIT_VECTOR
 from .cycle_family import CycleFamily
 from .solved_curve_point import ALONG_BRANCH, CURVE_SECANT_SETTINGS, SolvedPoint

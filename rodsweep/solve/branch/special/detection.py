@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ....arrays import Array
-from ...cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
+from ...cycle.accuracy.settings import REFINEMENT_SETTINGS
 from ...unsolvable import Unsolvable
 from ..arc_length_step import BranchCycle, arc_length_between
 from .locating import kind_at_minus_one, special_point_between

@@ -12,7 +12,7 @@ import numpy as np
 
 from ....arrays import Array
 from ...cycle.accuracy.refinement import allowed_matrix_distance
-from ...cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
+from ...cycle.accuracy.settings import REFINEMENT_SETTINGS
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.measures import CycleMotion
 from ...orbit.mesh_choice import cheapest_stage_count, mesh_from_tails
@@ -24,9 +24,9 @@ from ..bordered.condition import BorderCondition, moved_orbit
 from ..bordered.corrected_linearisation import linearisation_of
 from ..bordered.matrix import BorderedMatrix
 from ..bordered.scale import ArcLengthScale, deflection_of
-from ..branch_end_settings import BRANCH_END_SETTINGS
 from ..branch_errors import branch_newton_tolerance
 from ..branch_mesh_choice import first_measured_cycle
+from ..settings import BRANCH_END_SETTINGS
 from ..symmetry_breaking import SymmetryBreaking, asymmetry, extended_to_whole_period
 from .first_cycle import DEFLECTION_UNIT_VECTOR
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from ....discretization.stress.form import StressForm
 from ...cycle.accuracy.refinement import allowed_matrix_distance
-from ...cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
+from ...cycle.accuracy.settings import REFINEMENT_SETTINGS
 from ...cycle.hopf_start import orbit_of_amplitude
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.mesh_choice import cheapest_stage_count, mesh_from_tails
@@ -22,7 +22,7 @@ from ..bordered.condition import BorderCondition
 from ..bordered.scale import ArcLengthScale, deflection_of
 from ..branch_errors import branch_newton_tolerance
 from ..branch_mesh_choice import first_measured_cycle
-from .branch_start_settings import BRANCH_START_SETTINGS
+from ..settings import BRANCH_START_SETTINGS
 from .hopf_point import HopfBranchStart
 from .near_hopf_points import max_first_amplitude
 

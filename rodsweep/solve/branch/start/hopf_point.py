@@ -13,8 +13,8 @@ from ...cycle.hopf_start_settings import normal_form_accuracy
 from ...hopf.hopf_coefficients import HopfCoefficients, hopf_coefficients
 from ...hopf.normal_form import NormalForm, normal_form_by_mesh_rule
 from ...unsolvable import Unsolvable
+from ..settings import BRANCH_START_SETTINGS
 from ..special.special_point import SpecialKind, SpecialPoint
-from .branch_start_settings import BRANCH_START_SETTINGS
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -12,7 +12,7 @@ sqrt(|s/Re c| d)/2. Cycles of much smaller y are those of one Hopf point alone.
 from collections.abc import Sequence
 from math import inf
 
-from .branch_start_settings import BRANCH_START_SETTINGS
+from ..settings import BRANCH_START_SETTINGS
 from .hopf_point import HopfBranchStart
 
 

@@ -17,7 +17,6 @@ from ....determinant.exponents import EXPONENT_SETTINGS
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh
 from ...orbit.tails import tails_of
-from .calibration_settings import CALIBRATION_SETTINGS
 from .cycle_errors import CycleErrors, errors_with_safety_factors
 from .error_indicators import (
     LAST_HARMONICS_INDEX,
@@ -25,6 +24,7 @@ from .error_indicators import (
     squared_tail_growth,
     tails_and_size,
 )
+from .settings import CALIBRATION_SETTINGS
 
 ERROR_COUNT = 5
 """Length of the error arrays: the errors of `path_differences`, and the error of the multiplier."""

@@ -10,8 +10,8 @@ from ....discretization.elements.resolution import RESOLUTION_SETTINGS
 from ...orbit.orbit_mesh import ORBIT_MESH_SETTINGS, OrbitMesh
 from ...orbit.path_differences import PATH_INDEX
 from .calibration import Calibration
-from .calibration_settings import CALIBRATION_SETTINGS
 from .cycle_errors import errors_with_safety_factors, largest_weighted_error
+from .settings import CALIBRATION_SETTINGS
 
 
 def cheapest_mesh(calibration: Calibration, accuracy: float) -> OrbitMesh:

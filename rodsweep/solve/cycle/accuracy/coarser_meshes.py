@@ -21,8 +21,8 @@ from ...orbit.path_differences import PERIOD_INDEX, Y_INDEX, path_differences
 from ...orbit.tails import tails_of
 from .amplitude_errors import amplitude_rounding
 from .calibration import Calibration, calibration_of
-from .calibration_settings import CALIBRATION_SETTINGS
 from .finer_meshes import FINER_MESH_SETTINGS, ComparedCycle
+from .settings import CALIBRATION_SETTINGS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -3,8 +3,8 @@ largest nontrivial Floquet multiplier.
 
 Errors are measured in `finer_meshes`, as differences between the cycles on the mesh and on two finer meshes,
 or predicted in `coarser_meshes`, and `calibration` scales them to later cycles. Then
-`errors_with_safety_factors` applies safety factors and lower limits, with the factors of
-`calibration_settings`. The errors of integrated cycles come from `errors_of_two_integrations`.
+`errors_with_safety_factors` applies safety factors and lower limits, with the factors of `settings`. The
+errors of integrated cycles come from `errors_of_two_integrations`.
 """
 
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from ....arrays import Array
 from ...orbit.measures import CycleMotion
 from ...orbit.path_differences import EXTREMUM_INDEX, PATH_INDEX, PERIOD_INDEX, Y_INDEX
 from ..integration_settings import INTEGRATION_SETTINGS
-from .calibration_settings import CALIBRATION_SETTINGS
+from .settings import CALIBRATION_SETTINGS
 
 MULTIPLIER_ERROR_INDEX = 4
 """Index of the error of the largest nontrivial multiplier in the error arrays of a calibration."""

@@ -15,8 +15,8 @@ from ...orbit.measures import CycleMotion
 from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
 from ...orbit.tails import smooth_element_and_time_tails
-from .calibration_settings import CALIBRATION_SETTINGS
 from .cycle_errors import CYCLE_ERROR_SETTINGS
+from .settings import CALIBRATION_SETTINGS
 
 ENERGY_LOSS_INDEX, AMPLITUDE_ERROR_INDEX, LAST_HARMONICS_INDEX = range(3)
 """Indices into the array that `error_indicators` returns."""

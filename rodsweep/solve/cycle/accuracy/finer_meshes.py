@@ -22,8 +22,8 @@ from ...orbit.newton import (
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of
 from ...orbit.path_differences import Y_INDEX, path_differences
 from .calibration import Calibration, calibration_of
-from .calibration_settings import CALIBRATION_SETTINGS
 from .error_indicators import AMPLITUDE_ERROR_INDEX, error_indicators
+from .settings import CALIBRATION_SETTINGS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -32,7 +32,7 @@ from .error_indicators import error_indicators
 from .finer_meshes import measured_calibration, with_indicators
 from .minimal_period import MINIMAL_PERIOD_SETTINGS, common_harmonic_divisor, restricted_to_minimal_period
 from .refined_cycle import RefinedCycle
-from .refinement_settings import REFINEMENT_SETTINGS
+from .settings import REFINEMENT_SETTINGS
 
 
 def cycle_with_calibrated_errors(
