@@ -10,9 +10,8 @@ from ..config.task.spectrum import SpectrumConfig
 from ..discretization.elements.elements import Elements
 from ..discretization.elements.quadrature import lobatto_points
 from ..discretization.elements.resolution import mesh_accuracy
-from ..discretization.straight.longitudinal_modes import longitudinal_modes
+from ..discretization.straight.longitudinal_modes import longitudinal_eigenvalues, longitudinal_modes
 from ..errors import InputError
-from ..model.longitudinal import longitudinal_eigenvalues
 from ..model.material.laws import LINEAR_CONSTITUTIVE_LAW
 from ..model.material.rod_material import RodMaterial
 from ..model.rod import Crushed, Rod

@@ -8,8 +8,8 @@ from ..model.arm.section import Tube
 from ..model.arm.shape import Station
 from ..model.material.laws import LINEAR_CONSTITUTIVE_LAW
 from ..model.units import with_si_prefix
+from .load import three_digit_range_text
 from .planes import PlaneOfMotion
-from .rounded_numbers import three_digit_range_text
 
 RUBBER_STRESS_FORMULA = "stress E (h - 1/h^2)/3 at the stretch h, incompressible"
 """Formula of the stress in neo-Hookean rubber, for the table."""

@@ -8,10 +8,9 @@ from ..model.arm.neglected import Validity
 from ..solve.changes.threshold_kinds import ThresholdKind
 from .assessment import Assessment
 from .flutter import RangeOverDrags, ThresholdsOverDrags
-from .load import LoadFormatter
+from .load import LoadFormatter, percent_range_text, three_digit_range_text
 from .planes import PlaneOfMotion, PlanesOfMotion
 from .remedies import effect_kind, not_applicable_sentences
-from .rounded_numbers import percent_range_text, three_digit_range_text
 
 CRUSHED_END_RATIO = 0.999
 """A search ended at crushing if its end, in units of the crushing force, is above this fraction."""
@@ -28,14 +27,10 @@ def verdict_sentences(planes: PlanesOfMotion, assessment: Assessment) -> list[st
             "For some drags the thresholds could not be found: " + "; ".join(plane.thresholds.failures) + "."
         ]
     headline, *others = _sentences_if_search_succeeded(planes, assessment)
-    return [headline, *_doubt_sentences(planes), *others]
-
-
-def _doubt_sentences(planes: PlanesOfMotion) -> list[str]:
-    """List of one sentence on why the thresholds of some plane are uncertain; empty if they are certain."""
-    thresholds_of_planes = [plane.thresholds for plane in (planes.first, planes.second) if plane is not None]
-    reasons = sorted({reason for thresholds in thresholds_of_planes for reason in thresholds.uncertainties})
-    return [f"For some drags this is not certain: {'; '.join(reasons)}."] if reasons else []
+    known_planes = [plane for plane in (planes.first, planes.second) if plane is not None]
+    doubts = sorted({doubt for plane in known_planes for doubt in plane.thresholds.uncertainties})
+    doubt_sentences = [f"For some drags this is not certain: {'; '.join(doubts)}."] if doubts else []
+    return [headline, *doubt_sentences, *others]
 
 
 def _sentences_if_search_succeeded(planes: PlanesOfMotion, assessment: Assessment) -> list[str]:
@@ -71,12 +66,7 @@ def _valid_arm_sentences(plane: PlaneOfMotion) -> list[str]:
         if thresholds.end < arm.F:
             consequence = f": whether the arm beats at {load.typed_text} is not known"
         return [f"The arm does not flutter {_search_end_clause(plane, load)}{consequence}."]
-    frequency = thresholds.first_frequencies(ThresholdKind.hopf)
-    clause = (
-        ""
-        if frequency is None
-        else f" begins to beat at {three_digit_range_text(frequency.low, frequency.high)} Hz"
-    )
+    clause = _beating_clause(thresholds, " begins")
     if arm.load is None:
         sentences = [
             f"The arm flutters at {_flutter_load_text(plane, flutter)}: above, it gives way and{clause}."
@@ -97,6 +87,14 @@ def _valid_arm_sentences(plane: PlaneOfMotion) -> list[str]:
     else:
         sentences.append(f"The straight arm does not become stable again {_search_end_clause(plane, load)}.")
     return sentences + _oscillation_onset_sentences(thresholds, load)
+
+
+def _beating_clause(thresholds: ThresholdsOverDrags, begins: str) -> str:
+    """Clause on the frequency of flutter, after the verb `begins`; empty if the frequency is not known."""
+    frequency = thresholds.first_frequencies(ThresholdKind.hopf)
+    if frequency is None:
+        return ""
+    return f"{begins} to beat at {three_digit_range_text(frequency.low, frequency.high)} Hz"
 
 
 def _second_flutter_clause(thresholds: ThresholdsOverDrags, load: LoadFormatter) -> str:
@@ -158,14 +156,9 @@ def _flutter_without_effects(plane: PlaneOfMotion, effect_names: str) -> list[st
     thresholds = plane.thresholds
     load = LoadFormatter(plane.arm)
     flutter = thresholds.first_forces(ThresholdKind.hopf)
-    frequency = thresholds.first_frequencies(ThresholdKind.hopf)
     if flutter is None:
         return [f"Without {effect_names} the arm would not flutter {_search_end_clause(plane, load)}."]
-    clause = (
-        ""
-        if frequency is None
-        else f" and begin to beat at {three_digit_range_text(frequency.low, frequency.high)} Hz"
-    )
+    clause = _beating_clause(thresholds, " and begin")
     sentences = [
         f"Without {effect_names} the arm would flutter at {_flutter_load_text(plane, flutter)}{clause}."
     ]

@@ -6,8 +6,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from rodsweep.discretization.straight.longitudinal_modes import longitudinal_modes
-from rodsweep.model.longitudinal import longitudinal_eigenvalues
+from rodsweep.discretization.straight.longitudinal_modes import longitudinal_eigenvalues, longitudinal_modes
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod

@@ -13,7 +13,7 @@ from rodsweep.discretization.elements.basis import differentiation_matrix
 from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.elements.quadrature import gauss_lobatto_rule
 from rodsweep.discretization.explicit_system import ExplicitSystem
-from rodsweep.model.longitudinal import longitudinal_eigenvalues
+from rodsweep.discretization.straight.longitudinal_modes import longitudinal_eigenvalues
 from rodsweep.model.rod import Rod
 
 INF = np.inf

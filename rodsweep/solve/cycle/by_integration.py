@@ -43,6 +43,7 @@ from .transient.motion_mesh import integrable_rod, motion_mesh
 from .transient.orbit_from_motion import collocation_states
 from .transient.returns import (
     RETURN_SETTINGS,
+    compared_run_length,
     not_settled_text,
     recurrence,
     return_limit,
@@ -50,7 +51,6 @@ from .transient.returns import (
     section_crossings,
     tip_angle_row,
 )
-from .transient.run_length import compared_run_length
 from .transient.transient_settings import TRANSIENT_SETTINGS
 
 

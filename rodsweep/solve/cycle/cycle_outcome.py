@@ -13,6 +13,7 @@ from .accuracy.cycle_errors import UNKNOWN_ERRORS, CycleErrors
 from .accuracy.refined_cycle import RefinedCycle
 from .neighbour import CycleStart
 from .second_state import SecondState
+from .status import CycleStatus
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -188,3 +189,18 @@ def with_multipliers(cycle: CycleOutcome, refined: RefinedCycle) -> CycleOutcome
         trivial_multiplier_error=refined.trivial_multiplier_error,
         errors=replace(cycle.errors, multiplier_error=refined.errors.multiplier_error),
     )
+
+
+@dataclass(frozen=True, eq=False)
+class TransientOutcome:
+    """Outcome of integrating a motion. return_count: number of returns of the tip. cycle: the cycle that the
+    motion approached, or None. unstable_cycle: the unstable cycle inside the torus, or None if the motion is
+    not on a torus. modulation_ratio: frequency of the modulation of a motion on a torus over the frequency of
+    its oscillation; NaN for other motions."""
+
+    status: CycleStatus
+    message: str
+    return_count: int
+    cycle: RefinedCycle | None = None
+    unstable_cycle: RefinedCycle | None = None
+    modulation_ratio: float = nan

@@ -26,6 +26,7 @@ from .cycle_outcome import (
     CycleOutcome,
     CycleRequest,
     MotionShapes,
+    TransientOutcome,
     with_cycle_quantities,
     with_multipliers,
 )
@@ -45,7 +46,6 @@ from .transient.shape_trace import ShapeTrace
 from .transient.tip_trace import TipTrace
 from .transient.torus import classify_quasiperiodic
 from .transient.transient_integration import TransientIntegration
-from .transient.transient_outcome import TransientOutcome
 
 __all__ = ["CycleOutcome", "CycleRequest", "CycleStatus", "CycleStart", "solve_cycle"]
 

@@ -9,7 +9,7 @@ from rodsweep.config.task.limit_cycle import LEAST_PERIODS
 from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.by_integration import solve_by_integration
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, solve_cycle
-from rodsweep.solve.cycle.transient.run_length import classified_run_length, compared_run_length
+from rodsweep.solve.cycle.transient.returns import classified_run_length, compared_run_length
 
 FAST = Rod(F=100.0, k1=1e4, k2=1e4, gamma3=1e-2, gamma1=1.0)
 """A rod whose motion is on its cycle after the first returns."""

@@ -8,8 +8,8 @@ from rodsweep.discretization.elements.basis import differentiation_matrix
 from rodsweep.discretization.elements.mesh import shape_from_strains, uniform_mesh
 from rodsweep.discretization.elements.quadrature import gauss_lobatto_rule
 from rodsweep.discretization.explicit_system import ExplicitSystem
+from rodsweep.discretization.straight.longitudinal_modes import longitudinal_eigenvalues
 from rodsweep.model.balance import ad
-from rodsweep.model.longitudinal import longitudinal_eigenvalues
 from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.petsc import PETSc
 from rodsweep.solve.motion.context import MAX_STAGE_POINTS

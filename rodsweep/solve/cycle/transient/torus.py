@@ -18,10 +18,10 @@ from ....arrays import Array
 from ...unsolvable import Unsolvable
 from ..accuracy.refined_cycle import RefinedCycle
 from ..accuracy.refinement import refined_cycle
+from ..cycle_outcome import TransientOutcome
 from ..hopf_start import hopf_point_below, orbit_from_hopf
 from ..status import CycleStatus
 from .transient_integration import TransientIntegration
-from .transient_outcome import TransientOutcome
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

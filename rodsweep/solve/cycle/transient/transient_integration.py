@@ -22,7 +22,7 @@ from ...orbit.matrix.workspace import NewtonWorkspace
 from ...unsolvable import Unsolvable
 from ..accuracy.refined_cycle import RefinedCycle
 from ..accuracy.refinement import refined_cycle
-from ..cycle_outcome import CycleRequest
+from ..cycle_outcome import CycleRequest, TransientOutcome
 from ..status import CycleStatus
 from ..straight_rod import StraightRodStability, growth_rate_of_integrated_rod
 from .amplitude_equation import AmplitudeEquation
@@ -30,6 +30,8 @@ from .motion_mesh import integrable_rod
 from .orbit_from_motion import orbit_from_motion, scaled_state
 from .returns import (
     RETURN_SETTINGS,
+    classified_run_length,
+    is_too_short,
     no_period_text,
     recurrence,
     return_limit,
@@ -37,11 +39,9 @@ from .returns import (
     section_crossings,
     tip_angle_row,
 )
-from .run_length import classified_run_length, is_too_short
 from .schemes import schemes_for_growth
 from .shape_trace import ShapeTrace
 from .tip_trace import TipTrace
-from .transient_outcome import TransientOutcome
 from .transient_settings import TRANSIENT_SETTINGS
 
 
