@@ -419,6 +419,14 @@ def test_bad_input_is_refused_in_the_words_of_the_command(text, command, monkeyp
         (lambda: rs.Arm(**LOADED | {"length": ["10 cm"]}), "length = ['10 cm'] is not one quantity; write a"),
         (lambda: rs.Arm(**LOADED | {"length": 10**400}), "length = 1000"),
         (lambda: rs.Arm(**LOADED | {"length": "1e300 km"}), "length = '1e300 km', with this section"),
+        (
+            lambda: rs.Arm(**LOADED | {"length": "1e80 m"}),
+            "length = '1e80 m' and viscosity = '1.4 Pa s' make the unit of time or the inertia of the fluid",
+        ),
+        (
+            lambda: rs.Arm(**LOADED | {"viscosity": "1e-199 Pa s"}),
+            "length = '10 cm' and viscosity = '1e-199 Pa s'",
+        ),
         (lambda: rs.Arm(**LOADED | {"radius": "1e-300 m"}), "length = '10 cm', with this section and"),
         (lambda: rs.Arm(**LOADED | {"poisson": "0.5"}), "poisson = '0.5' is not a number above -1"),
         (lambda: rs.Arm(**LOADED | {"poisson": 10**400}), "poisson = 1000000000"),

@@ -159,8 +159,8 @@ def _refuse_wrong_segments(arm: "SlenderArm") -> None:
 
 
 def refuse_out_of_range(arm: "SlenderArm") -> None:
-    """Raises InputError for an arm without mass, and if its stiffnesses or its force scale overflow or
-    underflow. Raises NotSlender for an arm that is too short."""
+    """Raises InputError for an arm without mass, and if its stiffnesses, its units or the fluid's inertia
+    overflow or underflow. Raises NotSlender for an arm that is too short."""
     if arm.si.density_difference <= -arm.si.fluid_density:
         density_text = arm.text_of("density_difference")
         min_density = f"{-arm.si.fluid_density:.4g} kg/m^3"
@@ -187,6 +187,22 @@ def refuse_out_of_range(arm: "SlenderArm") -> None:
             f"{length} is {slenderness:.3g} radii, with {_radius_text(arm)}; the drag of a slender arm needs "
             f"at least {MIN_FORMULA_SLENDERNESS:g}, so give a longer or thinner arm"
         )
+    if not _has_representable_motion(arm):
+        raise InputError(
+            f"{length} and {arm.text_of('viscosity')} make the unit of time or the inertia of the fluid "
+            "overflow or underflow; check the units"
+        )
+
+
+def _has_representable_motion(arm: "SlenderArm") -> bool:
+    """Whether the unit of time, and the inertia of the fluid relative to its viscosity, are representable."""
+    try:
+        tau2 = min(arm.tau2_with(drag) for drag in arm.drags)
+        inertia = arm.si.fluid_density * arm.si.length**2 / (arm.si.viscosity * tau2)
+        # The square leaves room for the frequency in units of 1/tau2.
+        return 0 < tau2 < inf and inertia**2 < inf
+    except ArithmeticError:
+        return False
 
 
 def _radius_text(arm: "SlenderArm") -> str:

@@ -34,8 +34,9 @@ def drag_phase_lag(s: ArrayLike, logarithm: float) -> Array:
     """
     z = 1j * np.asarray(s, float)
     # In the closed formula 1/2 and -(1/z) log(1 + z)/2 cancel for small z.
-    series_for_small_s = z * (3 / 4 - z * (5 / 12 - z * (7 / 24 - z * (9 / 40))))
-    with np.errstate(invalid="ignore", divide="ignore"):  # nan where nothing moves; 1/z is not used at 0
+    # nan where nothing moves; 1/z is not used at 0, and the series not where it overflows
+    with np.errstate(all="ignore"):
+        series_for_small_s = z * (3 / 4 - z * (5 / 12 - z * (7 / 24 - z * (9 / 40))))
         closed_formula = 0.5 + (1 - 1 / z) * np.log1p(z) / 2
     return np.asarray(
         # 0 minus the angle instead of -angle, which would be -0 at rest.
