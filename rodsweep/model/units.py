@@ -29,11 +29,13 @@ CONVERSION_CACHE_SIZE = 1000
 """Maximum number of cached conversion factors. A config has about ten different units."""
 COMMON_UNITS = ("cm", "mm", "kPa", "MPa", "GPa", "Pa s", "mPa s", "kPa s", "mN", "kg/m^3", "g/cm^3", "mbar")
 """Units that are suggested if the user's text differs from the unit only in blanks or capital letters."""
-MULTIPLE_OF_FLUTTER_PATTERN = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*(%?)\s*(?:of|times)\s+flutter\s*", re.ASCII)
+NUMBER_PATTERN = r"\s*((?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,2})?)"
+"""Pattern of a number of 0 or above that a load may be of flutter; the exponent cannot overflow."""
+MULTIPLE_OF_FLUTTER_PATTERN = re.compile(NUMBER_PATTERN + r"\s*(%?)\s*(?:of|times)\s+flutter\s*", re.ASCII)
 """Pattern of a load as a multiple of the flutter threshold, "1.2 of flutter" or "120 % of flutter"."""
 INTENDED_RELATIVE_LOAD_PATTERN = re.compile(r"%?\s*(of|times|above|below)\b|.*flutter", re.ASCII)
 """Pattern of the unit of a text that is meant as a load relative to flutter, such as "of fluter"."""
-PERCENT_FROM_FLUTTER_PATTERN = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*%\s*(above|below)\s+flutter\s*", re.ASCII)
+PERCENT_FROM_FLUTTER_PATTERN = re.compile(NUMBER_PATTERN + r"\s*%\s*(above|below)\s+flutter\s*", re.ASCII)
 """Pattern of a load as a distance from the flutter threshold, "20 % above flutter"."""
 
 LOAD_UNITS = ("Pa", "N")

@@ -368,6 +368,7 @@ def test_rows_of_a_phase_diagram_lie_along_the_first_of_its_two_axes(tmp_path, a
         ("", "the first line names no parameter"),
         ("F;k1;k2;gamma3\n1;100;1;1\n", "separated by semicolons; separate them by commas; it must name F"),
         ("F\tk1\tk2\tgamma3\n1\t100\t1\t1\n", "separated by tabs; separate them by commas"),
+        ("F [k3/L^2],k1 [k3/L^2],k2 [k3/L^2],gamma3\n1,9,9,0\n", "leave the units out; it must name F, k1,"),
         ("F,k1,k2\n1,2,3\n", "header"),
         ("F,k1,k2,gamma3,\n1,9,9,0,\n", "has an empty name"),
         ("F,k1,k2,gamma3\n", "no point"),

@@ -64,6 +64,8 @@ def _wrong_header_fault(header: list[str]) -> str:
     for separator, word in {";": "semicolons", "\t": "tabs"}.items():
         if len(header) == 1 and set(header[0].split(separator)) & set(PARAMETERS):
             return f"the columns are separated by {word}; separate them by commas"
+    if {cell.partition("[")[0].strip() for cell in header} & (set(PARAMETERS) - set(header)):
+        return "a name in the header is followed by a unit; leave the units out"
     return "the first line names no parameter"
 
 
