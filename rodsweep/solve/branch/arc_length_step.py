@@ -212,7 +212,7 @@ def branch_cycle_with_calibrated_errors(
         calibration=start.calibration,
         steps_since_measured=start.steps_since_measured + 1,
         arc_since_measured=start.arc_since_measured + length,
-        previous=PreviousCycle(start.orbit, start.tangent, start.previous),
+        previous=PreviousCycle(start.orbit, start.tangent, start.cycle.errors, start.previous),
     )
 
 

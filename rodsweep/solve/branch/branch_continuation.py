@@ -15,8 +15,16 @@ from .branch_limits import BranchLimits
 from .branch_mesh_choice import is_measurement_due
 from .branch_record import BranchRecord, branch_end_point
 from .computing_time import fraction_done
-from .mirror_image_end import end_or_shorter_step_at_mirror_image
-from .range_end import cycle_at_end_beside_zero, cycle_within_range, range_end_condition
+from .mirror_image_end import (
+    accurate_end_before_hopf,
+    end_or_shorter_step_at_mirror_image,
+)
+from .range_end import (
+    cycle_at_end_beside_zero,
+    cycle_within_range,
+    index_of_passed_range_end,
+    range_end_condition,
+)
 from .settings import BRANCH_END_SETTINGS
 from .special.detection import fold_and_breaking_between, lie_on_one_branch, special_points_between
 from .special.locating import special_point_between
@@ -143,15 +151,6 @@ def _end_without_cycle(curve: BranchCurve, reason: BranchEndReason, message: str
     )
 
 
-def index_of_passed_range_end(point: BranchCycle, range_ends: tuple[float, float]) -> int:
-    """Index of the end of the range beyond which a cycle lies: 0 below the range, 1 above, -1 within the
-    range. range_ends: smallest and largest coordinate of the range."""
-    low, high = range_ends
-    if point.parameter_coordinate < low:
-        return 0
-    return 1 if point.parameter_coordinate > high else -1
-
-
 def _append_next_cycle(
     record: BranchRecord, start: BranchCycle, limits: BranchLimits
 ) -> BranchCycle | BranchEnd:
@@ -192,13 +191,14 @@ def _append_next_cycle(
 def _end_or_shorter_step(
     start: BranchCycle, end: BranchCycle, limits: BranchLimits
 ) -> BranchCycle | BranchEnd | None:
-    """The end of the branch at its mirror image, or `start` with a shorter step, if the step from `start` to
-    `end` leads to the mirror image or to another branch; None if both lie on one branch. Raises Unsolvable
-    if no shorter step is allowed."""
+    """The end of the branch at its mirror image or before it, or `start` with a shorter step, if the step to
+    `end` leads to the mirror image or to another branch; None if the branch continues through `end`. Raises
+    Unsolvable if no shorter step is allowed."""
     # Beyond its end the branch continues through the mirror images of its cycles.
-    replacement = end_or_shorter_step_at_mirror_image(start, end, limits)
-    if replacement is not None or lie_on_one_branch(start, end):
+    if (replacement := end_or_shorter_step_at_mirror_image(start, end, limits)) is not None:
         return replacement
+    if lie_on_one_branch(start, end):
+        return accurate_end_before_hopf(start, end, limits)
     half_length = arc_length_between(start, end) / 2
     if half_length < ARC_STEP_CONTROL.min_length:
         raise Unsolvable("two branches touch within the shortest allowed step")

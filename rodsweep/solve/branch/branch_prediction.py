@@ -13,6 +13,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from ...arrays import Array
+from ..cycle.accuracy.cycle_errors import CycleErrors
 from ..cycle.cycles_along_parameter import interpolated_change
 from ..orbit.normalised_orbit import extrapolated_change_weights
 from ..orbit.orbit import Orbit
@@ -35,10 +36,11 @@ BRANCH_PREDICTION_SETTINGS = BranchPredictionSettings()
 @dataclass(frozen=True, eq=False)
 class PreviousCycle:
     """The previous cycle of a branch. tangent: tangent of the branch at `orbit`, of any length, (N + 1,).
-    previous: the cycle before; its own field `previous` is not used."""
+    errors: errors of the cycle. previous: the cycle before."""
 
     orbit: Orbit
     tangent: Array
+    errors: CycleErrors
     previous: "PreviousCycle | None" = None
 
 

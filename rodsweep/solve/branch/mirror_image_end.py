@@ -12,7 +12,12 @@ from .bordered.scale import deflection_of
 from .branch_curve import BranchEnd
 from .branch_limits import BranchLimits
 from .branch_record import branch_end_point
-from .range_end_near_hopf import end_at_range_end_near_hopf, has_accurate_range_end
+from .range_end import index_of_passed_range_end
+from .range_end_near_hopf import (
+    end_at_range_end_near_hopf,
+    expected_errors_of_solved_cycle,
+    has_accurate_range_end,
+)
 from .settings import BRANCH_END_SETTINGS
 from .start.hopf_point import HopfBranchStart, hopf_as_special_point
 from .start.near_hopf_points import min_last_amplitude
@@ -41,6 +46,23 @@ def end_or_shorter_step_at_mirror_image(
         return _end_at_hopf_or_shorter_step(start, end, limits) if passes_hopf_point(start, end) else None
     if reaches_symmetric_cycle(start, end, limits.breakings, limits.accuracy):
         return _end_at_breaking_or_shorter_step(start, end, limits)
+    return None
+
+
+def accurate_end_before_hopf(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> BranchEnd | None:
+    """The end of a branch at the end of the range between two cycles, by the normal form of a Hopf point
+    behind this end, if it is accurate and a cycle solved at the end of the range is not; otherwise None."""
+    index = index_of_passed_range_end(end, limits.coordinate_range)
+    is_large = start.cycle.measures.tip_y_max > BRANCH_END_SETTINGS.max_last_amplitude
+    if index < 0 or is_large or not start.orbit.is_symmetric:
+        return None
+    range_end = limits.coordinate_range[index]
+    for hopf in limits.hopfs_beyond:
+        if _shrinks_to(start, hopf, limits.accuracy) and not _has_fold_ahead(start, hopf, limits):
+            solved_errors = expected_errors_of_solved_cycle(start, range_end, hopf)
+            branch_end = end_at_range_end_near_hopf(start, hopf, limits)
+            is_accurate = has_accurate_range_end(branch_end, start, hopf, limits)
+            return branch_end if is_accurate and max(solved_errors) > limits.accuracy else None
     return None
 
 

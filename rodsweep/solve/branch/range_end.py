@@ -31,6 +31,15 @@ def range_end_condition(start: BranchCycle, limit: float) -> BorderCondition:
     return BorderCondition(start.scale, ALONG_PARAMETER, limit / start.scale.coordinate_unit)
 
 
+def index_of_passed_range_end(point: BranchCycle, range_ends: tuple[float, float]) -> int:
+    """Index of the end of the range beyond which a cycle lies: 0 below the range, 1 above, -1 within the
+    range. range_ends: smallest and largest coordinate of the range."""
+    low, high = range_ends
+    if point.parameter_coordinate < low:
+        return 0
+    return 1 if point.parameter_coordinate > high else -1
+
+
 def cycle_at_range_end(
     start: BranchCycle, end: BranchCycle, range_end: BorderCondition, accuracy: float
 ) -> BranchCycle:

@@ -8,7 +8,9 @@ from math import inf
 
 import numpy as np
 
+from ...arrays import Array
 from ...model.parameters import PARAMETERS
+from ..cycle.accuracy.cycle_errors import CycleErrors
 from ..orbit.measures import CycleMotion
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import mesh_of
@@ -49,25 +51,35 @@ def has_accurate_range_end(
     """
     if end is None or end.range_passage is None:
         return False
-    end_distance = abs(limits.coordinate_range[end.range_passage.index] - hopf.parameter_coordinate)
-    start_distance = abs(start.parameter_coordinate - hopf.parameter_coordinate)
-    growth = start_distance / end_distance if end_distance else inf
-    errors = start.cycle.errors
-    max_period_error = max(limits.accuracy, growth * errors.period_error)
-    max_tip_y_error = max(limits.accuracy, growth * errors.amplitude_error)
-    special = end.special_point
-    return special.period_error <= max_period_error and special.tip_y_max_error <= max_tip_y_error
+    range_end = limits.coordinate_range[end.range_passage.index]
+    solved_errors = expected_errors_of_solved_cycle(start, range_end, hopf)
+    errors = np.array([end.special_point.period_error, end.special_point.tip_y_max_error])
+    return bool((errors <= np.maximum(limits.accuracy, solved_errors)).all())
+
+
+def expected_errors_of_solved_cycle(start: BranchCycle, coordinate: float, hopf: HopfBranchStart) -> Array:
+    """Expected relative errors of period and largest tip y, (2,), of a cycle that is solved at the parameter
+    coordinate `coordinate`, between the cycle `start` and the Hopf point `hopf`; inf at the Hopf point."""
+    distance = abs(coordinate - hopf.parameter_coordinate)
+    growth = _distance_from_hopf(start.orbit, hopf) / distance if distance else inf
+    return growth * _cycle_errors(start.cycle.errors)
+
+
+def _cycle_errors(errors: CycleErrors) -> Array:
+    """Relative errors of period and largest tip y, (2,)."""
+    return np.array([errors.period_error, errors.amplitude_error])
 
 
 def _point_at_range_end(
     start: BranchCycle, hopf: HopfBranchStart, limits: BranchLimits, index: int
 ) -> SpecialPoint:
-    """The special point at the end `index` of the range. The errors of the normal form, of its coefficients
-    and of the Hopf point are added."""
+    """The special point at the end `index` of the range: the normal form, corrected by its deviation from
+    the cycles near the Hopf point. The errors of the correction, of the coefficients of the normal form and
+    of the Hopf point are added."""
     coordinate = limits.coordinate_range[index]
     distance = abs(coordinate - hopf.parameter_coordinate)
-    period_error, amplitude_error = _errors_of_normal_form(start, hopf, distance)
-    period, amplitude = hopf.period_and_amplitude_at(coordinate)
+    deviations, (period_error, amplitude_error) = _deviations_of_normal_form(start, hopf, distance)
+    period, amplitude = (np.array(hopf.period_and_amplitude_at(coordinate)) / (1 + deviations)).tolist()
     # The amplitude is the square root of the distance, which is uncertain by the error of the Hopf point.
     hopf_error = abs(hopf.crossing.error / hopf.crossing.value * hopf.parameter_coordinate)
     displacement = hopf_error / (2 * distance) if distance else inf
@@ -84,50 +96,61 @@ def _point_at_range_end(
     )
 
 
-def _errors_of_normal_form(start: BranchCycle, hopf: HopfBranchStart, distance: float) -> tuple[float, float]:
-    """Relative errors of period and largest tip y by the normal form of `hopf`, with exact coefficients, at a
-    distance of the parameter coordinate from the Hopf point.
+def _deviations_of_normal_form(
+    start: BranchCycle, hopf: HopfBranchStart, distance: float
+) -> tuple[Array, Array]:
+    """Returns (deviations, errors): relative deviations of period and largest tip y, by the normal form of
+    `hopf` with exact coefficients, from the cycle at a distance of the parameter coordinate from the Hopf
+    point, and their errors, (2,) each.
 
-    Near the Hopf point these errors are proportional to the distance. Every cycle there gives an estimate:
-    its difference from the normal form, scaled to the distance. An estimate has two errors: the scaled error
-    of the cycle, and the effect of higher powers of the distance, by which it differs from the straight line
-    through two successive estimates at the Hopf point. The smallest sum of an estimate and its errors is
-    returned. The cycles before `start` have at most the errors of `start`, as errors grow towards the Hopf
-    point.
+    Near the Hopf point these deviations are proportional to the distance. Every cycle there gives an
+    estimate: its deviation, scaled to the distance. An estimate has two errors: the scaled error of the
+    cycle, and the effect of higher powers of the distance, by which it differs from the straight line
+    through two successive estimates at the Hopf point. The estimate with the smallest sum of both errors is
+    returned.
     """
-    cycle_errors = np.array([start.cycle.errors.period_error, start.cycle.errors.amplitude_error])
-    last_fraction, last_estimate = inf, np.zeros(2)
-    bounds = []
-    for orbit in _orbits_near_hopf(start, hopf):
-        fraction = distance / _distance_from_hopf(orbit, hopf)
+    last_fraction, last_estimate, last_error = inf, np.zeros(2), np.zeros(2)
+    estimates, estimate_errors = [], []
+    cycles = _cycles_near_hopf(start, hopf)
+    # The error of y grows with 1/distance at most. Cycles that are not measured have the errors of another
+    # cycle. The error of the period does not grow.
+    tip_y_error_times_distance = max(
+        _distance_from_hopf(orbit, hopf) * errors.amplitude_error for orbit, errors in cycles
+    )
+    for orbit, _ in cycles:
+        cycle_distance = _distance_from_hopf(orbit, hopf)
+        fraction = distance / cycle_distance
         normal_form = hopf.period_and_amplitude_at(orbit.form.rod.coordinate(hopf.parameter_name))
         measured = orbit.period, CycleMotion(orbit).extrema["tip_y_max"]
         estimate = fraction * (np.array(normal_form) / measured - 1)
         higher_powers = abs(estimate - last_estimate) / (1 - fraction / last_fraction)
-        bounds.append(
-            BRANCH_END_SETTINGS.normal_form_safety_factor * (abs(estimate) + higher_powers)
-            + fraction * cycle_errors
+        tip_y_error = tip_y_error_times_distance / cycle_distance
+        error = fraction * np.array([start.cycle.errors.period_error, tip_y_error])
+        estimates.append(estimate)
+        # The error of the cycle nearer to the Hopf point enters `higher_powers`, too.
+        estimate_errors.append(
+            BRANCH_END_SETTINGS.normal_form_safety_factor * higher_powers + np.maximum(error, last_error)
         )
-        last_fraction, last_estimate = fraction, estimate
-    period_error, amplitude_error = np.min(bounds, axis=0).tolist()
-    return period_error, amplitude_error
+        last_fraction, last_estimate, last_error = fraction, estimate, error
+    best = np.argmin(estimate_errors, axis=0), np.arange(2)
+    return np.array(estimates)[best], np.array(estimate_errors)[best]
 
 
-def _orbits_near_hopf(start: BranchCycle, hopf: HopfBranchStart) -> list[Orbit]:
-    """The cycle `start`, and the cycles before it on its mesh that are small enough for an extrapolation to
-    the Hopf point `hopf`; the distance from this point increases along the list."""
+def _cycles_near_hopf(start: BranchCycle, hopf: HopfBranchStart) -> list[tuple[Orbit, CycleErrors]]:
+    """Orbits and errors of the cycle `start`, and of the cycles before it on its mesh that are small enough
+    for an extrapolation to the Hopf point `hopf`; the distance from this point increases along the list."""
     mesh = mesh_of(start.orbit)
-    orbits = [start.orbit]
+    cycles = [(start.orbit, start.cycle.errors)]
     earlier = start.previous
     while earlier is not None and mesh_of(earlier.orbit) == mesh:
         # A fold lies between two cycles if the distance does not increase.
-        is_farther = _distance_from_hopf(earlier.orbit, hopf) > _distance_from_hopf(orbits[-1], hopf)
+        is_farther = _distance_from_hopf(earlier.orbit, hopf) > _distance_from_hopf(cycles[-1][0], hopf)
         y = CycleMotion(earlier.orbit).extrema["tip_y_max"]
         if not is_farther or y > BRANCH_END_SETTINGS.max_last_amplitude:
             break
-        orbits.append(earlier.orbit)
+        cycles.append((earlier.orbit, earlier.errors))
         earlier = earlier.previous
-    return orbits
+    return cycles
 
 
 def _distance_from_hopf(orbit: Orbit, hopf: HopfBranchStart) -> float:

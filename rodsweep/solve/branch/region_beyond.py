@@ -16,10 +16,11 @@ from ...solve_progress import solve_part
 from ..point_outcome import FAILURES
 from ..unsolvable import Unsolvable, WorkLimitReached
 from .arc_length_step import ARC_STEP_CONTROL, BranchCycle, cycle_at_length
-from .branch_continuation import follow_asymmetric_branch, follow_from_cycle, index_of_passed_range_end
+from .branch_continuation import follow_asymmetric_branch, follow_from_cycle
 from .branch_curve import BranchCurve, RangePassage, unstable_count_bounds
 from .branch_limits import WORK_UNIT, BranchLimits
 from .detached_branch import complete_branch_through, lies_on_a_branch, reversed_cycle
+from .range_end import index_of_passed_range_end
 from .settings import BEYOND_RANGE_SETTINGS
 from .special.special_point import SpecialKind, SpecialPoint
 from .start.first_cycle import first_cycle
@@ -121,9 +122,8 @@ class RegionBeyond:
                 yield entry
 
     def _with_step_into_region(self, passage: RangePassage) -> BranchCycle | None:
-        """The cycle of `passage`, with a next step that ends in the region although a fold may follow
-        closely. If even the shortest step does not end there, returns None, and the region is not searched
-        further."""
+        """The cycle of `passage`, with a next step that ends in the region although a fold may follow. If the
+        shortest step does not end there, returns None, and the region is not searched further."""
         start = passage.cycle
         length = start.next_arc_length
         while length >= ARC_STEP_CONTROL.min_length:
