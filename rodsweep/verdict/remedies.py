@@ -29,18 +29,21 @@ def not_applicable_sentences(arm: SlenderArm, assessment: Assessment) -> list[st
     is_valid = assessment.validity_at_flutter != Validity.does_not_apply
     # At flutter itself the model applies then, so the sentence must say that the load is the reason.
     load_clause = f" at {LoadFormatter(arm).typed_text}" if is_valid else ""
-    is_pulled = any(first is effect for effect in assessment.compression_under_load) and arm.F < 0
-    excess = (
-        f"{'extension' if is_pulled else first.name} is {ratio_to_limit_text(first)} what the model allows"
-    )
+    excess = f"{_name_of(first, arm, assessment)} is {ratio_to_limit_text(first)} what the model allows"
     sentences = [f"The model does not apply{load_clause}: {excess}; {remedy}."]
     for effect in reversed(others):
-        name = effect.name.capitalize()
+        name = _name_of(effect, arm, assessment).capitalize()
         sentences.append(
             f"{name} is {ratio_to_limit_text(effect)} what the model allows, too; "
             f"{_remedy(effect, arm, assessment)}."
         )
     return sentences
+
+
+def _name_of(effect: Effect, arm: SlenderArm, assessment: Assessment) -> str:
+    """Name of a neglected effect on an arm; compression under a pull is extension."""
+    is_pulled = any(effect is loaded for loaded in assessment.compression_under_load) and arm.F < 0
+    return "extension" if is_pulled else effect.name
 
 
 def effect_kind(effect: Effect) -> str:

@@ -510,7 +510,15 @@ def test_a_thin_wall_ends_the_model_where_the_arm_beats_widely(command):
     command.solved("t.yaml")
     assert "flattening" not in command("show", "t.h5").stdout.splitlines()[1]
     solid = rs.sweep("thresholds", arm=SILICONE | {"length": "10 cm"})
-    assert solid.neglected_effect.attrs["flag_meanings"].split()[-1] == "flattening_of_the_wall"
+    assert solid.neglected_effect.attrs["flag_meanings"].split()[-2] == "flattening_of_the_wall"
+
+
+def test_a_pull_neglects_an_extension_and_a_push_a_compression(command):
+    """Of an arm under a pull the file said that the model neglects its compression."""
+    for pressure, word in (("-20 kPa", "extension"), ("20 kPa", "compression")):
+        data = rs.sweep("spectrum", arm=SILICONE | {"length": "20 cm", "pressure": pressure}, progress=False)
+        words = data.neglected_effect.attrs["flag_meanings"].split()
+        assert words[1 + data.neglected_effect.item()] == word
 
 
 STATUSES = {

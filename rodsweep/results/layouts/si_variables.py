@@ -55,8 +55,10 @@ NEGLECTED_EFFECTS = (
     "weight",
     "Reynolds_number",
     "flattening_of_the_wall",
+    "extension",
 )
-"""Effects that the model neglects, named as in `rodsweep.model.arm.neglected` with underscores for blanks."""
+"""Effects that the model neglects, named as in `rodsweep.model.arm.neglected` with underscores for blanks;
+extension is the effect compression of an arm under a pull, F < 0."""
 UNKNOWN_VALIDITY_NUMBER = -1
 """Value of model_applies where the solver may have missed an unstable mode or a cycle."""
 VALIDITY_VARIABLES = (

@@ -66,8 +66,7 @@ class ArmMotion:
 
 
 def _motion_of_modes(record: Record) -> ArmMotion:
-    """Motion of the oscillating mode with the largest growth rate. The frequency is NaN if no mode
-    oscillates."""
+    """Motion of the oscillating mode with the largest growth rate; frequency NaN if no mode oscillates."""
     frequency = np.abs(record["frequency"])
     first_oscillating = np.argmax(frequency > 0, axis=-1, keepdims=True)  # 0 if no mode oscillates
     leading = np.take_along_axis(frequency, first_oscillating, axis=-1)[..., 0]
@@ -93,8 +92,7 @@ def _motion_at_hopf_point(F_name: str) -> Callable[[Record], ArmMotion]:
 
 
 def _motion_of_row(record: Record) -> ArmMotion:
-    """Motion at the first Hopf point of a row. `may_be_missed` is True if rods of the row flutter or may
-    flutter."""
+    """Motion at the first Hopf point of a row. may_be_missed: whether rods of the row may flutter."""
     has_flutter = np.isin(record["class"], DIAGRAM_CLASSES_WITH_POSSIBLE_FLUTTER).any(axis=-1)
     return replace(_motion_at_hopf_point("crossing_at")(record), may_be_missed=has_flutter)
 
@@ -142,9 +140,7 @@ class ArmValidity:
         self.points = points
         self.task = config.task
         at_rest = UNSUCCESSFUL_STATUSES_AT_REST.get(self.task, ())
-        self.searched_statuses = [
-            int(status) for status in statuses if status.succeeded or status.name in at_rest
-        ]
+        self.searched_statuses = [int(each) for each in statuses if each.succeeded or each.name in at_rest]
         """Values of the statuses at which the solver missed no motion."""
         sections = [axis.size for name, axis in self.section.quantity_axes.items() if name in NON_LOAD_KEYS]
         self.points_per_arm = points.count // int(np.prod(sections)) if points.arm_axes else points.count
@@ -195,6 +191,10 @@ class ArmValidity:
         effect_index = np.argmax(largest, axis=0)
         numbers_of_relevant = [NEGLECTED_EFFECTS.index(effect.name.replace(" ", "_")) for effect in relevant]
         effect_numbers = np.array(numbers_of_relevant)[effect_index]
+        forces = np.broadcast_to(base_force, excesses.shape[1:]).reshape(*np.shape(index), -1)
+        is_pulled = -np.fmin.reduce(forces, axis=-1) > np.fmax.reduce(forces, axis=-1)
+        is_extension = is_pulled & (effect_numbers == NEGLECTED_EFFECTS.index("compression"))
+        effect_numbers = np.where(is_extension, NEGLECTED_EFFECTS.index("extension"), effect_numbers)
         at_worst = np.max(largest, axis=0)
         validities = validity.reshape(*np.shape(index), -1).max(axis=-1)
         has_motion = np.isfinite(rate).reshape(*np.shape(index), -1).any(axis=-1)
