@@ -6,7 +6,7 @@ coefficients. For every other arm, D is computed from propagators and the pencil
 
 from abc import ABC, abstractmethod
 from functools import cached_property
-from math import isfinite, sqrt
+from math import isfinite, pi, sqrt
 from typing import Any, ClassVar
 
 import numpy as np
@@ -52,6 +52,8 @@ class TransverseProblem(ABC):
     shift: float
     has_bound: bool
     is_count_slow: ClassVar[bool]
+    largest_wave_number: float
+    """Largest local wave number of amplified waves, in 1/L; 0 if no waves are amplified."""
     additional_eigenvalue_count: int = 0
     """Number of eigenvalues requested from the first mesh besides the modes, for a proof without a count."""
 
@@ -65,6 +67,15 @@ class TransverseProblem(ABC):
         """Moves the shift to the left of the leftmost eigenvalue found, whose real part is `leftmost`. The
         shift of a uniform rod stays."""
         return
+
+    @property
+    def wave_clause(self) -> str:
+        """Clause with the shortest growing wave and a remedy, for a message that no mesh resolves it."""
+        if not self.largest_wave_number:
+            return ""
+        taper_clause = " or a larger taper" if self.rod.taper < 1 else ""
+        wavelength = 2 * pi / self.largest_wave_number
+        return f": waves as short as {wavelength:.1g} L grow; a smaller |F|{taper_clause} makes them longer"
 
     @abstractmethod
     def mesh_for(self, mode_count: int, accuracy: float) -> Any:
@@ -111,13 +122,13 @@ class UniformProblem(TransverseProblem):
 
     def __init__(self, rod: Rod):
         self.rod = rod
-        growth, self._wave_number = largest_growth_and_wave_number(rod)
+        growth, self.largest_wave_number = largest_growth_and_wave_number(rod)
         self.shift = KRYLOV_SETTINGS.shift_over_growth_rate * growth
         self._sqrt_frequency_bound = sqrt(frequency_bound(rod))
         self.has_bound = isfinite(self._sqrt_frequency_bound)
 
     def mesh_for(self, mode_count: int, accuracy: float) -> Resolution:
-        return resolution_for(expected_wave_number(mode_count, self._wave_number), accuracy)
+        return resolution_for(expected_wave_number(mode_count, self.largest_wave_number), accuracy)
 
     def finer_mesh_for_waves(self, mesh: Resolution, waves: Array, accuracy: float) -> Resolution:
         """The mesh for the largest wave number of `waves`, (modes,), and the relative accuracy `accuracy`; at
@@ -151,7 +162,8 @@ class ArmProblem(TransverseProblem):
         self.additional_eigenvalue_count = (
             COMPLETENESS_SETTINGS.further_eigenvalue_count if modes_to_prove and self.has_bound else 0
         )
-        growth, _ = local_growths_and_wave_numbers(rod)
+        growth, wave_numbers = local_growths_and_wave_numbers(rod)
+        self.largest_wave_number = float(wave_numbers.max())
         # So far right that the eigenvalues nearest to it are mostly the rightmost.
         self.shift = KRYLOV_SETTINGS.shift_over_growth_rate * float(growth.max())
 

@@ -213,7 +213,7 @@ class SpectrumSearch:
             reason = "no mesh resolves all eigenvalues with large real parts, so the leading one is not known"
             return failed_spectrum(SpectrumStatus.modes_missing, self.request, reason)
         meshes = meshes_text(SEARCH_SETTINGS.max_meshes, self.mesh)
-        reason = self.last_failure or f"{meshes} resolves the requested modes"
+        reason = self.last_failure or f"{meshes} resolves the requested modes{self.problem.wave_clause}"
         return failed_spectrum(SpectrumStatus.failed, self.request, reason)
 
 

@@ -283,6 +283,14 @@ def test_a_search_that_ends_at_the_largest_mesh_names_its_size(monkeypatch):
     assert result.message == "no mesh of at most 1000 unknowns resolves the requested modes"
 
 
+def test_a_thin_cone_whose_waves_no_mesh_resolves_names_the_force_and_the_taper():
+    """Some 300 waves fit between its clamp and its tip; "try another accuracy" was the only remedy."""
+    cone = Rod(F=3.52e3, k1=6.3e6, k2=3.3e5, gamma3=6e-3, taper=0.032)
+    result = solve_spectrum(cone, SpectrumRequest(6, 1e-8, certify=True))
+    assert result.status == SpectrumStatus.failed
+    assert "a smaller |F| or a larger taper" in result.message
+
+
 def test_two_meshes_name_the_number_of_meshes_without_a_result(monkeypatch):
     monkeypatch.setattr(
         two_meshes, "TWO_MESH_SETTINGS", replace(two_meshes.TWO_MESH_SETTINGS, max_finer_meshes=0)
