@@ -1,5 +1,5 @@
-"""Local coefficients of arms as one array, compiled: twin of `RodMaterial.local_coefficients`, whose overhead
-would be a tenth of the time of a spectrum, and a fifth for rubber."""
+"""Local coefficients of arms as one array, compiled: twin of `RodMaterial.local_coefficients`. The overhead
+of NumPy would take 4 % of the time of a certified spectrum, and 20 % for rubber."""
 
 from collections.abc import Sequence
 
