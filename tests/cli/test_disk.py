@@ -52,6 +52,13 @@ def test_read_only_directory_is_refused_before_anything_is_solved(command, ranks
         assert [path.name for path in small.directory.iterdir()] == ["c.yaml"]
 
 
+def test_file_in_the_place_of_the_journal_is_named(command):
+    path = command.write("c.yaml", CONFIG.replace("{start: 0, stop: 60, num: 500}", "60"))
+    (command.directory / "c.h5.journal").write_text("mine")
+    one_sentence(command("run", path), "c.h5.journal is not a directory; move it away")
+    assert (command.directory / "c.h5.journal").read_text() == "mine"
+
+
 def test_too_small_a_disk_for_an_extension_leaves_the_file(command):
     with disk(command, "size=1m") as small:
         small.write("c.yaml", CONFIG.replace("{start: 0, stop: 60, num: 500}", "60"))

@@ -43,6 +43,8 @@ def disk_refusals(path: Path, kept_clause: Callable[[], str] = str) -> Iterator[
         yield
     except (OSError, RuntimeError) as error:
         reason = getattr(error, "strerror", None) or str(error).splitlines()[0]
+        if isinstance(error, FileExistsError):  # of the directory of the points
+            reason = f"{error.filename} is not a directory; move it away"
         raise EnvironmentIncomplete(f"{path} cannot be written: {reason}{kept_clause()}") from error
 
 
