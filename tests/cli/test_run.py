@@ -134,6 +134,29 @@ def run_patched(command, patch, ranks=2):
     return command("run", "c.yaml", ranks=ranks, patch=patch)
 
 
+ELSEWHERE = "import os\nif os.environ['OMPI_COMM_WORLD_RANK'] == '1': os.chdir('other')\n"
+"""Patch that starts the second rank in another directory."""
+
+
+def test_points_of_a_rank_started_in_another_directory_are_in_the_file(command):
+    command.write("c.yaml", SMALL)
+    (command.directory / "other").mkdir()
+    run = command("run", "c.yaml", ranks=2, patch=ELSEWHERE)
+    assert (run.returncode, run.stderr) == (0, "")
+    assert "252 ok" in run.stdout
+    assert list((command.directory / "other").iterdir()) == []
+
+
+def test_directory_that_a_rank_cannot_enter_is_refused(command):
+    command.write("c.yaml", SMALL)
+    (command.directory / "other").mkdir()
+    refuse = "def refuse(to): raise FileNotFoundError(2, 'No such file or directory')\nos.chdir = refuse\n"
+    run = command("run", "c.yaml", ranks=2, patch=ELSEWHERE + refuse)
+    assert run.returncode == 3
+    assert "of the first rank cannot be entered: No such file or directory" in run.stderr
+    assert not (command.directory / "c.h5").exists()
+
+
 def test_bug_while_the_file_is_opened_ends_all_ranks(command):
     command.write("c.yaml", SMALL)
     patch = (

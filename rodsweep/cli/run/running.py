@@ -13,7 +13,7 @@ from ...results.file import provenance
 from ...results.file.creation import FinalVariables
 from ...results.file.store import ResultFileWriter
 from ...results.file.view import read_view
-from ...solve.backend.availability import require_solvers, require_working_directory
+from ...solve.backend.availability import enter_directory, require_solvers, require_working_directory
 from ...sweep.points.ranges import IndexRange, index_count
 from ...sweep.ranks import Ranks
 from ...sweep.stop import StopRequest
@@ -37,7 +37,11 @@ def run_config(path: Path, output: Path, request: RunRequest, stop: StopRequest)
     require_working_directory()
     ranks = Ranks()
     with ranks.abort_all_ranks_on_error():
-        config, text = ranks.call_on_first_rank(lambda: read_config(path, request.overrides))
+        (config, text), directory = ranks.call_on_first_rank(
+            lambda: (read_config(path, request.overrides), Path.cwd())
+        )
+        # Otherwise a rank started in another directory would write its points there, and lose them.
+        ranks.require_on_all_ranks(lambda: enter_directory(directory))
         with refusals_with_file(path):
             if (flutter := shared_flutter_forces(config, ranks, stop)) is None:
                 report_stop(ranks, stop)

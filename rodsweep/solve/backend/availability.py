@@ -42,6 +42,17 @@ def _petsc_version_numbers(directory: Path) -> list[int]:
     return [int(number) for number in re.findall(r"\d+", directory.parents[3].name)]
 
 
+def enter_directory(directory: Path) -> None:
+    """Makes `directory`, in which the first rank works, the working directory of this rank."""
+    try:
+        os.chdir(directory)
+    except OSError as error:
+        raise EnvironmentIncomplete(
+            f"the directory {directory} of the first rank cannot be entered: {error.strerror}; all ranks "
+            "need the same file system"
+        ) from error
+
+
 def require_working_directory() -> None:
     """Raises EnvironmentIncomplete if the working directory was deleted: MPI and PETSc cannot start then."""
     try:
