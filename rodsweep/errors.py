@@ -5,6 +5,7 @@ A parameter point that cannot be solved raises no error: the point gets a status
 the sweep continues. Any other exception is a bug.
 """
 
+from datetime import date
 from typing import Any, Self
 
 BUG_STATUS = 70
@@ -18,9 +19,9 @@ MAX_VALUE_LENGTH = 60
 
 def short_repr(value: Any) -> str:
     """`repr` of a value for messages, on one line, cut to `MAX_VALUE_LENGTH` characters; a phrase if `repr`
-    fails because the value is too large."""
+    fails because the value is too large. A date of YAML, 2024-01-01, is shown as text."""
     try:
-        text = " ".join(repr(value).split())
+        text = " ".join((str(value) if isinstance(value, date) else repr(value)).split())
     except (ValueError, RecursionError):  # an integer of thousands of digits, or a tree too deep
         article = "an" if isinstance(value, int) else "a"
         return f"{article} {type(value).__name__} too large to be shown"

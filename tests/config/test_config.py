@@ -206,6 +206,7 @@ REFUSED_BY_TASK = [
     (thresholds(options="F_max: -3"), "F_max = -3 is not allowed; it should be a finite number above 0"),
     (thresholds(options="F_max: .inf"), "F_max = inf is not allowed; it should be a finite number above 0"),
     (thresholds(options="F_max: far"), "thresholds.F_max: 'far' is not a number"),
+    (thresholds(options="F_max: 2024-01-01"), "thresholds.F_max: 2024-01-01 is not a number"),
     (
         thresholds(options="crossings: 0"),
         "crossings = 0 is not allowed; it should be a whole number from 1 to",
