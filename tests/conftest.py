@@ -45,7 +45,7 @@ LONGEST = (
     "test_settings",
     "test_page",
     "test_stored",
-    "test_tip_release",
+    "test_dragged_tip",
     "test_browser",
     "test_stress",
     "test_interrupts",

@@ -16,10 +16,10 @@ from .sharing import state_from_config_text
 from .slider_scales import SLIDER_SCALES
 from .solving import request_inputs as kinds
 from .solving.diagrams import has_uniform_linear_rods
+from .solving.dragged_tip import TipPosition
 from .solving.request_inputs import AnswerInputs, inputs_of_request, state_to_solve
 from .solving.requests import Reply, SolveRequest
 from .solving.solvers import Solvers
-from .solving.tip_release import TipPosition
 from .state import PageState, dimensionless_parameters_of, from_address
 from .texts import KIND_WORDS
 
@@ -50,7 +50,7 @@ class Page:
         self.contents = PageContents(self.change, self.load)
         self.pause_timer = PauseTimer(document, self._send_slow_requests)
         self.contents.connect(document, self._callbacks())
-        self.contents.beating.on_drag(self.drag)
+        self.contents.beating.on_drag(self.request_tip_answer)
         if stored is not None and stored.diagram is not None:
             self.latest_inputs["diagram"] = inputs_of_request(SolveRequest("diagram", state))
             self.contents.show("diagram", stored.diagram, state)
@@ -98,7 +98,7 @@ class Page:
                     self.contents.show_message(kind, SOLVE_STOPPED_SENTENCE)
         self._show_solving()
 
-    def drag(self, kind: str, tip: TipPosition) -> None:
+    def request_tip_answer(self, kind: str, tip: TipPosition) -> None:
         """Requests the shape with the tip held at `tip`, in L (kind "bent"), or the motion after the tip is
         released there (kind "motion"). A request of the other kind is cancelled."""
         for tip_kind in kinds.TIP_REQUEST_KINDS:

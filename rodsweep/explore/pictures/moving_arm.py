@@ -11,7 +11,7 @@ from bokeh.models import CustomJS, Range1d
 from ...arrays import Array
 from ...post.figures.cycle.tip_path import smooth_tip_path
 from ..slider_scales import PictureAxis
-from ..solving.tip_release import TipPosition
+from ..solving.dragged_tip import TipPosition
 from ..texts import template_text
 from . import card
 

@@ -9,8 +9,8 @@ from dataclasses import replace
 
 from ..state import PageState
 from .diagrams import second_parameter_values
+from .dragged_tip import TipPosition
 from .requests import SolveRequest
-from .tip_release import TipPosition
 
 AnswerInputs = tuple[PageState, TipPosition | None]
 """Part of the page's state, and position of the dragged tip, on which an answer depends."""

@@ -22,7 +22,7 @@ from ...post.branch_curves import RodBranches, stability_runs
 from ..state import MATERIAL_SECTION_BY_LAW, PageState, dimensionless_parameters_of
 from .curves_and_counts import Dataset, flag_words
 from .diagrams import cycle_diagram_answer, diagram_answer
-from .tip_release import TipPosition, dragged_equilibrium, motion_film_answer, released_motion_answer
+from .dragged_tip import TipPosition, dragged_equilibrium, motion_film_answer, released_motion_answer
 
 AnswerVariables = dict[str, Any]
 """Variables of an answer, by name: arrays, and texts such as `status`, `sentence` and `message`."""

@@ -89,7 +89,7 @@ class CurrentPencil(NamedTuple):
 class ShiftInvertSolver(ABC):
     """Krylov-Schur solver for pencils of one sparsity pattern; `solve` may be called any number of times.
     mass: mass at the nodes without the clamp, (nodes,), for the first Krylov vector. A, B: PETSc's matrices
-    A - shift B and B of the rod in `loaded_pencil`. eps: SLEPc's solver."""
+    A - shift B and B of the rod in `current_pencil`. eps: SLEPc's solver."""
 
     def __init__(self, pattern: Pencil | ArmPencil, mass: Array):
         self.node_count = pattern.node_count
@@ -125,7 +125,7 @@ class ShiftInvertSolver(ABC):
         self.krylov_size_option = PETSc.Options(SPECTRUM_OPTIONS_PREFIX).getInt("eps_ncv", 0)
         self.tolerance_option = PETSc.Options(SPECTRUM_OPTIONS_PREFIX).getReal("eps_tol", 0.0)
         self.eps = self._create_eps("petsc" if self.is_dense else package)
-        self.loaded_pencil = CurrentPencil(0, 0.0)
+        self.current_pencil = CurrentPencil(0, 0.0)
 
     def _create_eps(self, package: str | None) -> "SLEPc.EPS":
         """SLEPc's Krylov-Schur solver with shift-and-invert; package: PETSc's name of the LU package."""
@@ -165,10 +165,10 @@ class ShiftInvertSolver(ABC):
         of the few digits that Newton's method on D needs. Raises PETSc.Error.
         """
         report()
-        self.loaded_pencil = self.load(rod, shift)
+        self.current_pencil = self.load(rod, shift)
         self.A.assemble()
         self.eps.setOperators(self.A, self.B)
-        max_count = self.loaded_pencil.finite_eigenvalue_count
+        max_count = self.current_pencil.finite_eigenvalue_count
         requested_count = min(requested_count, max_count - 1)  # a conjugate pair may add one
         spare_vectors = (
             KRYLOV_SETTINGS.tight_spare_vectors if to_rounding else KRYLOV_SETTINGS.loose_spare_vectors
@@ -184,7 +184,7 @@ class ShiftInvertSolver(ABC):
         self.eps.solve()
         converged_count = self.eps.getConverged()
         w: Complex = np.array([self.eps.getEigenvalue(i) for i in range(converged_count)], complex)
-        return (w + self.loaded_pencil.shift) / self.loaded_pencil.deflection_ratio**2
+        return (w + self.current_pencil.shift) / self.current_pencil.deflection_ratio**2
 
     def vectors(self, count: int) -> Complex:
         """Eigenvectors of the first `count` eigenvalues of the last `solve`, (unknowns, count)."""
@@ -194,7 +194,7 @@ class ShiftInvertSolver(ABC):
             self.eps.getEigenvector(i, real, imag)
             X[:, i] = real.array + 1j * imag.array
         # The solver works on the equivalent filament, whose deflection has another scale.
-        X[: self.node_count] *= self.loaded_pencil.deflection_ratio
+        X[: self.node_count] *= self.current_pencil.deflection_ratio
         real.destroy()
         imag.destroy()
         return X

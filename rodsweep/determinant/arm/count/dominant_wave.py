@@ -14,7 +14,7 @@ from ..local_waves import ExponentSamples, sqrt_in_upper_half_plane
 
 
 @compiled_for_vectors
-def dominant_exponent(w: complex, samples: ExponentSamples) -> complex:
+def dominant_wave_exponent(w: complex, samples: ExponentSamples) -> complex:
     """Phi(w) = int sqrt(z+) du of an arm, by quadrature over its samples; Im w > 0."""
     # Each factor has its own root: w (rate + bend w) can leave the sheet of the principal root.
     root = cmath.sqrt(w)

@@ -33,7 +33,7 @@ from ..family_values import propagators_at
 from ..hull.region import EigenvalueHull, PathHulls
 from ..local_waves import ExponentSamples, mean_wave_number_and_w_scale
 from ..value import determinant_from_propagators, scaled_determinant_from_propagators
-from .dominant_wave import dominant_exponent, dominant_exponent_slope
+from .dominant_wave import dominant_exponent_slope, dominant_wave_exponent
 from .settings import CONTOUR_SETTINGS, NO_CROSSING_SETTINGS
 
 
@@ -171,7 +171,7 @@ def _is_zero_free(w0: complex, radius: float, arms: ArmsOfInterval) -> bool:
     wave = (0j, 0j)
     if radius <= CONTOUR_SETTINGS.max_wave_radius * w0.imag:
         samples = ExponentSamples(arms.squares[0], arms.weights)
-        wave = (dominant_exponent(w0, samples), dominant_exponent_slope(w0, samples))
+        wave = (dominant_wave_exponent(w0, samples), dominant_exponent_slope(w0, samples))
     node = LineNode(w0, value.D, value.log_scale, L, divided_indices, wave)
     number = len(arms.known_eigenvalues)
     is_free = True
@@ -198,14 +198,14 @@ def _has_small_change(node: LineNode, radius: float, arm: int, arms: ArmsOfInter
     if node.exponent_and_slope[0] == 0:
         # Phi has branch points on the real axis. Here only its change from arm to arm is used, off the axis.
         point_above = complex(node.w.real, radius / CONTOUR_SETTINGS.max_wave_radius)
-        middle_exponent = dominant_exponent(point_above, ExponentSamples(arms.squares[0], arms.weights))
-        growth = (dominant_exponent(point_above, samples) - middle_exponent).real
+        middle_exponent = dominant_wave_exponent(point_above, ExponentSamples(arms.squares[0], arms.weights))
+        growth = (dominant_wave_exponent(point_above, samples) - middle_exponent).real
     for direction in CONTOUR_SETTINGS.directions:
         v = node.w + radius * direction
         D, S = scaled_determinant_from_propagators(v, arms.largest_w, arms.propagators[arm])
         h = (node.L - node.exponent_and_slope[1]) * (v - node.w) + growth
         if node.exponent_and_slope[0] != 0:
-            h += dominant_exponent(v, samples) - node.exponent_and_slope[0]
+            h += dominant_wave_exponent(v, samples) - node.exponent_and_slope[0]
         # The logarithms are added before exp: each exponential alone may overflow.
         ratio = D / node.D * cmath.exp(S - node.log_scale - h)
         for n in node.divided_indices:

@@ -29,7 +29,7 @@ from ..determinant import PropagatorsUpToW
 from ..hull.region import EigenvalueHull, distance_and_normal
 from ..local_waves import ExponentSamples
 from ..value import determinant_from_propagators, log_modulus_from_propagators
-from .dominant_wave import dominant_exponent, dominant_exponent_slope
+from .dominant_wave import dominant_exponent_slope, dominant_wave_exponent
 from .settings import CONTOUR_SETTINGS
 
 
@@ -54,7 +54,7 @@ def linearised_log_determinant(node: PhaseNode, v: complex, samples: ExponentSam
     """The tangent h(v) of log D at a node, without the constant log D(w) (see the module docstring)."""
     Phi, slope = node.exponent_and_slope
     linear_change = (node.L - slope) * (v - node.w)
-    return linear_change + dominant_exponent(v, samples) - Phi if Phi != 0 else linear_change
+    return linear_change + dominant_wave_exponent(v, samples) - Phi if Phi != 0 else linear_change
 
 
 @compiled
@@ -113,7 +113,7 @@ def _node_inside(
     while rho >= min_rho:
         wave = (0j, 0j)
         if rho <= CONTOUR_SETTINGS.max_wave_radius * w.imag:
-            wave = (dominant_exponent(w, samples), dominant_exponent_slope(w, samples))
+            wave = (dominant_wave_exponent(w, samples), dominant_exponent_slope(w, samples))
         tried = PhaseNode(w, node.direction, node.L, wave, 0.0, rho)
         # Smaller circles give at most this valid radius.
         target = max(best.valid_radius, _valid_radius(rho / 2, CONTOUR_SETTINGS.circle_safety_factor, excess))

@@ -19,7 +19,7 @@ MIN_MULTIPLIER_DISTANCE = 2e-16
 """Smallest distance of a multiplier from 1: smaller distances are rounding errors of the multiplier."""
 
 
-def amplitude_rounding(solved: ConvergedOrbit) -> float:
+def relative_y_rounding(solved: ConvergedOrbit) -> float:
     """Relative error of the largest y of an orbit on any mesh, due to rounding: `rounding_error` divided by
     the distance of the nearest nontrivial multiplier from 1; 0 if there is no nontrivial multiplier."""
     multipliers = solved.matrix.multipliers_over_solved_part
@@ -32,15 +32,13 @@ def amplitude_rounding(solved: ConvergedOrbit) -> float:
     return CYCLE_ERROR_SETTINGS.rounding_error / (period_parts * distance)
 
 
-def with_amplitude_rounding(
-    errors: CycleErrors, solved: ConvergedOrbit, measures: CycleMeasures
-) -> CycleErrors:
+def with_y_rounding(errors: CycleErrors, solved: ConvergedOrbit, measures: CycleMeasures) -> CycleErrors:
     """`errors`, in which the errors of the extrema are at least the effect of rounding,
-    `amplitude_rounding`.
+    `relative_y_rounding`.
 
     Two meshes of a comparison share no rounding errors, but may agree by coincidence.
     """
-    height_error = amplitude_rounding(solved)
+    height_error = relative_y_rounding(solved)
     extrema_error = height_error * max(1.0, measures.tip_theta_max / measures.tip_y_max)
     return replace(
         errors,

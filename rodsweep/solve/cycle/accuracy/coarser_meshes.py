@@ -19,7 +19,7 @@ from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import ORBIT_MESH_SETTINGS, OrbitMesh
 from ...orbit.path_differences import PERIOD_INDEX, Y_INDEX, path_differences
 from ...orbit.tails import tails_of
-from .amplitude_errors import amplitude_rounding
+from .amplitude_errors import relative_y_rounding
 from .calibration import Calibration, calibration_of
 from .finer_meshes import FINER_MESH_SETTINGS, ComparedCycle
 from .settings import CALIBRATION_SETTINGS
@@ -63,7 +63,7 @@ COARSER_MESH_SETTINGS = CoarserMeshSettings()
 
 class CoarserMeshes:
     """Solutions of a cycle on a coarse mesh, on meshes finer in space only and on meshes finer in time only,
-    from which the cycle on a fine mesh is predicted. amplitude_rounding: relative error of the
+    from which the cycle on a fine mesh is predicted. relative_y_rounding: relative error of the
     largest y on any mesh, due to rounding."""
 
     def __init__(self, mesh: OrbitMesh, start: Orbit, accuracy: float, workspace: NewtonWorkspace) -> None:
@@ -86,7 +86,7 @@ class CoarserMeshes:
         self._tolerance = FINER_MESH_SETTINGS.newton_tolerance_ratio * accuracy
         self._workspace = workspace
         coarse_orbit = newton(self.coarse_mesh.interpolated_orbit(start), self._tolerance, workspace)
-        self.amplitude_rounding = amplitude_rounding(coarse_orbit)
+        self.relative_y_rounding = relative_y_rounding(coarse_orbit)
         self._coarse_cycle = ComparedCycle(coarse_orbit)
         self._cycles_on_finer_meshes: dict[OrbitMesh, ComparedCycle] = {}
 

@@ -9,7 +9,7 @@ from ...orbit.measures import CycleMeasures, CycleMotion
 from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
 from ..status import CycleStatus
-from .amplitude_errors import amplitude_rounding
+from .amplitude_errors import relative_y_rounding
 from .calibration import Calibration
 from .cycle_errors import CycleErrors, message_of_error
 from .minimal_period import possible_period_divisor
@@ -62,7 +62,7 @@ class RefinedCycle:
 
     def _accuracy_message(self, accuracy: float) -> str:
         """Why the errors exceed the requested relative accuracy `accuracy`."""
-        rounding = amplitude_rounding(self.converged_orbit)
+        rounding = relative_y_rounding(self.converged_orbit)
         if rounding > accuracy:
             return (
                 "so close to a Hopf point or a fold, rounding errors may change the amplitude by a relative "

@@ -24,7 +24,7 @@ from ...orbit.newton import (
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_limit_error
 from ...unsolvable import Unsolvable
-from .amplitude_errors import amplitude_rounding, multiplier_per_relative_exponent, with_amplitude_rounding
+from .amplitude_errors import multiplier_per_relative_exponent, relative_y_rounding, with_y_rounding
 from .calibration import Calibration
 from .cheapest_mesh import cheapest_mesh
 from .coarser_meshes import CoarserMeshes
@@ -45,7 +45,7 @@ def cycle_with_calibrated_errors(
 
     motion = motion or CycleMotion(solved.orbit)
     measures = motion.measures
-    errors = with_amplitude_rounding(calibration.errors(accuracy), solved, measures)
+    errors = with_y_rounding(calibration.errors(accuracy), solved, measures)
     multipliers, trivial_error = nontrivial_multipliers_and_error(solved)
     max_modulus = max(float(np.abs(multipliers[0])), 1.0) if len(multipliers) else 1.0
     # The matrix was assembled at a nearby orbit; the error of the trivial multiplier shows the effect.
@@ -114,7 +114,7 @@ def _predicted_cycle(
     """
     coarser_meshes = CoarserMeshes(mesh, start, accuracy, workspace)
     # No mesh reduces the effect of rounding, which other errors need not fall below.
-    sufficient_error = max(accuracy, coarser_meshes.amplitude_rounding)
+    sufficient_error = max(accuracy, coarser_meshes.relative_y_rounding)
     max_error = inf
     orbit, calibration = best = coarser_meshes.predicted_orbit_and_errors(mesh)
     for _ in range(REFINEMENT_SETTINGS.max_meshes):
@@ -167,7 +167,7 @@ def cycle_with_measured_errors(
         error = cycle.errors.largest_weighted_error
         if best_cycle is None or error < best_cycle.errors.largest_weighted_error:
             best_cycle = cycle
-        sufficient_error = max(accuracy, amplitude_rounding(solved))
+        sufficient_error = max(accuracy, relative_y_rounding(solved))
         if error <= sufficient_error or error > max_error:
             break
         max_error = REFINEMENT_SETTINGS.max_error_increase * error

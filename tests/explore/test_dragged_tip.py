@@ -11,9 +11,9 @@ import rodsweep as rs
 from rodsweep.explore.page import Page
 from rodsweep.explore.pictures.card import NO_TITLE
 from rodsweep.explore.pictures.moving_arm import PERIOD_SECONDS
+from rodsweep.explore.solving.dragged_tip import motion_in_page_units
 from rodsweep.explore.solving.request_inputs import INSTANT_KINDS
 from rodsweep.explore.solving.requests import SHAPE_COUNT, Reply, SolveRequest, answer_to
-from rodsweep.explore.solving.tip_release import motion_in_page_units
 from rodsweep.explore.state import PageState
 from rodsweep.post.figures.cycle.released_motion_film import motion_film
 from rodsweep.post.figures.cycle.tip_path import SEGMENTS_BETWEEN_SHAPES, smooth_tip_path
