@@ -10,6 +10,7 @@ from .base_coefficients import stiffnesses_and_drags_at_base
 from .compiled.compilation import compiled
 from .material.factors import factors_along
 from .material.stress_strain import bending_factor, shortening
+from .parameters import NON_OPTIONAL_LINEAR_PARAMETERS
 from .rod import Rod
 
 
@@ -23,7 +24,7 @@ def local_coefficient_array(rods: Sequence[Rod], u: Array, remainder: Array | No
         factors = factors_along(material.profile, rod.taper, u, remainder)
         _write_coefficients(
             material.law_number,
-            tuple(float(at_base[name]) for name in ("F", "k1", "k2", "gamma3")),
+            tuple(float(at_base[name]) for name in NON_OPTIONAL_LINEAR_PARAMETERS),
             tuple(factors[name].ravel() for name in ("k1", "k2", "k3", "gamma2", "gamma3")),
             coefficients[:, i],
         )

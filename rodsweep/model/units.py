@@ -99,7 +99,7 @@ def _number_in_si(name: str, quantity: Any, si_unit: str, allowed_text: str) -> 
             f"{name} = '{quantity!s:.60}'", f"{quantity.units:C}", si_unit, allowed_text
         )
     try:
-        if np.ndim(quantity) or np.ma.is_masked(quantity):
+        if isinstance(quantity, list | tuple) or np.ndim(quantity) or np.ma.is_masked(quantity):
             raise TypeError
         number = quantity.item() if hasattr(quantity, "item") else quantity
         # Texts in bytes or arrays have no unit either, so they are refused as all other texts without a unit.

@@ -305,10 +305,10 @@ def test_stopping_the_folds_leaves_the_diagram_and_stopping_a_motion_the_arm():
     page._on_answer(diagram, Reply("refused", {"sentence": ""}, 0.0))
     page.solve("cycles")
     page.stop()
-    page.drag("bent", (0.6, 0.5))
+    page.request_tip_answer("bent", (0.6, 0.5))
     run_callbacks(page.document)
     assert len(page.contents.beating.bent_source.data["x"]) > 0
-    page.drag("motion", (0.6, 0.5))
+    page.request_tip_answer("motion", (0.6, 0.5))
     page.stop()
     assert len(page.contents.beating.bent_source.data["x"]) == 0
     solvers.requests.clear()

@@ -11,6 +11,7 @@ from rodsweep.discretization.element_strains import write_element_strains
 from rodsweep.discretization.elements.mesh import shape_from_strains
 from rodsweep.discretization.elements.trigonometric import fourier_coefficients, series_maxima
 from rodsweep.discretization.plane_equations import write_balance
+from rodsweep.discretization.state_layout import plane_layout
 from rodsweep.discretization.straight.mixed_form import MixedForm
 
 MOST_STEPS, SOLVED = 12, 1e-11
@@ -38,6 +39,7 @@ def guess_at(orbit, m):
 def solved_cycle(form, X, frequency):
     """(X, frequency) of the cycle near a guess; the tip is at rest in the first phase, to first order."""
     m, unknowns = X.shape
+    stresses = slice(plane_layout(form.mesh.node_count).unknown_count)
     even, odd = half_period_derivatives(m)
     kept, each, r = form.reflection_signs > 0, np.arange(m), np.arange(unknowns)
     D = np.where(kept[:, None, None], even, odd)
@@ -52,8 +54,8 @@ def solved_cycle(form, X, frequency):
         residual = np.append((frequency * form.M * dX - mixed.rate(form, X)).ravel(), dX[0] @ form.tip_y_row)
         step = np.linalg.solve(J, -residual)
         X, frequency = X + step[:-1].reshape(m, unknowns), frequency + step[-1]
-        moved = np.abs(step[:-1].reshape(m, unknowns)[:, : form.unknown_stress_count]).max()
-        if moved <= SOLVED * np.abs(X[:, : form.unknown_stress_count]).max():
+        moved = np.abs(step[:-1].reshape(m, unknowns)[:, stresses]).max()
+        if moved <= SOLVED * np.abs(X[:, stresses]).max():
             return X, frequency
     raise AssertionError("no cycle")
 
