@@ -26,7 +26,7 @@ def require_output_path(output: Path, endings: Sequence[str], noun: str, inputs:
     if output.exists() and any(output.samefile(path) for path in inputs if path.exists()):
         raise InputError(f"--output {output} is an input file and would be overwritten; choose another name")
     if not os.access(output.parent, os.W_OK | os.X_OK):
-        raise EnvironmentIncomplete(f"{output} cannot be written: no permission in directory {output.parent}")
+        raise EnvironmentIncomplete(f"{output} cannot be written: its directory is not writable")
 
 
 @contextmanager

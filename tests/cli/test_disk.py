@@ -175,5 +175,5 @@ def test_a_portrait_is_solved_only_if_it_can_be_written(command, name):
     with disk(command, "size=64k") as small:
         subprocess.run(["mount", "-o", "remount,ro", small.directory], check=True)
         done = small("portrait", "--k1", "1e4", "--k2", "1e2", "--gamma3", "1e-2", "-o", name)
-        one_sentence(done, f"{name} cannot be written: no permission in directory .")
+        one_sentence(done, f"{name} cannot be written: its directory is not writable")
         assert done.stdout == ""
