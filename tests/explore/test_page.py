@@ -6,7 +6,7 @@ from html import unescape
 import numpy as np
 import pytest
 from bokeh.document import Document
-from bokeh.models import HoverTool
+from bokeh.models import HoverTool, LogTicker
 
 import rodsweep as rs
 from rodsweep.errors import UserError
@@ -17,6 +17,7 @@ from rodsweep.explore.pictures.diagram import (
     BOUNDARY_COLOURS,
     DiagramCell,
     diagram_cells,
+    log_axis_ticker,
     region_table,
     unstable_count_words,
 )
@@ -222,6 +223,12 @@ def test_texts_to_share_wait_until_the_page_rests_and_what_the_buttons_copy_does
     assert "F=61" in sharing.address.tags[0]
     assert "F: 61" in sharing.yaml.text
     assert "F=61" in sharing.address.text
+
+
+def test_a_short_logarithmic_axis_has_ticks_in_its_lower_part_too():
+    assert log_axis_ticker(90.0, 2200.0).ticks == [10, 20, 50, 100, 200, 500, 1000, 2000, 5000]
+    assert isinstance(log_axis_ticker(1.0, 1e5), LogTicker)
+    assert isinstance(log_axis_ticker(0.0, 1.0), LogTicker)
 
 
 def test_the_diagram_names_its_areas_under_the_pointer_and_nothing_else():

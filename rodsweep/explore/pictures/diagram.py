@@ -7,7 +7,7 @@ from itertools import groupby
 from typing import Any, NamedTuple
 
 import numpy as np
-from bokeh.models import HoverTool, Range1d
+from bokeh.models import FixedTicker, HoverTool, LogTicker, Range1d, Ticker
 
 from ...arrays import Array
 from ...post.figures.phase_diagram import CURVE_END_CRUSHING_RATIO
@@ -21,6 +21,11 @@ from . import card
 PIXELS_PER_ROW = 2
 """Number of rows of pixels that are drawn as one row. The number of rows is then about the height of a
 picture of the page, in pixels."""
+MIN_LOG_TICKER_RATIO = 100
+"""On a logarithmic axis whose ends have a smaller ratio, Bokeh's ticker places ticks at equal distances, and
+none in the lower part."""
+TICK_MANTISSAS = np.array([1.0, 2.0, 5.0])
+"""Mantissas of the ticks of such an axis."""
 
 
 class RegionTable(NamedTuple):
@@ -194,6 +199,7 @@ class DiagramPicture:
         figure = self.card.figure
         card.set_axis_range(figure.x_range, float(x[0]), float(x[-1]))
         card.set_axis_range(figure.y_range, float(grid[0].bottom), float(grid[-1].top))
+        figure.yaxis.ticker = log_axis_ticker(figure.y_range.start, figure.y_range.end)
         figure.xaxis.axis_label = load.label
         figure.yaxis.axis_label = row_scale.label
         self.card.show_figure()
@@ -208,6 +214,14 @@ class DiagramPicture:
     def move_point(self, x: float, y: float) -> None:
         """Moves the mark of the page's rod. x: load, y: second parameter, in the units of the axes."""
         self.point_source.data = {"x": [x], "y": [y]}
+
+
+def log_axis_ticker(low: float, high: float) -> Ticker:
+    """The ticker of a logarithmic axis from `low` to `high`, which has ticks in all its parts."""
+    if not 0 < low < high < MIN_LOG_TICKER_RATIO * low:
+        return LogTicker()
+    exponents = np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)))
+    return FixedTicker(ticks=np.outer(10.0**exponents, TICK_MANTISSAS).ravel().tolist())
 
 
 def _boundary_columns(x: Any, y: Any, kinds: Iterable[str]) -> dict[str, Any]:
