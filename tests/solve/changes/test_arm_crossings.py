@@ -81,10 +81,57 @@ def test_a_pair_may_leave_the_axis_and_return_where_tangents_and_slopes_allow_it
     """The first and the fourth case, of an arm of three segments, hide two crossings; their cubics stay above
     zero."""
     left, right = (
-        ArmModes(p, np.array([distance + 150j]), np.array([slope + 10j]), 2)
+        ArmModes(p, np.array([distance + 1j * (150 + 10 * p)]), np.array([slope + 10j]), 2)
         for p, distance, slope in zip((0.0, length), distances, slopes, strict=True)
     )
     assert (next_count_interval_fraction(left, right) > 0) == is_counted
+
+
+EXCHANGING_SEGMENTS = (
+    (1.0,) * 6,
+    (0.3797, 3.393, 0.3506, 0.7758, 0.1164, 4.57),
+    (0.1791, 0.5192, 0.6305, 0.4522, 1.225, 0.2182),
+)
+EXCHANGING_ARM = Rod(
+    F=0.0,
+    k1=419.9,
+    k2=11.34,
+    gamma3=3.325e-4,
+    taper=0.1561,
+    material=RodMaterial(
+        "neo_hookean",
+        profile=Profile(
+            (0.0, 0.1953, 0.1953, 0.3509, 0.3509, 1.0),
+            tuple(segment for segment in EXCHANGING_SEGMENTS for _ in range(2)),
+        ),
+    ),
+)
+
+
+@pytest.mark.parametrize("F_max", [5.5, 8.0])
+def test_a_window_of_one_pair_less_between_two_pairs_that_exchange_their_parts_is_found(F_max):
+    """Ten pairs grow before and after it, nine at F = 5.39."""
+    found = solve_thresholds(EXCHANGING_ARM, ThresholdsRequest(F_max, 1e-8, True, 30))
+    window = [(c.kind, c.value) for c in found.thresholds if 5.3 < c.value < 5.5]
+    assert [kind for kind, _ in window] == [ThresholdKind.hopf_reverse, ThresholdKind.hopf]
+    for (_, value), growing_pairs in zip(window, (9, 10), strict=True):
+        w = eigenvalues(replace(EXCHANGING_ARM, F=value + 1e-3), 12, 24)
+        assert ((w.real > 0) & (w.imag > 0)).sum() == growing_pairs
+
+
+def test_a_pair_far_from_the_axis_may_come_from_it_while_another_one_leaves():
+    """Two pairs of an arm of three segments exchange their parts; the slopes of the wrong pairs agree."""
+    left = ArmModes(5.31448, np.array([13.2 + 169j]), np.array([-40 + 130j]), 20)
+    right = ArmModes(5.5, np.array([-9.7 + 157j, 69 + 309j]), np.array([140 - 90j, 716 + 780j]), 20)
+    assert next_count_interval_fraction(left, right) > 0
+
+
+def test_a_growing_pair_without_partner_at_the_other_end_has_crossed_the_axis():
+    places = [(5.29213, 13.5 + 164j, 10 + 90j), (5.56706, -1e-4 + 154j, 146 - 60j)]
+    left, right = (ArmModes(p, np.array([w]), np.array([slope]), 20) for p, w, slope in places)
+    assert next_count_interval_fraction(left, right) > 0
+    same = ArmModes(5.56706, np.array([16.0 + 189j]), np.array([8 + 90j]), 20)
+    assert next_count_interval_fraction(left, same) == 0
 
 
 def search_result(*errors, **others):

@@ -12,21 +12,9 @@ from ...spectrum.status import SpectrumStatus
 from ...unsolvable import Unsolvable
 from ..sample_interpolation import cubic_minimum_and_position, unexplained_difference
 from ..spectrum_samples import SPECTRUM_SAMPLE_SETTINGS
+from .axis_pairs import AXIS_MODE_SETTINGS, AxisPair
 from .path import ArmPath
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AxisModeSettings:
-    """Settings of the eigenvalues that are computed for selected arms during a search for crossings."""
-
-    max_growing_for_leading_modes: float = 16.0
-    """If a certificate is requested and more modes of an arm than this number are expected to grow, only the
-    modes near the imaginary axis are computed."""
-    max_computed_modes: int = 200
-    """Maximum number of leading eigenvalues computed for one arm."""
-
-
-AXIS_MODE_SETTINGS = AxisModeSettings()
 NO_EIGENVALUES: Complex = np.empty(0, complex)
 
 
@@ -41,16 +29,16 @@ class ArmModes:
     slopes: Complex
     unstable_count: int
 
-    def nearest_pair_distance_and_slope(self, growing: bool) -> tuple[float, float] | None:
-        """Returns (distance from the imaginary axis, derivative of this distance with respect to p) of the
-        pair nearest to the axis, among the growing pairs if `growing`, otherwise among the decaying pairs;
-        None if no such pair is known."""
-        pairs = [i for i, w in enumerate(self.w.tolist()) if w.imag > 0 and (w.real > 0) == growing]
-        if not pairs:
-            return None
-        i = min(pairs, key=lambda i: abs(self.w[i].real))
+    def pairs(self, growing: bool) -> list[AxisPair]:
+        """All growing pairs if `growing`, otherwise all decaying pairs; the pair nearest to the imaginary
+        axis comes first."""
         sign = 1.0 if growing else -1.0
-        return float(sign * self.w[i].real), float(sign * self.slopes[i].real)
+        known = zip(self.w.tolist(), self.slopes.tolist(), strict=True)
+        return sorted(
+            AxisPair(sign * w.real, sign * slope.real, w.imag, slope.imag)
+            for w, slope in known
+            if w.imag > 0 and (w.real > 0) == growing
+        )
 
     @property
     def largest_modulus(self) -> float:
@@ -169,47 +157,59 @@ def next_count_interval_fraction(left: ArmModes, right: ArmModes) -> float:
     needed, because no pair can touch the imaginary axis in the interval."""
     length = right.p - left.p
     for grows in (False, True):
-        left_pair = left.nearest_pair_distance_and_slope(grows)
-        right_pair = right.nearest_pair_distance_and_slope(grows)
-        if left_pair is None and right_pair is None:
-            continue
-        if left_pair is None or right_pair is None:
-            distance, slope = left_pair or right_pair or (0.0, 0.0)
+        left_pairs, right_pairs = left.pairs(grows), right.pairs(grows)
+        lowest_left = min(left_pairs, key=lambda pair: pair.lowest_on_tangent(length), default=None)
+        lowest_right = min(right_pairs, key=lambda pair: pair.lowest_on_tangent(-length), default=None)
+        # A growing pair without a partner at the other end has crossed the axis.
+        if grows and (
+            any(pair.is_missing_in(right_pairs, length) for pair in left_pairs)
+            or any(pair.is_missing_in(left_pairs, -length) for pair in right_pairs)
+        ):
+            return 0.5
+        if lowest_left is None or lowest_right is None:
             # The slope of a pair known at one end only shows whether the pair came from the axis.
-            may_touch_axis = slope > 0 if left_pair is None else slope < 0
-            if may_touch_axis and distance < abs(slope) * length:
+            if (lowest_left and lowest_left.lowest_on_tangent(length) < 0) or (
+                lowest_right and lowest_right.lowest_on_tangent(-length) < 0
+            ):
                 return 0.5
             continue
+        left_pair, right_pair = left_pairs[0], right_pairs[0]
         minimum, fraction = cubic_minimum_and_position(
-            left_pair[0], right_pair[0], length * left_pair[1], length * right_pair[1]
+            left_pair.distance, right_pair.distance, length * left_pair.slope, length * right_pair.slope
         )
-        if minimum < SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * min(left_pair[0], right_pair[0]):
+        if minimum < SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * min(
+            left_pair.distance, right_pair.distance
+        ):
             return fraction
-        if _may_vanish_between(left_pair, right_pair, length):
+        # A pair farther from the axis may reach it, while the nearest pair moves away.
+        if _may_vanish_between(left_pair, right_pair, length) or _may_vanish_between(
+            lowest_left, lowest_right, length
+        ):
             return 0.5
     return 0.0
 
 
-def _may_vanish_between(left: tuple[float, float], right: tuple[float, float], length: float) -> bool:
+def _may_vanish_between(left: AxisPair, right: AxisPair, length: float) -> bool:
     """Whether a distance whose cubic stays above zero may vanish within an interval: its tangents meet below
     zero, or one tangent falls below zero within the interval and the slopes do not explain the change of the
-    distance. left, right: (distance, slope) at the ends. length: length of the interval."""
-    lowest_on_tangents = min(left[0] + length * min(left[1], 0.0), right[0] - length * max(right[1], 0.0))
-    if lowest_on_tangents >= 0:
+    pair. left, right: the pair at the ends. length: length of the interval."""
+    if min(left.lowest_on_tangent(length), right.lowest_on_tangent(-length)) >= 0:
         return False
-    allowed_change = SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * max(
-        min(left[0], right[0]), abs(right[0] - left[0])
-    )
-    return unexplained_difference(left, right, length) > allowed_change or _tangents_meet_below_zero(
-        left, right, length
-    )
+    change = abs(right.distance - left.distance)
+    unexplained_change = unexplained_difference(left[:2], right[:2], length)
+    unexplained_frequency = unexplained_difference(left[2:], right[2:], length)
+    max_unexplained = AXIS_MODE_SETTINGS.max_unexplained_change
+    is_explained = unexplained_change <= max_unexplained * max(
+        min(left.distance, right.distance), change
+    ) and unexplained_frequency <= max_unexplained * max(abs(right.frequency - left.frequency), change)
+    return not is_explained or _tangents_meet_below_zero(left, right, length)
 
 
-def _tangents_meet_below_zero(left: tuple[float, float], right: tuple[float, float], length: float) -> bool:
+def _tangents_meet_below_zero(left: AxisPair, right: AxisPair, length: float) -> bool:
     """Whether a distance that decreases at the left end of an interval and increases at its right end may be
-    zero between, because its tangents meet below zero. left, right: (distance, slope) at the ends. length:
-    length of the interval."""
-    if not left[1] < 0 < right[1]:
+    zero between, because its tangents meet below zero. left, right: the pair at the ends. length: length of
+    the interval."""
+    if not left.slope < 0 < right.slope:
         return False
-    meeting_place = (left[0] - right[0] + right[1] * length) / (right[1] - left[1])
-    return left[0] + left[1] * meeting_place < 0
+    meeting_place = (left.distance - right.distance + right.slope * length) / (right.slope - left.slope)
+    return left.distance + left.slope * meeting_place < 0

@@ -1,0 +1,51 @@
+"""Pairs of eigenvalues near the imaginary axis, with their tangents along a path of arms."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AxisModeSettings:
+    """Settings of the eigenvalues that are computed for selected arms during a search for crossings."""
+
+    max_growing_for_leading_modes: float = 16.0
+    """If a certificate is requested and more modes of an arm than this number are expected to grow, only the
+    modes near the imaginary axis are computed."""
+    max_computed_modes: int = 200
+    """Maximum number of leading eigenvalues computed for one arm."""
+    max_unexplained_change: float = 0.1
+    """If the tangent of a pair meets the imaginary axis within an interval, the slopes must explain the
+    change of growth rate and of frequency to this fraction; else both ends may show different pairs. Two
+    pairs that exchanged their parts agreed to 0.12 by chance."""
+
+    near_axis_ratio: float = 0.15
+    """A growing pair is expected among the modes of the other end of an interval if its growth rate there, by
+    its tangent, is at most this multiple of its frequency; the search for modes near the axis finds it."""
+    max_frequency_change: float = 0.3
+    """Largest difference between the frequency of a pair and its tangent, relative to the frequency."""
+
+
+AXIS_MODE_SETTINGS = AxisModeSettings()
+
+
+class AxisPair(NamedTuple):
+    """A pair of eigenvalues: distance from the imaginary axis and frequency, with their derivatives with
+    respect to p."""
+
+    distance: float
+    slope: float
+    frequency: float
+    frequency_slope: float
+
+    def lowest_on_tangent(self, step: float) -> float:
+        """Smallest distance on the tangent over a change `step` of p."""
+        return self.distance + min(step * self.slope, 0.0)
+
+    def is_missing_in(self, pairs: "list[AxisPair]", step: float) -> bool:
+        """Whether `pairs`, known after a change `step` of p, should contain this pair, but do not."""
+        distance = self.distance + step * self.slope
+        frequency = self.frequency + step * self.frequency_slope
+        settings = AXIS_MODE_SETTINGS
+        return 0 < distance < settings.near_axis_ratio * frequency and all(
+            abs(pair.frequency - frequency) > settings.max_frequency_change * frequency for pair in pairs
+        )
