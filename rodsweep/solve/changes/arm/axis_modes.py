@@ -160,7 +160,7 @@ def next_count_interval_fraction(left: ArmModes, right: ArmModes) -> float:
         left_pairs, right_pairs = left.pairs(grows), right.pairs(grows)
         lowest_left = min(left_pairs, key=lambda pair: pair.lowest_on_tangent(length), default=None)
         lowest_right = min(right_pairs, key=lambda pair: pair.lowest_on_tangent(-length), default=None)
-        # A growing pair without a partner at the other end has crossed the axis.
+        # A growing pair without a partner at the other end may have crossed the axis.
         if grows and (
             any(pair.is_missing_in(right_pairs, length) for pair in left_pairs)
             or any(pair.is_missing_in(left_pairs, -length) for pair in right_pairs)

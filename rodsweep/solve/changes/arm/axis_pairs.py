@@ -6,7 +6,8 @@ from typing import NamedTuple
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AxisModeSettings:
-    """Settings of the eigenvalues that are computed for selected arms during a search for crossings."""
+    """Settings of the eigenvalues that are computed for selected arms during a search for crossings, and of
+    the test whether a pair may cross the imaginary axis between two of these arms."""
 
     max_growing_for_leading_modes: float = 16.0
     """If a certificate is requested and more modes of an arm than this number are expected to grow, only the
@@ -17,20 +18,20 @@ class AxisModeSettings:
     """If the tangent of a pair meets the imaginary axis within an interval, the slopes must explain the
     change of growth rate and of frequency to this fraction; else both ends may show different pairs. Two
     pairs that exchanged their parts agreed to 0.12 by chance."""
-
     near_axis_ratio: float = 0.15
     """A growing pair is expected among the modes of the other end of an interval if its growth rate there, by
     its tangent, is at most this multiple of its frequency; the search for modes near the axis finds it."""
     max_frequency_change: float = 0.3
-    """Largest difference between the frequency of a pair and its tangent, relative to the frequency."""
+    """Largest relative difference between the frequency of a pair and its frequency by the tangent of the
+    other end; with a larger difference it is another pair."""
 
 
 AXIS_MODE_SETTINGS = AxisModeSettings()
 
 
 class AxisPair(NamedTuple):
-    """A pair of eigenvalues: distance from the imaginary axis and frequency, with their derivatives with
-    respect to p."""
+    """A pair of eigenvalues: distance from the imaginary axis and frequency, both in 1/tau2, with their
+    derivatives (`slope`, `frequency_slope`) with respect to the path variable p."""
 
     distance: float
     slope: float
