@@ -77,19 +77,22 @@ def by_luck(w, rod):
 
 @pytest.mark.long
 def test_error_estimate_is_the_error_within_a_factor_of_ten(reference_spectra):
-    """Where the error is not small by luck; an error is never underestimated by more."""
-    compared = 0
+    """For a quarter of the eigenvalues: an error may be small by luck, so each is compared with rounding."""
+    ratios = []
     for point in reference_spectra:
-        result = solve_spectrum(rod_of(point), SpectrumRequest(4, 1e-5, True))
+        rod = rod_of(point)
+        result = solve_spectrum(rod, SpectrumRequest(4, 1e-5, True))
         exact = [mp.mpc(*parts) for parts in point["eigenvalues"][:4]]
-        pairs = zip(map(complex, result.eigenvalues), exact, strict=True)
-        error = np.array([float(abs(w - root)) for w, root in pairs])
-        assert (error <= 10 * result.error_estimate).all(), point
-        for w, e, estimate in zip(result.eigenvalues, error, result.error_estimate, strict=True):
-            if e > 4e-15 * abs(w) and e > by_luck(w, rod_of(point)):
-                assert estimate <= 10 * e, point
-                compared += 1
-    assert compared > 3
+        for w, root, estimate in zip(
+            map(complex, result.eigenvalues), exact, result.error_estimate, strict=True
+        ):
+            error = float(abs(w - root))
+            assert error <= estimate, point
+            assert estimate <= 20 * by_luck(w, rod), point
+            if estimate > 4e-14 * abs(w):
+                ratios.append(error / estimate)
+    assert len(ratios) > 3
+    assert np.quantile(ratios, 0.75) > 0.1, ratios
 
 
 def test_few_unknowns_suffice_for_every_accuracy(reference_spectra):
