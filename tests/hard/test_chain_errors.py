@@ -127,6 +127,7 @@ def test_errors_of_extrema_grow_with_the_last_harmonics():
     assert [broken_promises(found, accuracy) for found in cycles] == [[]] * 3
 
 
+@pytest.mark.long
 def test_errors_in_space_grow_with_the_element_on_which_the_cycle_depends():
     """The largest tail is that of the stiff segment, hardly grows, and hardly matters: the error of y at the
     last cycles was 2.3 times its estimate."""

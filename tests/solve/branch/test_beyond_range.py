@@ -225,6 +225,7 @@ def test_a_branch_that_enters_the_range_by_less_than_any_mesh_resolves_is_a_fail
     assert "no branch is followed through the fold at F = 85.6055767" in found.message
 
 
+@pytest.mark.long
 def test_a_branch_that_is_lost_beyond_the_range_leaves_the_row_undecided():
     request = BranchRequest("F", 88.04, 137.56, ACCURACY, False, 500, 50)
     (fold,) = solve_branches(RUBBER, request).folds_beyond
@@ -261,6 +262,7 @@ def test_a_branch_from_a_hopf_point_close_to_the_range_is_followed_from_the_end_
     assert sorted(stable) == [[0], [1]]
 
 
+@pytest.mark.long
 def test_branches_that_do_not_come_back_are_the_same_to_the_last_bit(within_only):
     for start, stop in ((0.0, 150.0), (0.0, 157.0)):
         within_only(False)

@@ -183,6 +183,7 @@ def test_branch_that_leaves_the_model_ends_where_h1_is_0():
     assert abs(end.parameter_value - finer.parameter_value) <= end.error + finer.error
 
 
+@pytest.mark.long
 def test_torus_point_lies_where_the_cycle_of_its_own_loses_its_stability():
     rod = Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2)
     curve = first_branch(rod, 207.0, 1e-5)

@@ -129,6 +129,7 @@ def test_a_branch_along_the_taper_ends_where_the_force_crushes_the_tip():
     assert end.parameter_value == pytest.approx((0.1 / (1 - 1e-4)) ** 0.5, rel=1e-6)
 
 
+@pytest.mark.long
 def test_cycles_are_the_same_whether_omega_is_an_unknown_or_eliminated():
     path = ParameterPath(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.33), "taper")
     (crossing,) = find_axis_crossings(path, 0.33, 0.45).thresholds
@@ -145,6 +146,7 @@ def test_cycles_are_the_same_whether_omega_is_an_unknown_or_eliminated():
     assert abs(one.tip_y_max - other.tip_y_max) <= one.tip_y_max_error + other.tip_y_max_error < 1e-5
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("stop", [1e9, 1e14, 1e300])
 def test_a_branch_along_a_stiffness_ends_almost_at_infinity(stop):
     """Steps beyond the end of the range reached negative compliances: "stopped" at k1 = -6e9."""
@@ -162,6 +164,7 @@ def test_a_branch_along_a_stiffness_ends_almost_at_infinity(stop):
     assert y[2] == pytest.approx(2 * y[1] - y[0], rel=1e-5)
 
 
+@pytest.mark.long
 def test_a_branch_of_a_cone_begins_at_almost_infinite_stiffness():
     """Differences between determinants of neighbouring arms took negative compliances: a traceback."""
     rod = Rod(F=80.0, k1=1e5, k2=11.94, gamma3=6.7e-4, gamma1=0.337, taper=0.5)

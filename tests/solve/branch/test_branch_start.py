@@ -52,6 +52,7 @@ NEAR_HOPF_POINTS = {
 accuracy."""
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("start", [0, 1])
 @pytest.mark.parametrize(
     ("rod", "ends", "accuracy", "folds"), NEAR_HOPF_POINTS.values(), ids=NEAR_HOPF_POINTS

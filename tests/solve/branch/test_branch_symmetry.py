@@ -156,6 +156,7 @@ def turned_back(here):
     return replace(here, derivatives=derivatives, previous=None)
 
 
+@pytest.mark.long
 def test_followed_back_the_branch_ends_where_it_was_born(known):
     here, _ = first_asymmetric_cycle(known.breakings[0], "F", ROUGH, known.workspace)
     for _ in range(2):

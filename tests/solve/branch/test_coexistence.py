@@ -357,6 +357,7 @@ def test_a_narrow_diagram_has_the_stable_states_of_a_wide_one(beyond):
     assert "branches that may enter the range are followed down to F = 0 and up to 180; cycles are" in told
 
 
+@pytest.mark.long
 def test_two_ranks_follow_the_same_branches_beyond_the_range(beyond):
     run = beyond("run", "beyond.yaml", "-o", "two.h5", ranks=2)
     assert run.returncode == 0, run.stderr
@@ -379,6 +380,7 @@ branch_search.follow_from_range_end = follow_or_die
 """
 
 
+@pytest.mark.long
 def test_a_run_killed_on_a_branch_from_beyond_resumes_to_the_same_file(beyond):
     """The first row is kept, the second one is killed."""
     assert beyond("run", "beyond.yaml", "-o", "killed.h5", patch=KILL_BEYOND).returncode == 9
@@ -388,6 +390,7 @@ def test_a_run_killed_on_a_branch_from_beyond_resumes_to_the_same_file(beyond):
     assert same(content(beyond.directory / "killed.h5"), content(beyond.directory / "beyond.h5"))
 
 
+@pytest.mark.long
 def test_where_no_stable_state_is_known_is_listed(beyond):
     view = read_view(beyond.directory / "beyond.h5")
     view.variables["stable_states"][..., 1] = StableStates.neither_known

@@ -40,6 +40,7 @@ def followed_down(rod, end, top, accuracy):
     return follow_branch(0, BranchLimits([hopf], (end, top), reasons, accuracy, 100, NewtonWorkspace()))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "rod, top, end, place",
     [

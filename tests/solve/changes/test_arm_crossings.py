@@ -52,6 +52,7 @@ ARM = Rod(
 UNIFORM_ROD = Rod(F=0.0, k1=300.0, k2=150.0, gamma3=1e-3)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("F_max", [150.0, 300.0])
 def test_a_stop_of_newtons_method_off_the_eigenvalues_is_no_crossing(F_max):
     """Newton's method for w, from the first guess on the axis, stops at a distance of a tenth of w."""
@@ -108,6 +109,7 @@ EXCHANGING_ARM = Rod(
 )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("F_max", [5.5, 8.0])
 def test_a_window_of_one_pair_less_between_two_pairs_that_exchange_their_parts_is_found(F_max):
     """Ten pairs grow before and after it, nine at F = 5.39."""

@@ -68,6 +68,7 @@ BESIDE_A_HOPF_POINT = [
 """Parameter, rod, range with one Hopf point, and numbers of unstable modes at both ends of the range."""
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("name", "rod", "ends", "counts"), BESIDE_A_HOPF_POINT)
 def test_a_search_that_starts_beside_a_hopf_point_is_proved(name, rod, ends, counts):
     """At the start a pair is so close to the axis that the unstable modes there cannot be counted."""

@@ -539,6 +539,7 @@ def test_a_slow_motion_near_a_fold_reaches_the_cycle_by_its_amplitude_equation()
         assert found.measures.tip_y_max == pytest.approx(0.0426912583, rel=1e-5)
 
 
+@pytest.mark.long
 def test_a_motion_that_is_slow_near_a_fold_is_said_to_be(monkeypatch):
     """Without the amplitude equation the motion above is not settled within 320 returns."""
     monkeypatch.setattr(transient_integration.AmplitudeEquation, "factor_to_slow_limit", lambda *_: None)

@@ -45,6 +45,7 @@ def falling_to(factor):
     return RodMaterial(profile=Profile((0.0, 0.5, 1.0), tuple(map(tuple, rows))))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("factor", [None, 0.01])
 def test_the_two_forms_have_the_same_cycle(factor):
     arm = replace(ROD, material=falling_to(factor)) if factor else ROD
@@ -65,6 +66,7 @@ def test_period_and_amplitude_are_linear_in_a_small_drag_down_to_none():
     assert small == pytest.approx(none + slope * drags[1], rel=1e-6)
 
 
+@pytest.mark.long
 def test_an_arm_whose_axial_drag_falls_to_little_beats():
     """From 1e-3 at the base to 1e-6 at the tip. In the form without v1 Newton's method found no cycle."""
     arm = replace(ROD, gamma1=1e-3, material=falling_to(1e-3))
@@ -159,6 +161,7 @@ def test_no_row_of_an_integrated_arm_has_less_rotational_drag_than_can_be_integr
     assert drags == pytest.approx([max(drag, least) for drag in given], rel=1e-12)
 
 
+@pytest.mark.long
 def test_an_arm_with_hardly_any_rotational_drag_near_its_tip_is_integrated():
     """Both ways to the cycle agree; the integrator found no time step with an acceptable error."""
     rows = [[1.0] * len(FACTOR_NAMES) for _ in range(4)]

@@ -58,6 +58,7 @@ def test_the_sign_of_a_growth_rate_is_sure_beyond_its_error(w, error, stable, gr
     assert doubt in rod.unproved_stability_text and bool(rod.unproved_stability_text) != bool(rod.stable)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("amplitude", [0.06, 0.1])
 def test_a_motion_that_decays_at_the_linear_rate_by_coincidence_is_not_straight(amplitude):
     """Below the fold of a subcritical branch the growth is g0 + c1 y^2 - c2 y^4, near y = 0.055 again g0. The

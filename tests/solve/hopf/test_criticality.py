@@ -85,6 +85,7 @@ def cycle_near(at, hopf, known, gamma1, part):
     return np.array([measures.tip_y_max**2, measures.frequency - hopf.frequency]) / (F - at.F)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "rod",
     [
