@@ -140,31 +140,33 @@ def _coefficients_with_errors(
     normal: NormalForm, landau_error: float, slope_error: float, force_error: float
 ) -> HopfCoefficients:
     """The coefficients of the normal form `normal` and their relative errors, from three relative errors:
-    `landau_error` of c, `slope_error` of dw/dF, and `force_error` of F."""
+    `landau_error` of c, `slope_error` of dw/dF, and `force_error` of F. Errors of a and b are infinite if
+    Re c = 0 after rounding, as it happens at a generalised Hopf point."""
     c = normal.landau
     slope = normal.eigenvalue_slope
     absolute_slope_error = slope_error * abs(slope)
     absolute_c_error = landau_error * abs(c)
-    frequency_ratio = c.imag / c.real
     a = normal.amplitude_coefficient
     b = normal.frequency_slope
-    # b = Im w' - ratio Re w': an error d of w' changes b by Im d - ratio Re d, at most |d| hypot(1, ratio).
-    absolute_b_error = math.hypot(1, frequency_ratio) * (
-        absolute_slope_error + abs(slope.real / c.real) * absolute_c_error
-    )
+    a_error = absolute_b_error = math.inf
+    if c.real != 0:
+        # b = Im w' - r Re w', r = Im c/Re c: an error d of w' changes b by at most |d| hypot(1, r).
+        absolute_b_error = math.hypot(1, c.imag / c.real) * (
+            absolute_slope_error + abs(slope.real / c.real) * absolute_c_error
+        )
+    if c.real != 0 and slope.real != 0:
+        # Half of the sum, because a is a square root.
+        a_error = absolute_slope_error / abs(slope.real) + absolute_c_error / abs(c.real) + force_error
+        a_error /= 2
     return HopfCoefficients(
         growth_slope=slope,
         growth_slope_error=slope_error,
         landau=c,
         landau_error=landau_error,
         amplitude_coefficient=a,
-        # Half of the sum, because a is a square root.
-        amplitude_coefficient_error=(
-            absolute_slope_error / abs(slope.real) + absolute_c_error / abs(c.real) + force_error
-        )
-        / 2,
+        amplitude_coefficient_error=a_error,
         frequency_slope=b,
-        frequency_slope_error=absolute_b_error / abs(b) if b else math.inf,
+        frequency_slope_error=absolute_b_error / abs(b) if 0 < abs(b) < math.inf else math.inf,
         elements=normal.form.mesh.element_count,
         order=normal.form.mesh.order,
     )

@@ -102,15 +102,19 @@ class NormalForm:
     @property
     def amplitude_coefficient(self) -> float:
         """Amplitude coefficient a, in L, of a Hopf point at the force F: the cycle at a nearby force F' has a
-        largest tip y of |a| sqrt(|F' - F|/|F|). a < 0 if the cycles exist at F' < F, otherwise a > 0."""
-        squared_amplitude = -self.eigenvalue_slope.real / self.landau.real
+        largest tip y of |a| sqrt(|F' - F|/|F|). a < 0 if the cycles exist at F' < F, otherwise a > 0.
+        Infinite if Re c = 0."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            squared_amplitude = -self.eigenvalue_slope.real / np.float64(self.landau.real)
         return float(np.sign(squared_amplitude) * abs(self.F * squared_amplitude) ** 0.5)
 
     @property
     def frequency_slope(self) -> float:
         """Frequency slope b of a Hopf point at the force F: the cycle at a nearby force F' has the frequency
-        Im w + b (F' - F), in 1/tau2."""
-        return self.eigenvalue_slope.imag - self.landau.imag * self.eigenvalue_slope.real / self.landau.real
+        Im w + b (F' - F), in 1/tau2. Infinite if Re c = 0."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            shift = self.landau.imag * self.eigenvalue_slope.real / np.float64(self.landau.real)
+        return float(self.eigenvalue_slope.imag - shift)
 
     def squared_y_and_frequency(self, F: float) -> tuple[float, float]:
         """(squared largest tip y in L^2, frequency in 1/tau2) of the cycle at a force F near `self.F`. The

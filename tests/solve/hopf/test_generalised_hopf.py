@@ -17,7 +17,7 @@ from rodsweep.post.figures.stability.criticality_curves import parts_of_equal_cr
 from rodsweep.post.plane_curves import PlaneParameters
 from rodsweep.results.file.view import read_view
 from rodsweep.solve.changes.diagram.boundary_curves import trace_boundary
-from rodsweep.solve.hopf import bautin_points
+from rodsweep.solve.hopf import bautin_points, hopf_coefficients
 from rodsweep.solve.hopf.bautin_curves import (
     BautinCurvePoint,
     BautinEndReason,
@@ -159,6 +159,27 @@ def test_a_change_that_cannot_be_located_is_counted(found, monkeypatch):
     again = curve_criticality(plane, curve, 1e-10)
     assert (again.points, again.unlocated_count) == ((), 1)
     assert np.array_equal(again.criticality, told.criticality)
+
+
+def test_a_point_is_located_if_rounding_makes_Re_c_exactly_zero(found, monkeypatch):
+    """Re c, rounded to 1e-9, is 0 near the zero, where Brent's method evaluates the normal form. The
+    amplitude coefficient is infinite there."""
+    plane, curve, located = found
+    normal_form = hopf_coefficients.normal_form_on
+    zeros = []
+
+    def rounded(*arguments):
+        form = normal_form(*arguments)
+        c = complex(round(form.landau.real, 9), form.landau.imag)
+        zeros.extend([replace(form, landau=c)] if c.real == 0 else [])
+        return replace(form, landau=c)
+
+    monkeypatch.setattr(hopf_coefficients, "normal_form_on", rounded)
+    again = curve_criticality(plane, curve, 1e-10)
+    assert again.unlocated_count == 0
+    assert again.points[0].values == pytest.approx(located.points[0].values, rel=1e-10)
+    assert np.isinf(zeros[0].amplitude_coefficient)
+    assert np.isinf(zeros[0].frequency_slope)
 
 
 def test_a_point_within_the_error_of_the_change_is_undecided_and_brackets_nothing(found):
