@@ -8,6 +8,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from test_paper import stated
 
+import rodsweep as rs
 from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.model.rod import Rod
 from rodsweep.post.branch_curves import StoredBranch, StoredSpecialPoint
@@ -102,6 +103,17 @@ def test_stable_cycles_lose_their_symmetry_and_those_without_it_turn_at_a_fold(s
     turn = fold.index_of_cycle_before + 1
     assert {point.unstable_count for point in asymmetric.points[:turn]} - {-1} == {1}
     assert {point.unstable_count for point in asymmetric.points[turn:]} - {-1} == {0}
+
+
+def test_symmetry_breaks_for_a_stretchable_rod_that_is_almost_crushed():
+    """At the reference, by Chebyshev collocation of the strains in space and Radau collocation in time of
+    another code, the map of half a period and reflection has the multiplier -1 within 5e-10, so that the
+    force is accurate to 3e-8."""
+    rod = rs.Rod(k1=124, k2=2e4, gamma3=0.021, gamma1=0.65)
+    branch = rod.branch(start=50, stop=110, accuracy=1e-5)
+    breakings = branch.special_points[branch.special_points.special_kind == "symmetry_breaking"]
+    assert breakings.special_at.to_numpy() == pytest.approx(107.636174, abs=1e-6)
+    assert len(breakings) == 2  # an end of the branch without symmetry, and a point of the one with it
 
 
 @pytest.mark.long
