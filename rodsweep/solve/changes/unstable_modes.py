@@ -23,6 +23,9 @@ class UnstableModeCountSettings:
     min_relative_crossing_distance: float = 1e-3
     """Modes are not counted between two crossings at path variables a < b if (b - a)/|b| is at most this
     number, because a pair is then too close to the imaginary axis."""
+    strip_half_width: float = 1e-5
+    """Distance from the imaginary axis, divided by a pair's frequency, at which modes are counted on both
+    sides of the pair. The count on the axis is undecided for pairs within some 1e-6."""
 
 
 UNSTABLE_MODE_COUNT_SETTINGS = UnstableModeCountSettings()
@@ -62,6 +65,17 @@ class UnstableModeCounter:
                 return number
         return -1
 
+    def count_beside_pair(self, a: float, b: float, frequency: float, expected: int) -> int:
+        """`expected`, if counts on both sides of the imaginary axis show that in the middle between the
+        parameter values a and b exactly one pair is near the axis, and that with or without this pair
+        `expected` modes are unstable; otherwise -1. frequency of the pair, in 1/tau2."""
+        distance = UNSTABLE_MODE_COUNT_SETTINGS.strip_half_width * frequency
+        middle = self.path.coordinate((a + b) / 2)
+        right = self.problem.count_right_of(distance, middle).number
+        left = self.problem.count_right_of(-distance, middle).number
+        is_one_pair = right is not None and left == right + 2
+        return expected if is_one_pair and expected in (right, left) else -1
+
     def count_at_start(self, start: float, stop: float, crossings: list[Threshold]) -> int:
         """Number of unstable modes at `start`, before all crossings `crossings` of the imaginary axis. If the
         count at `start` is undecided, as for a pair close to the axis, the number follows from a count before
@@ -97,23 +111,27 @@ class UnstableModeCounter:
         self.doubts = []
         counted_thresholds: list[Threshold] = []
         start = parameter_ends[0]
+        frequency = 0.0
         for crossing in ordered_thresholds:
             kind = crossing.kind
             # Exchanges of the leading eigenvalue do not move an eigenvalue across the axis.
             if kind in (ThresholdKind.hopf, ThresholdKind.hopf_reverse):
-                unstable_count = self._count_before(start, crossing.value, unstable_count)
+                frequency = crossing.frequency
+                unstable_count = self._count_before(start, crossing.value, unstable_count, frequency)
                 start = crossing.value
                 if unstable_count >= 0:
                     unstable_count += _change_of_count(kind)
                 if kind == ThresholdKind.hopf_reverse and unstable_count == 0:
                     kind = ThresholdKind.restabilization
             counted_thresholds.append(replace(crossing, kind=kind, unstable_after=unstable_count))
-        return tuple(counted_thresholds), self._count_before(start, parameter_ends[1], unstable_count)
+        end = parameter_ends[1]
+        return tuple(counted_thresholds), self._count_before(start, end, unstable_count, frequency)
 
-    def _count_before(self, a: float, b: float, unstable_count: int) -> int:
+    def _count_before(self, a: float, b: float, unstable_count: int, frequency: float) -> int:
         """Number of unstable modes just before b: `unstable_count`, the number just after a, compared with a
         count between a and b if `certify`; a contradiction is added to `doubts`. If a gap lies between a and
-        b, the result is the number counted behind the gap, or -1 if undecided."""
+        b, the result is the number counted behind the gap, or -1 if undecided. frequency, in 1/tau2: of the
+        pair that crosses the axis at b, or before; 0 if there is no crossing."""
         gaps_between = [gap for gap in self.gaps if gap[1] > a and gap[0] < b]
         if gaps_between:
             # A gap may hide crossings, so the modes are counted again after the gap.
@@ -127,6 +145,9 @@ class UnstableModeCounter:
         count = self.count_between(a, b)
         if gaps_between or unstable_count < 0:
             return count
+        # Between two close Hopf points their pair may be too near the axis at all positions.
+        if count < 0 and frequency:
+            count = self.count_beside_pair(a, b, frequency, unstable_count)
         if count != unstable_count:
             undecided_text = "the count of unstable modes is undecided"
             count_text = f"{count} modes are unstable" if count >= 0 else undecided_text
