@@ -4,9 +4,10 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from scipy.interpolate import PchipInterpolator
 
 from rodsweep.determinant.arm.elements.edges import sum_and_remainder
-from rodsweep.model.material.factors import factors_along
+from rodsweep.model.material.factors import factors_along, smallest_factor_along
 from rodsweep.model.material.profile import FACTOR_NAMES, Profile
 from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
@@ -28,6 +29,19 @@ def test_factors_meet_the_rows_and_stay_between_them():
         assert min(low, high) <= between.min() and between.max() <= max(low, high)
     slopes = np.diff(values) / np.diff(inside)
     assert np.abs(np.diff(slopes)).max() < 0.2  # no corner: a chord's slope jumps by 15 at u = 0.2
+
+
+@pytest.mark.parametrize("rows", [3, 4, 9])
+def test_factors_are_the_monotone_cubics_of_scipy(rows):
+    """As docs/howto/shaped-arms.md says, on both sides of a jump."""
+    rng = np.random.default_rng(rows)
+    part = np.concatenate([[0.0], np.sort(rng.uniform(0.1, 0.9, rows - 2)), [1.0]]) / 2
+    k3 = np.exp(rng.uniform(-3, 3, 2 * rows))
+    table = profile([*part, *(0.5 + part)], k3)
+    for shift, values in ((0.0, k3[:rows]), (0.5, k3[rows:])):
+        u = shift + np.linspace(0, 0.5, 203)[1:-1]
+        factors = table.factors_at(u)[FACTOR_NAMES.index("k3")]
+        np.testing.assert_allclose(factors, PchipInterpolator(part + shift, values)(u), rtol=1e-12)
 
 
 @pytest.mark.parametrize("k3", [(1e3, 1e-3), (1e-3, 1e3), (1e3, 1e-3, 1.0), (1.0, 1e3, 1e-3)])
@@ -155,3 +169,24 @@ def test_factors_keep_their_digits_close_to_a_row():
     factor = factors_along(table, 1.0, u, remainder)["k3"][0]
     assert factor == pytest.approx(float(exact), rel=1e-14, abs=0)
     assert factors_along(table, 1.0, u)["k3"][0] != pytest.approx(float(exact), rel=1e-12, abs=0)
+
+
+@pytest.mark.parametrize("taper", [0.35, 1.34])
+def test_the_weakest_section_between_two_rows_is_exact(taper):
+    """The product of a cubic polynomial and the square of a radius has its minimum between the rows; a search
+    among samples found a crushing force 4e-5 too large."""
+    u, k1 = (0.0, 0.1, 0.1, 0.4, 1.0), (2.0, 2.2, 2.6, 0.24, 1.1)
+    table = Profile(u, tuple((k, 1.0, 1.0, 1.0, 1.0, 1.0) for k in k1))
+    # Between samples the minimum is lower by less than the square of their distance times the curvature.
+    points = np.linspace(0, 1, 1_000_003)[1:-1]
+    sampled = (factors_along(table, taper, points)["k1"]).min()
+    assert smallest_factor_along(table, taper, "k1") == pytest.approx(sampled, rel=1e-9)
+    assert smallest_factor_along(table, taper, "k1") <= sampled
+
+
+def test_the_smallest_factor_of_extreme_tables_is_found():
+    for k1 in ((1e300, 1e-300), (1e-300, 1e300, 1.0), (1.0, 1.0, 1.0), (1e-310, 1.0, 5.0)):
+        rows = tuple((k, 1.0, 1.0, 1.0, 1.0, 1.0) for k in k1)
+        table = Profile(tuple(np.linspace(0, 1, len(k1)).tolist()), rows)
+        assert smallest_factor_along(table, 1.0, "k1") == min(k1)
+        assert 0 < smallest_factor_along(table, 0.01, "k1") <= min(k1)

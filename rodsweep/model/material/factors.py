@@ -8,9 +8,6 @@ import numpy as np
 from ...arrays import Array
 from .profile import FACTOR_NAMES, RADIUS_POWERS, Profile, relative_radius
 
-FACTOR_SAMPLE_COUNT = 256
-"""Number of samples between two neighbouring breaks of a profile in the search for the smallest factor."""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FactorCacheSettings:
@@ -78,12 +75,11 @@ def smallest_factor_along(profile: Profile | None, taper: float, name: str) -> f
     if profile is None:
         return smallest_end_factor
     column = FACTOR_NAMES.index(name)
-    row_factors = [
-        relative_radius(taper, u) ** exponent * row[column]
-        for u, row in zip(profile.u, profile.rows, strict=True)
-    ]
-    # The product of a cubic and a power may have a minimum between rows, which only samples find.
-    fractions = (np.arange(FACTOR_SAMPLE_COUNT) + 0.5) / FACTOR_SAMPLE_COUNT
-    points = (profile.breaks[:-1, None] + np.diff(profile.breaks)[:, None] * fractions).ravel()
-    factors_between_rows = relative_radius(taper, points) ** exponent * profile.factors_at(points)[column]
-    return min(*row_factors, float(factors_between_rows.min()))
+    with np.errstate(over="ignore"):  # an overflow is not the smallest factor
+        row_factors = [
+            relative_radius(taper, u) ** exponent * row[column]
+            for u, row in zip(profile.u, profile.rows, strict=True)
+        ]
+        points = profile.minima_between_rows(name, taper, min(row_factors))
+        factors_between_rows = relative_radius(taper, points) ** exponent * profile.factors_at(points)[column]
+    return float(min(*row_factors, *factors_between_rows))

@@ -125,6 +125,28 @@ class Profile:
             rows.append(row[:column] + (factor,) + row[column + 1 :])
         return Profile(self.u, tuple(rows))
 
+    def minima_between_rows(self, name: str, taper: float, limit: float) -> Array:
+        """Points u between rows, (points,), among them all minima of the stiffness or drag `name` of an arm
+        that are below `limit`. taper: tip radius over base radius of the arm."""
+        column, exponent = FACTOR_NAMES.index(name), RADIUS_POWERS.get(name, 0)
+        radii = relative_radius(taper, self.breaks)
+        points = [np.empty(0)]
+        for i, (cubic, from_upper) in enumerate(self._cubic_coefficients[:, column].transpose(2, 1, 0)):
+            first_radius, last_radius = radii[i : i + 2]
+            # The cubic is monotone, so no product is below that of the smaller ends.
+            if min(cubic[-1], from_upper[-1]) * min(first_radius, last_radius) ** exponent >= limit:
+                continue
+            c, slope = cubic / np.abs(cubic).max(), last_radius - first_radius
+            # (c r^n)' = r^(n - 1) (c' r + n c r'), where c' r + n c r' is a cubic polynomial.
+            derivative = np.polyadd(np.polymul(np.polyder(c), (slope, first_radius)), exponent * slope * c)
+            # Coefficients below rounding move no root between the rows, but make the others overflow.
+            derivative[np.abs(derivative) <= np.finfo(float).eps * np.abs(derivative).max()] = 0.0
+            t = np.roots(derivative).real
+            a, b = self.breaks[i : i + 2]
+            points.append(a + (b - a) * t[(t > 0) & (t < 1)])
+        u = np.concatenate(points)
+        return u[~np.isin(u, self.breaks)]
+
     def factors_at(self, u: Array, remainder: Array | float = 0.0) -> Array:
         """Factors at points u, in the order of `FACTOR_NAMES`, (factors, *u.shape). No u may be a break.
         remainder: exact coordinates of the points minus u, (*u.shape)."""
