@@ -114,17 +114,21 @@ def _differences_between_meshes(
 def parameter_sensitivities(motion: CycleMotion, derivatives: BranchDerivatives) -> tuple[float, float]:
     """Sensitivities |(p/y) dy/dp| of the largest tip y and |(p/T) dT/dp| of the period T to the parameter p
     along a branch at the cycle `motion`. derivatives: derivatives of the branch at this cycle."""
-    orbit: Orbit = motion.orbit
-    name = derivatives.scale.parameter_name
-    step = BRANCH_ERROR_SETTINGS.sensitivity_arc_length * derivatives.tangent
-    if 0 <= orbit.form.rod.coordinate(name) < -step[-1]:  # no rod has a negative coordinate
-        step = -step
-    try:
-        moved_motion = CycleMotion(moved_orbit(orbit, name, step))
-    except Unsolvable:  # at the end of a branch the force crushes the rod ahead, but not the rod behind
-        moved_motion = CycleMotion(moved_orbit(orbit, name, -step))
+    moved_motion = motion_ahead(motion.orbit, derivatives.scale.parameter_name, derivatives.tangent)
     y = motion.extrema["tip_y_max"]
     moved_y = moved_motion.extrema["tip_y_max"]
     parameter_rate = max(abs(derivatives.parameter_rate), EXPONENT_SETTINGS.min_divisor)
     y_rate = abs((moved_y - y) / (BRANCH_ERROR_SETTINGS.sensitivity_arc_length * y))
     return y_rate / parameter_rate, abs(float(derivatives.unit_tangent[1])) / parameter_rate
+
+
+def motion_ahead(orbit: Orbit, name: str, tangent: Array) -> CycleMotion:
+    """The motion of the orbit moved over `sensitivity_arc_length` along the tangent of its branch, (N + 1,),
+    or against it if no rod has the parameters ahead; raises Unsolvable. name: name of the parameter."""
+    step = BRANCH_ERROR_SETTINGS.sensitivity_arc_length * tangent
+    if 0 <= orbit.form.rod.coordinate(name) < -step[-1]:  # no rod has a negative coordinate
+        step = -step
+    try:
+        return CycleMotion(moved_orbit(orbit, name, step))
+    except Unsolvable:  # at the end of a branch the force crushes the rod ahead, but not the rod behind
+        return CycleMotion(moved_orbit(orbit, name, -step))

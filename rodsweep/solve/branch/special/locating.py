@@ -23,7 +23,15 @@ from ..bordered.scale import ArcLengthScale
 from .augmented.fold_and_torus_functions import TorusTestFunction, correct_until_converged
 from .branch_segment import BranchSegment
 from .special_point import SPECIAL_POINT_SETTINGS, SpecialKind, SpecialPoint
-from .special_point_errors import first_mesh, next_mesh, unlocated_point, with_mesh_errors
+from .special_point_errors import (
+    ZeroOnMesh,
+    first_mesh,
+    next_mesh,
+    parameter_difference,
+    special_point_at,
+    unlocated_point,
+    with_mesh_errors,
+)
 
 
 def kind_at_minus_one(orbit: Orbit) -> SpecialKind:
@@ -109,33 +117,31 @@ def _point_near(
     larger error if no allowed mesh suffices or the limit of the work is reached; raises Unsolvable. guess:
     (arc length near the point, slope of the test function there)."""
     length, slope = guess
-    start, end = segment.start, segment.end
-    mesh = first_mesh(end.calibration, required_accuracy)
+    name = segment.start.scale.parameter_name
+    mesh = first_mesh(segment.end.calibration, required_accuracy)
     point: SpecialPoint | None = None
+    zero: ZeroOnMesh | None = None
     for comparison_index in range(SPECIAL_POINT_SETTINGS.max_mesh_comparisons + 1):
         segment.mesh = mesh
+        coarser_point, coarser_zero = point, zero
         try:
-            length, orbit, slope = _zero_by_secants(kind, segment, length, slope)
+            zero = _zero_by_secants(kind, segment, length, slope)
         except WorkLimitReached:
             if point is None or np.isnan(point.error):
                 raise
             break  # the point on coarser meshes, with its measured error
-        coarser_point = point
-        point = SpecialPoint(
-            kind=kind,
-            parameter_value=getattr(orbit.form.rod, start.scale.parameter_name),
-            period=orbit.period,
-            tip_y_max=CycleMotion(orbit).extrema["tip_y_max"],
-            error=np.nan,
-            orbit=orbit,
-        )
-        required_error = required_accuracy * abs(point.parameter_value)
-        if coarser_point is not None:
-            point = with_mesh_errors(point, coarser_point, start, end)
-            if point.error <= required_error:
+        length, slope = zero.length, zero.slope
+        point = special_point_at(kind, zero, name)
+        difference_ratio = 1.0
+        if coarser_point is not None and coarser_zero is not None:
+            difference_ratio = parameter_difference(point, coarser_point) / (
+                required_accuracy * abs(point.parameter_value)
+            )
+            point = with_mesh_errors(point, coarser_point, (coarser_zero, zero), segment, required_accuracy)
+            if difference_ratio <= 1:
                 break
         # Every second mesh is chosen from the measured error; the mesh after it is only slightly finer.
-        mesh = next_mesh(mesh, point.error / required_error if comparison_index % 2 else 1.0)
+        mesh = next_mesh(mesh, difference_ratio if comparison_index % 2 else 1.0)
         if not mesh.is_allowed:
             break
     if point is None or np.isnan(point.error):
@@ -167,12 +173,9 @@ def _bracketed_zero(kind: SpecialKind, segment: BranchSegment) -> tuple[float, f
     return zero_length - values[zero_length] / slope, slope
 
 
-def _zero_by_secants(
-    kind: SpecialKind, segment: BranchSegment, guess: float, slope: float
-) -> tuple[float, Orbit, float]:
-    """(arc length of the zero of the test function near `guess`, cycle at this zero, slope of the test
-    function), by the secant method on `segment`; raises Unsolvable. slope: approximate slope, for the first
-    step."""
+def _zero_by_secants(kind: SpecialKind, segment: BranchSegment, guess: float, slope: float) -> ZeroOnMesh:
+    """The zero of the test function near the arc length `guess`, by the secant method on `segment`; raises
+    Unsolvable. slope: approximate slope, for the first step."""
     max_step_ratio = (
         SPECIAL_POINT_SETTINGS.max_last_secant_step_per_branch_step_at_fold
         if kind == SpecialKind.fold
@@ -201,7 +204,8 @@ def _zero_by_secants(
             change = step * tangent
             if kind == SpecialKind.fold:
                 change[-1] /= 2  # the derivative of the parameter decreases linearly to 0 along the step
-            return length + step, moved_orbit(orbit, segment.start.scale.parameter_name, change), slope
+            moved = moved_orbit(orbit, segment.start.scale.parameter_name, change)
+            return ZeroOnMesh(length + step, moved, slope, step)
         previous_point = length, test_value
         length += step
     raise Unsolvable("the secant method for the special point does not converge")

@@ -2,49 +2,130 @@
 the meshes on which special points are located."""
 
 from dataclasses import replace
-from math import ceil, log
+from math import ceil, exp, log, nan
+from typing import NamedTuple
 
+import numpy as np
+
+from ....arrays import Array
+from ...orbit.measures import CycleMotion
 from ...orbit.mesh_choice import cheapest_stage_count
-from ...orbit.orbit_mesh import OrbitMesh
+from ...orbit.orbit import Orbit
+from ...orbit.orbit_mesh import OrbitMesh, mesh_of
+from ...orbit.path_differences import PERIOD_INDEX
 from ..arc_length_step import BranchCycle
+from ..branch_error_measurement import motion_ahead
 from ..branch_errors import BranchCalibration
+from ..settings import BRANCH_ERROR_SETTINGS
+from .branch_segment import BranchSegment
 from .special_point import SPECIAL_POINT_SETTINGS, SpecialKind, SpecialPoint
 
 
+class ZeroOnMesh(NamedTuple):
+    """Zero of a test function on a mesh, by the secant method. length: arc length of the zero on its segment.
+    orbit: cycle at the zero. slope: slope of the test function. last_step: length of the last secant step,
+    over which the cycle is moved along its tangent."""
+
+    length: float
+    orbit: Orbit
+    slope: float
+    last_step: float
+
+
+def special_point_at(kind: SpecialKind, zero: ZeroOnMesh, parameter_name: str) -> SpecialPoint:
+    """The special point of a kind at a zero, without errors, along the parameter `parameter_name`."""
+    return SpecialPoint(
+        kind=kind,
+        parameter_value=getattr(zero.orbit.form.rod, parameter_name),
+        period=zero.orbit.period,
+        tip_y_max=CycleMotion(zero.orbit).extrema["tip_y_max"],
+        error=nan,
+        orbit=zero.orbit,
+    )
+
+
+def parameter_difference(point: SpecialPoint, coarser_point: SpecialPoint) -> float:
+    """Difference between the parameters of a special point on two meshes, with a safety factor and the
+    rounding error."""
+    difference = abs(point.parameter_value - coarser_point.parameter_value)
+    rounding_error = SPECIAL_POINT_SETTINGS.rounding_error * abs(point.parameter_value)
+    return SPECIAL_POINT_SETTINGS.error_factor * difference + rounding_error
+
+
 def with_mesh_errors(
-    point: SpecialPoint, coarser_point: SpecialPoint, start: BranchCycle, end: BranchCycle
+    point: SpecialPoint,
+    coarser_point: SpecialPoint,
+    zeros: tuple[ZeroOnMesh, ZeroOnMesh],
+    segment: BranchSegment,
+    accuracy: float,
 ) -> SpecialPoint:
-    """The special point with errors: its differences from `coarser_point`, the same point on a coarser mesh,
-    times a safety factor. The errors of period and largest tip y include a fraction of their difference
-    between `start` and `end`, the cycles before and after the point: for the error of the last secant step,
-    and, except at a fold, for the error of the parameter."""
-    error = SPECIAL_POINT_SETTINGS.error_factor * abs(
-        point.parameter_value - coarser_point.parameter_value
-    ) + SPECIAL_POINT_SETTINGS.rounding_error * abs(point.parameter_value)
-    secant_error = SPECIAL_POINT_SETTINGS.secant_error_per_branch_step_at_fold
-    if point.kind is not SpecialKind.fold:
-        # Period and tip y of two meshes may agree by coincidence, although the parameter does not.
-        name = start.scale.parameter_name
-        difference = abs(getattr(start.orbit.form.rod, name) - getattr(end.orbit.form.rod, name))
-        slope_error = (
-            SPECIAL_POINT_SETTINGS.max_slope_per_chord_slope * error / difference if difference else 1.0
-        )
-        secant_error = SPECIAL_POINT_SETTINGS.secant_error_per_branch_step + min(slope_error, 1.0)
-    start_measures = start.cycle.measures
-    end_measures = end.cycle.measures
-    factor = SPECIAL_POINT_SETTINGS.error_factor
-    period_error = factor * abs(point.period - coarser_point.period) + secant_error * abs(
-        start_measures.period - end_measures.period
+    """The special point with errors: the error of the mesh, from the differences from `coarser_point`, the
+    same point on a coarser mesh; except for the parameter at a fold, also the error of the zero on this mesh.
+    zeros: zeros on both meshes, the coarser first. accuracy: relative accuracy of the parameter. Only if both
+    meshes agree within it, the errors are assumed to decrease as `_remaining_error_factor` says."""
+    coarser_zero, zero = zeros
+    values, coarser_values = (
+        np.array([each.parameter_value, each.period, each.tip_y_max]) for each in (point, coarser_point)
     )
-    tip_y_error = factor * abs(point.tip_y_max - coarser_point.tip_y_max) + secant_error * abs(
-        start_measures.tip_y_max - end_measures.tip_y_max
+    rates = np.abs(_numbers_ahead(zero, segment) - values) / BRANCH_ERROR_SETTINGS.sensitivity_arc_length
+    if point.kind is SpecialKind.fold:
+        rates[0] = 0.0
+    # Numbers of two meshes may agree by coincidence, although the cycles at the special point differ.
+    differences = np.max(
+        [
+            np.abs(values - coarser_values),
+            rates * abs(zero.length - coarser_zero.length),
+            SPECIAL_POINT_SETTINGS.min_difference_ratio * accuracy * np.abs(values),
+        ],
+        axis=0,
     )
+    is_accurate = parameter_difference(point, coarser_point) <= accuracy * abs(point.parameter_value)
+    factor = _remaining_error_factor(coarser_zero, zero, segment) if is_accurate else 1.0
+    # The slope of a secant between two nearby cycles may be rounding error; on two meshes it hardly is.
+    slope = min(abs(zero.slope), abs(coarser_zero.slope))
+    zero_error = (
+        SPECIAL_POINT_SETTINGS.relative_slope_error * abs(zero.last_step)
+        + _test_function_error(point.kind) / slope
+    )
+    errors = SPECIAL_POINT_SETTINGS.error_factor * (factor * differences + rates * zero_error)
+    errors += SPECIAL_POINT_SETTINGS.rounding_error * np.abs(values)
     return replace(
         point,
-        error=error,
-        period_error=period_error / point.period + SPECIAL_POINT_SETTINGS.rounding_error,
-        tip_y_max_error=tip_y_error / point.tip_y_max + SPECIAL_POINT_SETTINGS.rounding_error,
+        error=float(errors[0]),
+        period_error=float(errors[1] / values[1]),
+        tip_y_max_error=float(errors[2] / values[2]),
     )
+
+
+def _test_function_error(kind: SpecialKind) -> float:
+    """Error of the test function of special points of a kind at a cycle."""
+    # Only the test functions of folds and torus points are corrected by iteration.
+    if kind in (SpecialKind.fold, SpecialKind.torus):
+        return SPECIAL_POINT_SETTINGS.test_function_change_tolerance
+    return SPECIAL_POINT_SETTINGS.test_function_rounding_error
+
+
+def _numbers_ahead(zero: ZeroOnMesh, segment: BranchSegment) -> Array:
+    """Parameter, period and largest tip y, (3,), of a cycle beside the zero that was found last on `segment`,
+    at the distance `sensitivity_arc_length` along its tangent."""
+    name = segment.start.scale.parameter_name
+    motion = motion_ahead(zero.orbit, name, segment.last_solved_cycle[2])
+    value = getattr(motion.orbit.form.rod, name)
+    return np.array([value, motion.orbit.period, motion.extrema["tip_y_max"]])
+
+
+def _remaining_error_factor(coarser_zero: ZeroOnMesh, zero: ZeroOnMesh, segment: BranchSegment) -> float:
+    """Assumed error on the finer mesh, divided by the difference between both meshes: q/(1 - q), q: ratio of
+    the errors on the two meshes, in space or in time, whichever is larger."""
+    coarser_mesh, mesh = mesh_of(coarser_zero.orbit), mesh_of(zero.orbit)
+    measured_decay = float(segment.end.calibration.at_equal_parameter.space_decay[PERIOD_INDEX])
+    decay = max(measured_decay, SPECIAL_POINT_SETTINGS.space_decay)
+    order = SPECIAL_POINT_SETTINGS.time_order_per_stage_in_errors * mesh.stage_count
+    ratio = max(
+        exp(decay * (coarser_mesh.order - mesh.order)),
+        (coarser_mesh.interval_count / mesh.interval_count) ** order,
+    )
+    return ratio / (1 - ratio)
 
 
 def unlocated_point(kind: SpecialKind, start: BranchCycle, end: BranchCycle, message: str) -> SpecialPoint:
