@@ -21,7 +21,6 @@ from ..model.material.rod_material import CrossSections, RodMaterial
 from ..model.rod import Rod
 from .elements.elements import ELEMENT_SETTINGS
 from .elements.mesh import Mesh
-from .elements.quadrature import gauss_lobatto_rule
 from .nodal_rod import NO_JUMP_DERIVATIVE, NO_JUMPS, IntegerArray, Jumps
 
 
@@ -158,6 +157,5 @@ class OneSidedNodePoints(NamedTuple):
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def _points_of_nodes(mesh: Mesh) -> OneSidedNodePoints:
     """The `OneSidedNodePoints` of a mesh, cached."""
-    parts = zip(mesh.lengths, mesh.orders, strict=True)
-    weights = np.concatenate([length / 2 * gauss_lobatto_rule(order)[1] for length, order in parts])
+    weights = np.concatenate(mesh.quadrature_of_elements)
     return OneSidedNodePoints(np.unique(mesh.element_nodes, return_index=True)[1], weights)

@@ -8,6 +8,11 @@ from numpy.polynomial import Polynomial
 
 from rodsweep.discretization.elements.basis import differentiation_matrix, lagrange_interpolation_matrix
 from rodsweep.discretization.elements.mesh import mesh_with_edges, shape_from_strains, uniform_mesh
+from rodsweep.discretization.elements.node_spacing import (
+    halved_spacing_ratios,
+    position_slopes,
+    spaced_coordinates,
+)
 from rodsweep.discretization.elements.quadrature import gauss_legendre_rule, gauss_lobatto_rule
 from rodsweep.discretization.elements.resolution import (
     RESOLUTION_SETTINGS,
@@ -130,7 +135,35 @@ def test_elements_of_unequal_orders_are_exact_for_polynomials_of_these_orders():
     assert sent.matrices.D.tobytes() == grid.matrices.D.tobytes()
 
 
-@pytest.mark.parametrize("grid", [uniform_mesh(1, 15), uniform_mesh(3, 6), UNEQUAL_ORDERS])
+SPACED = mesh_with_edges((0.0, 0.4, 1.0), 18, (0.75, 1.0), (2.5, 0.25))
+
+
+def test_spaced_nodes_keep_the_accuracy_of_equally_spaced_ones():
+    """Positions, quadrature, slopes and interpolation of a smooth field; nodes are closer where s says so."""
+    u = np.linspace(0, 1, 29)
+    values = np.sin(3 * SPACED.node_positions)
+    assert SPACED.quadrature @ values == pytest.approx((1 - np.cos(3)) / 3, abs=1e-12)
+    assert np.abs(SPACED.matrices.D @ values - 3 * np.cos(3 * SPACED.node_positions)).max() < 1e-7
+    assert np.abs(SPACED.evaluation_matrix(u) @ values - np.sin(3 * u)).max() < 1e-10
+    assert np.abs(SPACED.evaluation_matrix(SPACED.node_positions) - np.eye(len(values))).max() < 1e-12
+    for nodes, s in zip(SPACED.node_ranges, SPACED.spacing_ratios, strict=True):
+        steps = np.diff(SPACED.node_positions[nodes])
+        assert steps[-1] / steps[0] == pytest.approx(s, rel=0.1)
+    # A field linear in u turns an arm of constant curvature into an arc, whatever the spacing.
+    strains = np.zeros((3, SPACED.element_nodes.size))
+    strains[0] = 1.0
+    strains[2] = 2.0
+    arc = shape_from_strains(SPACED, strains, np.zeros(3))
+    assert np.abs(arc[1] - (1 - np.cos(2 * SPACED.node_positions)) / 2).max() < 1e-13
+
+
+@pytest.mark.parametrize("s", [0.25, 1.0, 3.0])
+def test_halved_elements_have_the_spacing_of_the_whole(s):
+    start, middle, end = position_slopes(spaced_coordinates(np.array([0.0, 0.5, 1.0]), s), s)
+    assert halved_spacing_ratios((s,)) == pytest.approx((middle / start, end / middle), rel=1e-14)
+
+
+@pytest.mark.parametrize("grid", [uniform_mesh(1, 15), uniform_mesh(3, 6), UNEQUAL_ORDERS, SPACED])
 def test_the_compiled_motion_of_the_tip_is_that_of_the_whole_shape(grid):
     rng = np.random.default_rng(5)
     strains, rates = rng.standard_normal((2, 3, 4, grid.element_nodes.size))

@@ -506,6 +506,12 @@ def cycle_of_segments(accuracy: float) -> Answer:
     return cycle_answer(solve_cycle(rod, request(accuracy), None, "F"))
 
 
+def cycle_of_a_cone(accuracy: float) -> Answer:
+    """A cycle of a cone, on an element whose nodes are closer at the tip."""
+    rod = Rod(F=20.0, k1=1e4, k2=1e2, gamma3=1e-2, taper=0.5)
+    return cycle_answer(solve_cycle(rod, request(accuracy), None, "F"))
+
+
 def cycles_of_a_chain(accuracy: float) -> Answer:
     """The last of three cycles, of which each predicts the next."""
     last = None
@@ -579,6 +585,7 @@ LONGITUDINAL = Case(longitudinal, 1.0, 1.0)
 HELD = Case(held_tip, 1.0, 1.0)
 CONES = Case(followed_cones, 1e-8, 1e-10)
 SEGMENT_CYCLE = Case(cycle_of_segments, 1e-6, 1e-9)
+CONE_CYCLE = Case(cycle_of_a_cone, 1e-6, 1e-9)
 SEGMENTS = Case(segments, 1e-8, 1e-10)
 RANGE = Case(leaders_of_a_range, 1.0, 1.0)
 BETWEEN = Case(changes_between, 1.0, 1.0)
@@ -604,6 +611,7 @@ CASES = {
     "ORBIT_NEWTON_SETTINGS": BRANCH,
     "ORBIT_MESH_SETTINGS": BRANCH,
     "ORDER_RATIO_SETTINGS": SEGMENT_CYCLE,
+    "NODE_SPACING_SETTINGS": CONE_CYCLE,
     "WORKSPACE_SETTINGS": BRANCH,
     "FLOQUET_MULTIPLIER_SETTINGS": BRANCH,
     "CURVE_START_SETTINGS": CURVE,

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ...arrays import Array
 from .basis import lagrange_interpolation_matrix
+from .node_spacing import position_slopes, spaced_coordinates, spaced_positions
 from .quadrature import gauss_lobatto_rule
 
 
@@ -40,12 +41,14 @@ ELEMENT_SETTINGS = ElementSettings()
 class Elements:
     """Elements on the rod. Element e reaches from edges[e] to edges[e + 1]; edges[0] is 0 and edges[-1] is 1.
     order: largest order of an element. order_ratios: order of each element divided by `order`, before
-    `element_orders` rounds the order up; empty if all orders are equal. In shapes, `nodes` is `node_count`,
+    `element_orders` rounds the order up; empty if all orders are equal. spacing_ratios: ratio s of
+    `node_spacing` of each element; empty if all are 1. In shapes, `nodes` is `node_count`,
     which does not count one end of the rod, and `elements` is the number of elements."""
 
     edges: tuple[float, ...]
     order: int
     order_ratios: tuple[float, ...] = field(default=(), kw_only=True)
+    spacing_ratios: tuple[float, ...] = field(default=(), kw_only=True)
 
     @property
     def element_count(self) -> int:
@@ -74,11 +77,33 @@ class Elements:
         return np.diff(self.edges)
 
     @cached_property
+    def spacing_of_elements(self) -> tuple[float, ...]:
+        """Ratio s of `node_spacing` of each element."""
+        return self.spacing_ratios or (1.0,) * self.element_count
+
+    @cached_property
+    def relative_node_positions(self) -> tuple[Array, ...]:
+        """Positions of the nodes along each element, from 0 to 1, (p + 1,) each, p: order of the element."""
+        return tuple(
+            spaced_positions((gauss_lobatto_rule(order)[0] + 1) / 2, s)
+            for order, s in zip(self.orders, self.spacing_of_elements, strict=True)
+        )
+
+    @cached_property
+    def quadrature_of_elements(self) -> tuple[Array, ...]:
+        """Quadrature weights of the nodes of each element, (p + 1,) each, p: order of the element."""
+        weights = []
+        for length, order, s in zip(self.lengths, self.orders, self.spacing_of_elements, strict=True):
+            x, w = gauss_lobatto_rule(order)
+            weights.append(length / 2 * w * position_slopes((x + 1) / 2, s))
+        return tuple(weights)
+
+    @cached_property
     def node_positions(self) -> Array:
         """Material coordinate u of all nodes, both ends included, (nodes + 1,)."""
         positions = np.empty(self.node_count + 1)
-        for e, (nodes, order) in enumerate(zip(self.node_ranges, self.orders, strict=True)):
-            positions[nodes] = self.edges[e] + self.lengths[e] * (gauss_lobatto_rule(order)[0] + 1) / 2
+        for e, (nodes, v) in enumerate(zip(self.node_ranges, self.relative_node_positions, strict=True)):
+            positions[nodes] = self.edges[e] + self.lengths[e] * v
             # Nodes at edges must equal the edges exactly, because jumps of the material are compared with
             # these values.
             positions[nodes.start] = self.edges[e]
@@ -97,12 +122,10 @@ class Elements:
         distance = ELEMENT_SETTINGS.one_sided_node_offset
         return np.concatenate(
             [
-                np.clip(
-                    start + (end - start) * (gauss_lobatto_rule(order)[0] + 1) / 2,
-                    start + distance,
-                    end - distance,
+                np.clip(start + (end - start) * v, start + distance, end - distance)
+                for start, end, v in zip(
+                    self.edges[:-1], self.edges[1:], self.relative_node_positions, strict=True
                 )
-                for start, end, order in zip(self.edges[:-1], self.edges[1:], self.orders, strict=True)
             ]
         )
 
@@ -128,12 +151,14 @@ class Elements:
     def points_by_element(self, points: Array) -> Iterator[tuple[int, NDArray[np.integer], Array]]:
         """Yields (element, indices, coordinates) for each element that contains some of the `points`, (n,).
         indices: indices of the points in the element. coordinates: coordinates of these points, from -1 to 1
-        along the element. A point between two elements belongs to the right element."""
+        along the element (2 t - 1 with t of `node_spacing`). A point between two elements belongs to the
+        right element."""
         # The clip puts u = 1, which lies right of the last edge, into the last element.
         element = np.clip(np.searchsorted(self.edges, points, side="right") - 1, 0, self.element_count - 1)
         for e in np.unique(element):
             indices = np.nonzero(element == e)[0]
-            yield int(e), indices, 2 * (points[indices] - self.edges[e]) / self.lengths[e] - 1
+            v = (points[indices] - self.edges[e]) / self.lengths[e]
+            yield int(e), indices, 2 * spaced_coordinates(v, self.spacing_of_elements[e]) - 1
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_mesh_pairs)

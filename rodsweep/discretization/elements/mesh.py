@@ -13,6 +13,7 @@ import numpy as np
 from ...arrays import Array
 from .basis import differentiation_matrix, lagrange_interpolation_matrix
 from .elements import ELEMENT_SETTINGS, Elements, equal_edges
+from .node_spacing import position_slopes
 from .quadrature import gauss_legendre_rule, gauss_lobatto_rule
 
 
@@ -47,9 +48,9 @@ class Mesh(Elements):
     # The matrices follow from edges and orders, and an array comparison has no single truth value.
     matrices: NodeMatrices = field(compare=False, repr=False)
 
-    def __reduce__(self) -> tuple[Any, tuple[tuple[float, ...], int, tuple[float, ...]]]:
-        """Pickles only edges and orders; messages to other ranks are pickled too."""
-        return mesh_with_edges, (self.edges, self.order, self.order_ratios)
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
+        """Pickles only edges, orders and spacing; messages to other ranks are pickled too."""
+        return mesh_with_edges, (self.edges, self.order, self.order_ratios, self.spacing_ratios)
 
     @property
     def quadrature(self) -> Array:
@@ -63,25 +64,33 @@ def uniform_mesh(element_count: int, order: int) -> Mesh:
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
-def mesh_with_edges(edges: tuple[float, ...], order: int, order_ratios: tuple[float, ...] = ()) -> Mesh:
+def mesh_with_edges(
+    edges: tuple[float, ...],
+    order: int,
+    order_ratios: tuple[float, ...] = (),
+    spacing_ratios: tuple[float, ...] = (),
+) -> Mesh:
     """The mesh whose elements lie between neighbouring `edges`; cached. order: largest order of an element.
-    order_ratios: order of each element divided by `order`; empty if all orders are equal."""
-    elements = Elements(edges, order, order_ratios=order_ratios)
+    order_ratios: order of each element divided by `order`; empty if all orders are equal. spacing_ratios: as
+    in `Elements`."""
+    ratios = {"order_ratios": order_ratios, "spacing_ratios": spacing_ratios}
+    elements = Elements(edges, order, **ratios)
     node_count = elements.node_count
     weighted_D = np.zeros((node_count + 1, node_count + 1))
     node_weights = np.zeros(node_count + 1)
-    for length, node_range, p in zip(elements.lengths, elements.node_ranges, elements.orders, strict=True):
+    for node_range, p, weights in zip(
+        elements.node_ranges, elements.orders, elements.quadrature_of_elements, strict=True
+    ):
         x, w = gauss_lobatto_rule(p)
-        weighted_D[node_range, node_range] += w[:, None] * differentiation_matrix(
-            x
-        )  # the length of the element cancels
-        node_weights[node_range] += length / 2 * w
+        # Length and spacing of the element cancel.
+        weighted_D[node_range, node_range] += w[:, None] * differentiation_matrix(x)
+        node_weights[node_range] += weights
     # At a node shared by two elements, D gives the mean of both slopes with the quadrature weights, so that W
     # D is the assembled matrix.
     D = weighted_D / node_weights[:, None]
     # -D^T W: `weighted` is W D.
     parts = D, D.T, -weighted_D.T, node_weights
-    return Mesh(edges, order, NodeMatrices(*map(np.ascontiguousarray, parts)), order_ratios=order_ratios)
+    return Mesh(edges, order, NodeMatrices(*map(np.ascontiguousarray, parts)), **ratios)
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_mesh_pairs)
@@ -98,7 +107,9 @@ def shape_from_strains(mesh: Mesh, strains: Array, clamp: Array) -> Array:
     shape = np.empty((*strains.shape[:-1], mesh.node_count + 1), strains.dtype)
     start = np.broadcast_to(clamp.reshape(3, *(1,) * (strains.ndim - 1)), (3, *strains.shape[1:-1], 1))
     for e, (element, length) in enumerate(zip(mesh.node_ranges, mesh.lengths, strict=True)):
-        values, angles, integrals, ends = shape_integration_matrices(mesh.orders[e], gauss_point_count)
+        values, angles, integrals, ends = shape_integration_matrices(
+            mesh.orders[e], gauss_point_count, mesh.spacing_of_elements[e]
+        )
         h1, h2, Pi = (strain[..., element.start + e : element.stop + e] for strain in strains)
         # The angle comes first, because it turns the strains in the integrals of x and y.
         theta = start[2] + length * (Pi @ angles)
@@ -129,27 +140,32 @@ class ShapeIntegrationMatrices(NamedTuple):
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
-def shape_integration_matrices(order: int, gauss_point_count: int = 0) -> ShapeIntegrationMatrices:
+def shape_integration_matrices(
+    order: int, gauss_point_count: int = 0, spacing_ratio: float = 1.0
+) -> ShapeIntegrationMatrices:
     """The `ShapeIntegrationMatrices` of elements of order `order`, cached. gauss_point_count: number of Gauss
-    points; 0: `order` plus `SHAPE_QUADRATURE_SETTINGS.extra_point_count`."""
+    points; 0: `order` plus `SHAPE_QUADRATURE_SETTINGS.extra_point_count`. spacing_ratio: ratio s of
+    `node_spacing`."""
     x = gauss_lobatto_rule(order)[0]
     g = gauss_legendre_rule(gauss_point_count or order + SHAPE_QUADRATURE_SETTINGS.extra_point_count)[0]
     return ShapeIntegrationMatrices(
         lagrange_interpolation_matrix(x, g).T,
-        integration_matrix(x, g).T,
-        integration_matrix(g, x).T,
-        integration_matrix(x, x).T,
+        integration_matrix(x, g, spacing_ratio).T,
+        integration_matrix(g, x, spacing_ratio).T,
+        integration_matrix(x, x, spacing_ratio).T,
     )
 
 
-def integration_matrix(nodes: Array, upper_limits: Array) -> Array:
+def integration_matrix(nodes: Array, upper_limits: Array, spacing_ratio: float = 1.0) -> Array:
     """Matrix (m, n) from values at `nodes`, (n,), to integrals of the interpolating polynomial along an
-    element of length 1, from its start to `upper_limits`, (m,). All coordinates are in [-1, 1]."""
-    # n Gauss points integrate the interpolant, of degree n - 1, exactly.
+    element of length 1, from its start to `upper_limits`, (m,). All coordinates are in [-1, 1].
+    spacing_ratio: ratio s of `node_spacing`."""
+    # n Gauss points integrate the interpolant, of degree n - 1, exactly; of the slope of the positions in
+    # addition its first n + 1 powers.
     points, weights = gauss_legendre_rule(len(nodes))
-    return np.array(
-        [
-            (end + 1) / 4 * weights @ lagrange_interpolation_matrix(nodes, -1 + (end + 1) * (points + 1) / 2)
-            for end in upper_limits
-        ]
-    )
+    rows = []
+    for end in upper_limits:
+        t = (end + 1) * (points + 1) / 4
+        slopes = position_slopes(t, spacing_ratio)
+        rows.append((end + 1) / 4 * (weights * slopes) @ lagrange_interpolation_matrix(nodes, 2 * t - 1))
+    return np.array(rows)

@@ -22,10 +22,10 @@ class TipMatrices(NamedTuple):
 
     values_at_gauss_points: interpolation from the nodes of an element to its Gauss points, (m, g).
     angles_at_gauss_points: integrals of nodal polynomials from 0 to the Gauss points, (m, g). gauss_weights:
-    Gauss weights, (g,). nodal_polynomial_integrals: integrals of nodal polynomials over the element, (m,).
-    element_lengths: lengths of all elements, (elements,). element_nodes: index of the node of the mesh at
-    each node of every element, (m,). element_starts: index in m of the first node of each element, then m,
-    (elements + 1,)."""
+    Gauss weights of each element, (elements, g). nodal_polynomial_integrals: integrals of nodal polynomials
+    over the element, (m,). element_lengths: lengths of all elements, (elements,). element_nodes: index of the
+    node of the mesh at each node of every element, (m,). element_starts: index in m of the first node of each
+    element, then m, (elements + 1,)."""
 
     values_at_gauss_points: Array
     angles_at_gauss_points: Array
@@ -40,12 +40,15 @@ class TipMatrices(NamedTuple):
 def tip_matrices(mesh: Elements) -> TipMatrices:
     """The `TipMatrices` of a mesh, cached."""
     points = mesh.order + SHAPE_QUADRATURE_SETTINGS.extra_point_count
-    matrices = [shape_integration_matrices(order, points) for order in mesh.orders]
+    matrices = [
+        shape_integration_matrices(order, points, s)
+        for order, s in zip(mesh.orders, mesh.spacing_of_elements, strict=True)
+    ]
     return TipMatrices(
         values_at_gauss_points=np.concatenate([m.values_at_gauss_points for m in matrices]),
         angles_at_gauss_points=np.concatenate([m.angles_at_gauss_points for m in matrices]),
         # Integrals from 0 to the last node span the whole element: they are the Gauss weights.
-        gauss_weights=np.ascontiguousarray(matrices[0].integrals_to_nodes[:, -1]),
+        gauss_weights=np.array([m.integrals_to_nodes[:, -1] for m in matrices]),
         nodal_polynomial_integrals=np.concatenate([m.angles_at_nodes[:, -1] for m in matrices]),
         element_lengths=np.ascontiguousarray(mesh.lengths),
         element_nodes=mesh.element_nodes,
@@ -58,7 +61,7 @@ def write_tip_motion(strains: Array, rates: Array, m: TipMatrices, tip: Array, v
     """Writes (x, y, theta) of the tip, in L and rad, into tip, and the time derivative of (x, y, theta) into
     velocity. strains: (h1, h2, Pi) at the nodes of every element, (3, states, m). rates: time derivatives of
     the strains, of the same shape. tip, velocity: (states, 3). The rod is clamped at the origin along e_x."""
-    points = len(m.gauss_weights)
+    points = m.gauss_weights.shape[1]
     fields = np.empty((6, points))  # h1, h2, theta and their rates at the Gauss points
     for k in range(strains.shape[1]):
         x = 0.0
@@ -74,7 +77,7 @@ def write_tip_motion(strains: Array, rates: Array, m: TipMatrices, tip: Array, v
             for g in range(points):
                 cos = np.cos(fields[2, g])
                 sin = np.sin(fields[2, g])
-                w = length * m.gauss_weights[g]
+                w = length * m.gauss_weights[e, g]
                 u = w * (cos * fields[0, g] - sin * fields[1, g])
                 v = w * (sin * fields[0, g] + cos * fields[1, g])
                 x = x + u
@@ -107,7 +110,7 @@ def _write_fields_at_gauss_points(
         h1 = strains[0, j]
         h2 = strains[1, j]
         Pi = strains[2, j]
-        for g in range(len(m.gauss_weights)):
+        for g in range(m.gauss_weights.shape[1]):
             fields[0, g] += h1 * m.values_at_gauss_points[j, g]
             fields[1, g] += h2 * m.values_at_gauss_points[j, g]
             fields[2, g] += length * Pi * m.angles_at_gauss_points[j, g]

@@ -5,11 +5,11 @@ from math import ceil, log
 
 import numpy as np
 
-from ...discretization.elements.elements import halved_element_edges
 from ...discretization.elements.resolution import RESOLUTION_SETTINGS
 from .element_order_ratios import element_order_ratios
+from .node_spacing_of_arm import with_node_spacing_of_arm
 from .orbit import Orbit, interval_lengths
-from .orbit_mesh import ORBIT_MESH_SETTINGS, OrbitMesh, mesh_of, order_ratios_after_halving
+from .orbit_mesh import ORBIT_MESH_SETTINGS, OrbitMesh, mesh_of
 from .tails import tails_of, tails_of_intervals
 from .time_grading import UNIFORM_TIME, TimeGrading, fitted_grading
 
@@ -26,6 +26,7 @@ def mesh_from_tails(orbit: Orbit, accuracy: float, stage_count: int) -> OrbitMes
     from the tails of the nearby orbit `orbit`; by `ORBIT_MESH_SETTINGS` not coarser than `min_order` and
     `min_intervals`, and finer than the mesh of `orbit` at most by `max_order_increase` and
     `max_interval_ratio`."""
+    orbit = with_node_spacing_of_arm(orbit)
     current_mesh = mesh_of(orbit)
     tails = tails_of(orbit)
     # The errors are quadratic in the tails, hence the square roots.
@@ -39,22 +40,20 @@ def mesh_from_tails(orbit: Orbit, accuracy: float, stage_count: int) -> OrbitMes
     order = current_mesh.order + ceil(
         log(max(tails.space, ORBIT_MESH_SETTINGS.min_tail) / max_space_tail) / tails.space_decay
     )
-    edges = current_mesh.edges
-    ratios = element_order_ratios(orbit, order, max_space_tail)
-    while order > RESOLUTION_SETTINGS.max_order:
-        order = ceil(ORBIT_MESH_SETTINGS.halving_order_ratio * order)
-        edges = halved_element_edges(edges)
-        ratios = order_ratios_after_halving(ratios)
+    mesh = replace(current_mesh, order=order, order_ratios=element_order_ratios(orbit, order, max_space_tail))
+    while mesh.order > RESOLUTION_SETTINGS.max_order:
+        mesh = mesh.halved
     grading, interval_ratio = grading_and_interval_ratio(orbit, max_time_tail, stage_count)
     interval_count = ceil(current_mesh.interval_count * interval_ratio)
     order = min(
-        max(order, ORBIT_MESH_SETTINGS.min_order), current_mesh.order + ORBIT_MESH_SETTINGS.max_order_increase
+        max(mesh.order, ORBIT_MESH_SETTINGS.min_order),
+        current_mesh.order + ORBIT_MESH_SETTINGS.max_order_increase,
     )
     interval_count = min(
         max(interval_count, ORBIT_MESH_SETTINGS.min_intervals),
         ORBIT_MESH_SETTINGS.max_interval_ratio * current_mesh.interval_count,
     )
-    return OrbitMesh(edges, order, interval_count, stage_count, ratios, grading)
+    return replace(mesh, order=order, interval_count=interval_count, stage_count=stage_count, grading=grading)
 
 
 def grading_and_interval_ratio(orbit: Orbit, max_tail: float, stage_count: int) -> tuple[TimeGrading, float]:

@@ -9,6 +9,7 @@ import numpy as np
 from ...arrays import Array
 from ...discretization.elements.elements import element_orders, halved_element_edges
 from ...discretization.elements.mesh import Mesh, mesh_with_edges
+from ...discretization.elements.node_spacing import halved_spacing_ratios
 from ...discretization.elements.resolution import RESOLUTION_SETTINGS
 from ...discretization.state_layout import plane_layout
 from ..unsolvable import MeshLimitReached
@@ -93,7 +94,7 @@ class OrbitMesh:
     """Mesh of an orbit. edges: edges of the elements in space, from 0 to 1. order: largest order of an
     element. order_ratios: order of each element divided by `order`; empty if all orders are equal.
     interval_count: number of time intervals. stage_count: number of Radau stages of each interval. grading:
-    grading of the time intervals."""
+    grading of the time intervals. spacing_ratios: as in `Elements`."""
 
     edges: tuple[float, ...]
     order: int
@@ -101,6 +102,7 @@ class OrbitMesh:
     stage_count: int
     order_ratios: tuple[float, ...] = ()
     grading: TimeGrading = UNIFORM_TIME
+    spacing_ratios: tuple[float, ...] = ()
 
     @property
     def element_count(self) -> int:
@@ -108,9 +110,9 @@ class OrbitMesh:
         return len(self.edges) - 1
 
     def has_same_edges_and_order_ratios(self, other: "OrbitMesh") -> bool:
-        """Whether both meshes have elements with the same edges and order ratios; largest orders and time
-        intervals may differ."""
-        return (self.edges, self.order_ratios) == (other.edges, other.order_ratios)
+        """Whether both meshes have the same edges and ratios of elements; orders and intervals may differ."""
+        ratios = self.order_ratios, self.spacing_ratios
+        return (self.edges, *ratios) == (other.edges, other.order_ratios, other.spacing_ratios)
 
     @property
     def time_mesh(self) -> TimeMesh:
@@ -125,7 +127,7 @@ class OrbitMesh:
 
     @property
     def space_mesh(self) -> Mesh:
-        return mesh_with_edges(self.edges, self.order, self.order_ratios)
+        return mesh_with_edges(self.edges, self.order, self.order_ratios, self.spacing_ratios)
 
     @property
     def unknown_count(self) -> int:
@@ -139,21 +141,24 @@ class OrbitMesh:
 
     @property
     def as_array(self) -> Array:
-        """The mesh as one array for storage, (2 elements + 7,): order, intervals, stages, grading, edges,
-        ratios of the orders."""
-        ratios = self.order_ratios or (1.0,) * self.element_count
+        """The mesh as one array for storage, (3 elements + 7,): order, intervals, stages, grading, edges,
+        ratios of the orders, spacing ratios."""
+        ones = (1.0,) * self.element_count
+        ratios = *(self.order_ratios or ones), *(self.spacing_ratios or ones)
         counts = self.order, self.interval_count, self.stage_count
         return np.array([*counts, *astuple(self.grading), *self.edges, *ratios])
 
     @classmethod
     def from_array(cls, numbers: Array) -> "OrbitMesh":
-        """The mesh from the array that the property `as_array` returns, (2 elements + 7,)."""
+        """The mesh from the array that the property `as_array` returns, (3 elements + 7,)."""
         counts, amplitudes, (harmonic,), positions = np.split(numbers, [3, 5, 6])
         order, interval_count, stage_count = map(int, counts)
         grading = TimeGrading(float(amplitudes[0]), float(amplitudes[1]), int(harmonic))
-        edges, ratios = (tuple(part.tolist()) for part in np.split(positions, [len(positions) // 2 + 1]))
-        # Orders that are all equal are stored as no ratios, because equal meshes must compare equal.
-        return cls(edges, order, interval_count, stage_count, () if min(ratios) == 1 else ratios, grading)
+        edges = tuple(positions[: -2 * (len(positions) // 3)].tolist())
+        ratios = (tuple(part.tolist()) for part in np.split(positions[len(edges) :], 2))
+        # Ratios that are all 1 are stored as no ratios, because equal meshes must compare equal.
+        order_ratios, spacing_ratios = (() if set(part) == {1.0} else part for part in ratios)
+        return cls(edges, order, interval_count, stage_count, order_ratios, grading, spacing_ratios)
 
     @property
     def coarser(self) -> "OrbitMesh":
@@ -198,15 +203,19 @@ class OrbitMesh:
 
     @property
     def finer_in_space(self) -> "OrbitMesh":
-        """This mesh with an order increased by 2, or with twice as many elements of lower order if the order
-        would exceed its maximum."""
-        if self.order + 2 <= RESOLUTION_SETTINGS.max_order:
-            return self.with_order(self.order + 2)
+        """This mesh with an order increased by 2, or `halved` if the order would exceed its maximum."""
+        finer = self.with_order(self.order + 2)
+        return finer if finer.order <= RESOLUTION_SETTINGS.max_order else self.halved
+
+    @property
+    def halved(self) -> "OrbitMesh":
+        """This mesh with twice as many elements, of lower order."""
         return replace(
             self,
             edges=halved_element_edges(self.edges),
             order=ceil(ORBIT_MESH_SETTINGS.halving_order_ratio * self.order),
-            order_ratios=order_ratios_after_halving(self.order_ratios),
+            order_ratios=tuple(ratio for ratio in self.order_ratios for _ in range(2)),
+            spacing_ratios=halved_spacing_ratios(self.spacing_ratios),
         )
 
     @property
@@ -237,9 +246,5 @@ class OrbitMesh:
 def mesh_of(orbit: Orbit) -> OrbitMesh:
     """The mesh in space and time on which `orbit` is represented."""
     mesh = orbit.form.mesh
-    return OrbitMesh(mesh.edges, mesh.order, *orbit.time_mesh[:2], mesh.order_ratios, orbit.grading)
-
-
-def order_ratios_after_halving(ratios: tuple[float, ...]) -> tuple[float, ...]:
-    """Ratios of the orders after all elements are halved."""
-    return tuple(ratio for ratio in ratios for _ in range(2))
+    K, s, grading = orbit.time_mesh
+    return OrbitMesh(mesh.edges, mesh.order, K, s, mesh.order_ratios, grading, mesh.spacing_ratios)

@@ -95,6 +95,9 @@ def test_a_mesh_with_unequal_orders_is_stored_and_refined():
     assert OrbitMesh.from_array(mesh.as_array) == mesh
     plain = OrbitMesh((0.0, 0.25, 1.0), 17, 9, 3)
     assert OrbitMesh.from_array(plain.as_array) == plain
+    spaced = replace(mesh, spacing_ratios=(1.0, 0.25))
+    assert OrbitMesh.from_array(spaced.as_array) == spaced != mesh
+    assert not spaced.has_same_edges_and_order_ratios(mesh)
     assert (mesh.unknown_count, plain.unknown_count) == (3 * (9 + 17), 3 * (17 + 17))
     assert mesh.space_mesh.orders == (9, 17)
     assert (np.array(mesh.finer_in_space.space_mesh.orders) > mesh.space_mesh.orders).all()

@@ -1,0 +1,42 @@
+"""Spacing of the nodes of an element that varies along the element, as the radius of a cone does.
+
+Waves are short where an arm is soft, so nodes are closer there. Fields are polynomials in the element's
+coordinate t from 0 to 1, and the position v from 0 to 1 along the element is
+
+    v(t) = (1 - s^t)/(1 - s),        dv/dt = -ln s/(1 - s) (1 - (1 - s) v):
+
+the spacing decreases in proportion to v, from 1 to s = `spacing_ratio` in relative units. s = 1: v = t.
+"""
+
+import numpy as np
+
+from ...arrays import Array
+
+
+def spaced_positions(t: Array, spacing_ratio: float) -> Array:
+    """Positions v along an element, in [0, 1], at the coordinates t, in [0, 1]; the shape is that of t."""
+    if spacing_ratio == 1:
+        return t
+    v: Array = np.expm1(t * np.log(spacing_ratio)) / (spacing_ratio - 1)
+    return v
+
+
+def spaced_coordinates(v: Array, spacing_ratio: float) -> Array:
+    """Coordinates t of an element, in [0, 1], at the positions v, in [0, 1]; the shape is that of v."""
+    if spacing_ratio == 1:
+        return v
+    t: Array = np.log1p((spacing_ratio - 1) * v) / np.log(spacing_ratio)
+    return t
+
+
+def position_slopes(t: Array, spacing_ratio: float) -> Array:
+    """dv/dt at the coordinates t of an element, in [0, 1]; the shape is that of t."""
+    if spacing_ratio == 1:
+        return np.ones_like(t)
+    slopes: Array = np.log(spacing_ratio) / (spacing_ratio - 1) * spacing_ratio**t
+    return slopes
+
+
+def halved_spacing_ratios(ratios: tuple[float, ...]) -> tuple[float, ...]:
+    """`spacing_ratio` of all elements after every element is halved: the spacing is linear in v."""
+    return tuple(half for s in ratios for half in ((1 + s) / 2, 2 * s / (1 + s)))
