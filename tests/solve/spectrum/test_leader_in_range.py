@@ -18,6 +18,7 @@ from rodsweep.solve.cycle.straight_rod import (
 from rodsweep.solve.spectrum.path.leader_in_range import (
     ARM_RANGE_SETTINGS,
     ArmRange,
+    family_and_hulls_of_range,
     leader_in_range,
     next_range,
 )
@@ -80,6 +81,10 @@ def test_a_range_proves_no_eigenvalue_that_does_not_lead():
     w = stability.followed_eigenvalues
     assert leader_in_range(rod, "k1", arm_range, w)[0] == pytest.approx(w, rel=1e-11)
     assert leader_in_range(rod, "k1", arm_range, w[1:]) is None
+    # After a failure the propagators of the range are used again.
+    misses = family_and_hulls_of_range.cache_info().misses
+    assert leader_in_range(rod, "k1", arm_range._replace(failures=1.0), w)[0] == pytest.approx(w, rel=1e-11)
+    assert family_and_hulls_of_range.cache_info().misses == misses
 
 
 def test_a_chain_without_use_for_a_range_has_none():

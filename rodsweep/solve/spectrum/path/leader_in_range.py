@@ -108,7 +108,10 @@ def leader_in_range(
         return None
     # A rod would be a slower key, because its values are tested whenever one is made.
     values = {**rod.values, name: PARAMETERS[name].value(arm_range.low)}
-    family_data = family_and_hulls_of_range(tuple(values.items()), rod.material, name, arm_range)
+    # Failures change no propagators, so they must not be part of the key.
+    family_data = family_and_hulls_of_range(
+        tuple(values.items()), rod.material, name, arm_range._replace(failures=0.0)
+    )
     if family_data is None:
         return None
     upper_w = guesses.tolist()
