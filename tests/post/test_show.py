@@ -4,6 +4,7 @@ import re
 from dataclasses import replace
 from math import inf
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,8 +15,9 @@ import rodsweep as rs
 from rodsweep.api.dataset import view_of_dataset
 from rodsweep.post.located_thresholds import LocatedThreshold, StoredThresholds, UnlocatedThreshold
 from rodsweep.post.summary import summary_of
-from rodsweep.post.summary.errors import absolute_errors, known_range_text
+from rodsweep.post.summary.errors import absolute_errors
 from rodsweep.post.summary.number_texts import axis_values_text, number_with_error
+from rodsweep.post.summary.selection import Selection
 from rodsweep.post.summary.stability import rod_and_arm_stability_lines
 from rodsweep.results.file.view import read_view
 from rodsweep.solve.changes.status import ThresholdStatus
@@ -135,9 +137,10 @@ def test_the_time_of_a_growth_that_is_hardly_known_from_1_is_not_told():
         "transient_time": np.array([2.0, 0.04]),
         "growth_error": np.array([1e-5, 2e-4]),
     }
+    view = SimpleNamespace(variables=v)
     assert absolute_errors(v, "transient_time")[0] == pytest.approx(0.2, rel=1e-3)
-    assert known_range_text(v, "transient_time", np.array([True, True])) == "2"
-    assert known_range_text(v, "transient_time", np.array([False, True])) == "none"
+    assert Selection(view, np.array([True, True])).range_text("transient_time") == "2"
+    assert Selection(view, np.array([False, True])).range_text("transient_time") == "none"
 
 
 @pytest.mark.long

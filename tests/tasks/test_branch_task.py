@@ -19,6 +19,7 @@ from rodsweep.post.figures import draw
 from rodsweep.post.figures.smooth_branch import smooth_curve_of_branch
 from rodsweep.post.range_unions import intersection_of_ranges, union_of_ranges
 from rodsweep.post.summary import branch as summary
+from rodsweep.post.summary.selection import Selection
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.branch import END_REASONS, SPECIAL_KINDS
 from rodsweep.results.layouts.variables import MISSING_STATUS
@@ -73,7 +74,7 @@ def test_show_of_many_rods_tells_where_branches_end_and_where_two_have_stable_cy
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(summary, "RodBranches", WithBreaking)
-        told = summary.branch_summary(view, np.ones((2, 1, 1, 1), bool)).answer
+        told = summary.branch_summary(Selection(view, np.ones((2, 1, 1, 1), bool))).answer
     assert "1 symmetry breaking: F = 75" in told
     assert "2 branches end at the end of the range: F = 80" in told
     assert "two stable cycles, on different branches, at 1 of 2 rods" in told
@@ -85,7 +86,7 @@ def test_show_names_the_branch_that_could_not_be_followed(command):
     view = read_view(command.directory / "c.h5")
     reasons = view.variables["special_reason"]
     reasons[reasons > 0] = END_REASONS.index("no_cycle_found")
-    told = summary.branch_summary(view, np.ones((2, 1, 1, 1), bool)).answer
+    told = summary.branch_summary(Selection(view, np.ones((2, 1, 1, 1), bool))).answer
     assert "1 branch ends at a cycle beyond which no further cycle was found: F = 80" in told
     assert "  k1 = 150: branch 1, at F = 80" in told
 

@@ -16,6 +16,7 @@ from rodsweep.cli.checking import print_job_check
 from rodsweep.errors import InputError
 from rodsweep.post.summary import show_summary
 from rodsweep.post.summary.limit_cycle import limit_cycle_summary
+from rodsweep.post.summary.selection import Selection
 from rodsweep.results.file.creation import FilePlan
 from rodsweep.results.file.store import ResultFileWriter
 from rodsweep.results.file.view import read_view
@@ -401,7 +402,7 @@ def test_show_tells_the_multipliers_of_the_cycles_that_tori_surround():
     view.variables["modulation_ratio"] = np.array([np.nan, 0.170391]).reshape(view.variables["status"].shape)
     view.variables["multiplier"] = np.array([np.nan, 1.25]).reshape(view.variables["status"].shape)
     view.variables["multiplier_error"] = np.full(view.variables["status"].shape, 1e-3)
-    told = limit_cycle_summary(view, view.variables["status"] >= 0)
+    told = limit_cycle_summary(Selection(view, view.variables["status"] >= 0))
     assert (
         told.answer[0] == "of 2 points: stays straight at 1 (F = 50), "
         "beats quasiperiodically (two frequencies) at 1 (F = 60)"

@@ -14,7 +14,7 @@ from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.post.plane_curves import PlaneParameters
-from rodsweep.post.summary.detached_branches import detached_branch_lines
+from rodsweep.post.summary.cycle_curves import detached_branch_lines
 from rodsweep.results.run.checkpoints import ItemResults
 from rodsweep.solve.branch.special.detached_rows import DetachedRows, DiagramStages
 from rodsweep.solve.branch.special.folds_beyond import FoldsBeyondRange

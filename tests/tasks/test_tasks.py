@@ -17,7 +17,7 @@ import rodsweep as rs
 from rodsweep.discretization.elements.resolution import Resolution
 from rodsweep.post.plane_curves import PlaneParameters
 from rodsweep.post.summary import POINT_NOUNS, show_summary
-from rodsweep.post.summary.diagram_curves import cycle_curve_lines, fold_curve_extremum_lines
+from rodsweep.post.summary.cycle_curves import cycle_curve_lines, fold_curve_extremum_lines
 from rodsweep.results.file.creation import FilePlan, FinalVariables
 from rodsweep.results.file.store import ResultFileWriter
 from rodsweep.results.file.view import read_view

@@ -12,7 +12,7 @@ from matplotlib.patches import Patch
 
 from ...arrays import Array
 from ...results.file.view import ResultView
-from ..summary.summary_lines import varied_parameters_at_points
+from ..summary.selection import varied_parameters_at_points
 from . import style
 from .arm.quantities import set_heading
 from .cycle.maps import label_maps, map_panels

@@ -5,7 +5,7 @@ import numpy as np
 
 from ...errors import InputError
 from ...results.file.view import ResultView
-from ..summary.summary_lines import varied_parameters_at_points
+from ..summary.selection import varied_parameters_at_points
 from .cycle.amplitudes.amplitude import SERIES_LOOKS, draw_amplitude
 from .cycle.amplitudes.amplitude_series import abscissa_parameter
 from .cycle.animation import FILM_SUFFIXES, write_animation

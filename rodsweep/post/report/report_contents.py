@@ -16,7 +16,8 @@ from ...results.file.view import ResultView
 from ..figures import draw
 from ..figures.request import FIGURE_KINDS_BY_TASK, CycleShapeSolver
 from ..summary import summary_of
-from ..summary.summary_lines import Summary, TextTable, region_text
+from ..summary.selection import Selection
+from ..summary.summary_lines import Summary, TextTable
 from ..tables.column import Column
 from ..tables.table_names import DEFAULT_TABLE, POINTS_TABLE
 from ..tables.tables import Table, Tables
@@ -228,7 +229,7 @@ def _with_parameter_ranges(view: ResultView, statuses: TextTable) -> TextTable:
     rows = []
     for word, count_text, meaning in statuses.rows:
         ranges_text = (
-            region_text(list_view, list_view.has_status(word)) if word in view.flags.values() else ""
+            Selection(list_view, list_view.has_status(word)).region if word in view.flags.values() else ""
         )
         rows.append((word, count_text, ranges_text, meaning))
     status_heading, count_heading, meaning_heading = statuses.headings

@@ -29,11 +29,12 @@ from .criticality import criticality_summary
 from .limit_cycle import limit_cycle_summary
 from .modes import modes_summary
 from .phase_diagram import phase_diagram_summary
+from .selection import Selection
 from .spectrum import spectrum_summary
 from .summary_lines import Summary, SummaryLines, TextTable
 from .thresholds import thresholds_summary
 
-SUMMARIES: dict[str, Callable[[ResultView, np.ndarray], SummaryLines]] = {
+SUMMARIES: dict[str, Callable[[Selection], SummaryLines]] = {
     "spectrum": spectrum_summary,
     "thresholds": thresholds_summary,
     "phase_diagram": phase_diagram_summary,
@@ -42,8 +43,7 @@ SUMMARIES: dict[str, Callable[[ResultView, np.ndarray], SummaryLines]] = {
     "criticality": criticality_summary,
     "branch": branch_summary,
 }
-"""For each task, the function that returns the lines of the summary. Arguments: view of the file, mask of the
-computed points."""
+"""For each task, the function of the computed points that returns the lines of the summary."""
 MAX_TABLE_WIDTH = 1000
 """Largest width, in characters, of a table of numbers that is printed into a pipe or a file."""
 ARM_DIGITS = 6
@@ -64,7 +64,7 @@ def summary_of(view: ResultView, every_status: bool = False) -> Summary:
     noun = POINT_NOUNS.get(view.task, "point")
     rods = computed & (status < NOT_SLENDER)
     no_points_lines = SummaryLines([] if computed.any() else [f"no {noun} is computed yet"])
-    lines = SUMMARIES[view.task](view, rods) if rods.any() else no_points_lines
+    lines = SUMMARIES[view.task](Selection(view, rods)) if rods.any() else no_points_lines
     attributes = view.attributes
     return Summary(
         answer=_answer_lines(view, computed, lines),

@@ -6,14 +6,13 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from ...arrays import Array
-from ...results.file.view import ResultView
 from ...wording import count_of_total, counted, is_or_are
 from ..branch_curves import RodBranches, StoredBranch, followed_parameter
 from ..crushing import uncrushed_ranges
 from ..range_unions import ParameterRange
-from .errors import known_range_text
 from .followed_ranges import searched_range_line
 from .number_texts import number_with_error, ranges_text, rounded_text, span_text
+from .selection import Selection
 from .summary_lines import SummaryLines, first_lines, point_text
 from .thresholds import unknown_clause
 
@@ -23,6 +22,8 @@ COEXISTENCE_WORDS = "stable cycles beside a stable straight rod"
 """Phrase for a range in which a stable cycle and the stable straight rod coexist."""
 TWO_CYCLES_WORDS = "two stable cycles, on different branches,"
 """Phrase for a range in which stable cycles of two branches coexist."""
+CYCLE_RANGES_CLAUSE = ": period {period} tau2, largest tip y {tip_y_max} L"
+"""Clause on the cycles of several rods."""
 SPECIAL_POINT_WORDS = {
     "fold": "fold",
     "torus": "torus point",
@@ -42,27 +43,29 @@ BRANCH_END_WORDS = {
 """Phrase for the end of a branch, by reason of the end."""
 
 
-def branch_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
-    """Summary of branches. computed: mask of the computed points, of the shape of the points."""
+def branch_summary(points: Selection) -> SummaryLines:
+    """Summary of branches at the computed points."""
+    view = points.view
+    computed = points.mask
+    reliability = [searched_range_line(points)]
     if computed.size == 1:
-        return SummaryLines(list(_one_rod_lines(RodBranches(view))), [searched_range_line(view, computed)])
-    variables = view.variables
+        return SummaryLines(list(_one_rod_lines(RodBranches(view))), reliability)
     rods = [RodBranches(view, int(rod)) for rod in np.flatnonzero(computed.ravel())]
-    counts = variables["branch_count"][computed]
-    branches, cycles = (
-        counted(int(variables[f"{name}_count"][computed].clip(min=0).sum()), noun)
+    counts = points.values("branch_count")
+    branches_text, cycles_text = (
+        counted(int(points.values(f"{name}_count").clip(min=0).sum()), noun)
         for name, noun in (("branch", "branch"), ("point", "cycle"))
     )
-    count_text = count_of_total((counts > 0).sum(), len(rods), "rod")
-    line = f"{branches} at {count_text}, {cycles}{_period_and_amplitude_ranges_clause(view, computed)}"
+    line = f"{branches_text} at {count_of_total((counts > 0).sum(), len(rods), 'rod')}, {cycles_text}"
+    if np.isfinite(points.values("period")).any():
+        line += points.sentence(CYCLE_RANGES_CLAUSE)
     parameter = followed_parameter(view)
-    ranges = uncrushed_ranges(view, (rod.index for rod in rods))
-    crushed_count = sum(low >= high for low, high in ranges)
     answer = [line, *_special_lines(rods, parameter), *_coexistence_lines(rods, parameter)]
-    if crushed_count:
+    ranges = uncrushed_ranges(view, (rod.index for rod in rods))
+    if crushed_count := sum(low >= high for low, high in ranges):
         whole_range = f"everywhere in the range of {parameter}"
         answer.insert(1, f"the force crushes {count_of_total(crushed_count, len(rods), 'rod')} {whole_range}")
-    return SummaryLines(answer, [searched_range_line(view, computed)])
+    return SummaryLines(answer, reliability)
 
 
 def _one_rod_lines(rod: RodBranches) -> Iterator[str]:
@@ -151,16 +154,6 @@ def _ends_phrase(curve: StoredBranch, parameter_name: str) -> str:
         f"{start_text} to {BRANCH_END_WORDS[last.reason]}, {parameter_name} = "
         f"{rounded_text(last.at, last.error)}"
     )
-
-
-def _period_and_amplitude_ranges_clause(view: ResultView, computed: np.ndarray) -> str:
-    """Clause with the ranges of period and amplitude over all cycles at the points in the mask `computed`;
-    empty if there is no cycle."""
-    variables = view.variables
-    if not np.isfinite(variables["period"][computed]).any():
-        return ""
-    period_text, y_text = (known_range_text(variables, name, computed) for name in ("period", "tip_y_max"))
-    return f": period {period_text} tau2, largest tip y {y_text} L"
 
 
 def _special_lines(rods: Sequence[RodBranches], parameter_name: str) -> Iterator[str]:

@@ -5,15 +5,22 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from ...results.file.view import ResultView
-from ...results.layouts.thresholds import CROSSING_KINDS
 from ...results.layouts.variables import ANGULAR_UNIT
-from ...wording import count_of_total, counted
+from ...wording import counted
 from .arm.arm import crossings_of_arm
 from .errors import absolute_errors
 from .number_texts import number_and_error, rounded_text, span_text
-from .summary_lines import MAX_LISTED_ITEMS, SummaryLines, TextTable, in_brackets, proof_clause, region_text
-from .thresholds import ENDED_EARLY, unknown_beyond_clause, unknown_clause, unstored_crossings_clause
+from .selection import Selection, counts_by_word, in_brackets
+from .summary_lines import MAX_LISTED_ITEMS, SummaryLines, TextTable
+from .thresholds import (
+    ENDED_EARLY,
+    proved_for_text,
+    stored_crossing_kinds,
+    unknown_beyond_clause,
+    unknown_clause,
+    unstored_crossing_count,
+    unstored_crossings_clause,
+)
 
 CRITICALITY_WORDS = {-1: "supercritical", 1: "subcritical", 0: "undecided"}
 """Word for the criticality of a Hopf point, by sign of Re c (c: cubic coefficient of the normal form)."""
@@ -28,123 +35,122 @@ HOPF_SYMBOLS_AND_UNITS = {
     "frequency_slope": "b, L^2/(k3 tau2)",
 }
 """Symbol and unit of each number of a Hopf point, by variable."""
+ERROR_SYMBOLS = {
+    "landau_error": "c",
+    "growth_slope_error": "dw/dF",
+    "amplitude_coefficient_error": "a",
+    "frequency_slope_error": "b",
+}
+"""Symbol of the coefficient, by variable of its relative error."""
+FIRST_HOPF_POINTS_SENTENCE = "F = {first crossing_F}, a = {first amplitude_coefficient} L"
+"""Sentence on the first Hopf points of several rods."""
+ALL_HOPF_POINTS_SENTENCE = "a = {amplitude_coefficient} L, b = {frequency_slope} L^2/(k3 tau2)"
+"""Sentence on all Hopf points of several rods."""
 
 
-def criticality_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
-    """Summary of Hopf points. computed: mask of the computed points, of the shape of the points."""
-    v = view.variables
-    if computed.size == 1:
-        none_text = "the Hopf points of this rod are not known"
-        if v["crossing_count"].max() >= 0:
-            none_text = f"no Hopf point up to F = {span_text(v['F_end'])}"
-        of_rod = view.point_values(0)
-        lines = list(_hopf_lines(of_rod)) or [none_text]
-        lines[0] += unknown_beyond_clause(view, float(of_rod["F_end"]))
-        reliability = [_searched_range_line(view, computed)]
-        numbers = _hopf_table(of_rod)
-        return SummaryLines(lines, reliability, arm_sentences=crossings_of_arm(view), numbers=numbers)
-    criticality = v["criticality"][computed]
-    is_known = np.isfinite(criticality)
-    with_hopf = v["crossing_count"] > 0
-    place_text = in_brackets(region_text(view, computed & with_hopf)) if (computed & with_hopf).any() else ""
-    unknown = int(((v["crossing_count"] < 0) | (view.has_status(ENDED_EARLY) & ~with_hopf))[computed].sum())
-    lines = [
-        f"Hopf points at {count_of_total(with_hopf[computed].sum(), computed.sum(), 'rod')}"
-        f"{place_text}{unknown_clause(unknown)}"
-    ]
-    if not is_known.any():
-        return SummaryLines(lines, [_searched_range_line(view, computed)])
-    names = ("amplitude_coefficient", "frequency_slope")
-    values, errors = ((v[name][computed], absolute_errors(v, name)[computed]) for name in names)
-    forces_text = span_text(v["crossing_F"][computed][:, 0], v["crossing_error"][computed][:, 0])
-    amplitude_text = span_text(*(table[:, 0] for table in values))
-    lines.append(
-        f"first Hopf point of each rod: {_count_text(criticality[:, 0])}; F = {forces_text}, a = "
-        f"{amplitude_text} L"
+def criticality_summary(points: Selection) -> SummaryLines:
+    """Summary of Hopf points at the computed points."""
+    reliability = [_searched_range_line(points)]
+    if points.mask.size == 1:
+        return _single_rod_summary(points, reliability)
+    variables = points.variables
+    with_hopf = points.where(variables["crossing_count"] > 0)
+    unknown = points.where(
+        (variables["crossing_count"] < 0) | (points.view.has_status(ENDED_EARLY) & ~with_hopf.mask)
     )
-    lines += _subcritical_lines(view)
-    symbols = {"landau": "c", "growth_slope": "dw/dF", "amplitude_coefficient": "a", "frequency_slope": "b"}
-    worst = [f"{symbol} {_maximum_text(v[f'{name}_error'][computed])}" for name, symbol in symbols.items()]
-    reliability = [_searched_range_line(view, computed), f"worst relative errors: {', '.join(worst)}"]
-    scope = "stored" if (v["crossing_count"][computed] > is_known.sum(axis=-1)).any() else "all"
-    coefficients_text = f"a = {span_text(*values)} L, b = {span_text(*errors)} L^2/(k3 tau2)"
+    place_text = in_brackets(with_hopf.region) if with_hopf.count else ""
+    answer = [
+        f"Hopf points at {with_hopf.of_total(points, 'rod')}{place_text}{unknown_clause(unknown.count)}"
+    ]
+    criticality = points.values("criticality")
+    known_counts = np.isfinite(criticality).sum(axis=-1)
+    if not known_counts.any():
+        return SummaryLines(answer, reliability)
+    first_text = f"{_count_text(criticality[:, 0])}; {points.sentence(FIRST_HOPF_POINTS_SENTENCE)}"
+    answer += [f"first Hopf point of each rod: {first_text}", *_subcritical_lines(points)]
+    worst = [f"{symbol} {_maximum_text(points.values(name))}" for name, symbol in ERROR_SYMBOLS.items()]
+    reliability.append(f"worst relative errors: {', '.join(worst)}")
+    scope = "stored" if (points.values("crossing_count") > known_counts).any() else "all"
+    all_text = f"{_count_text(criticality)}; {points.sentence(ALL_HOPF_POINTS_SENTENCE)}"
+    return SummaryLines(answer, reliability, [f"{scope} Hopf points: {all_text}"])
+
+
+def _single_rod_summary(points: Selection, reliability: list[str]) -> SummaryLines:
+    """Summary of the Hopf points of the only rod in a file."""
+    view = points.view
+    variables = view.point_values(0)
+    lines = list(_hopf_lines(variables))
+    if not lines and variables["crossing_count"] < 0:
+        lines = ["the Hopf points of this rod are not known"]
+    elif not lines:
+        lines = [f"no Hopf point up to F = {span_text(variables['F_end'])}"]
+    lines[0] += unknown_beyond_clause(view, float(variables["F_end"]))
     return SummaryLines(
-        lines, reliability, [f"{scope} Hopf points: {_count_text(criticality)}; {coefficients_text}"]
+        lines, reliability, arm_sentences=crossings_of_arm(view), numbers=_hopf_table(variables)
     )
 
 
 def _hopf_lines(variables: Mapping[str, np.ndarray]) -> Iterator[str]:
     """Yields one line for each Hopf point of the only rod in a file."""
-    for i in np.flatnonzero(variables["crossing_kind"] > 0):
+    for i, kind in enumerate(stored_crossing_kinds(variables)):
         F_text = rounded_text(variables["crossing_F"][i], variables["crossing_error"][i])
-        kind = CROSSING_KINDS[int(variables["crossing_kind"][i])]
         normal_form_text = "its normal form is not known"
         if np.isfinite(variables["landau_error"][i]):
-            normal_form_text = (
-                f"{CRITICALITY_WORDS[int(variables['criticality'][i])]}, "
-                f"{_nearby_cycles_clause(variables, int(i))}"
-            )
+            word = CRITICALITY_WORDS[int(variables["criticality"][i])]
+            normal_form_text = f"{word}, {_nearby_cycles_clause(variables, i, kind)}"
         unstable_count = int(variables["unstable_after"][i])
-        modes_sentence = "the number of unstable modes beyond it is not known"
-        if unstable_count >= 0:
-            modes_sentence = f"the straight rod has {counted(unstable_count, 'unstable mode')} beyond it"
+        modes_sentence = f"the straight rod has {counted(unstable_count, 'unstable mode')} beyond it"
+        if unstable_count < 0:
+            modes_sentence = "the number of unstable modes beyond it is not known"
         yield f"{kind} at F = {F_text}: {normal_form_text}; {modes_sentence}"
 
 
 def _hopf_table(variables: Mapping[str, np.ndarray]) -> TextTable | None:
     """Table with one column for each Hopf point of the only rod in a file; None if the rod has no Hopf
     point."""
-    indices = np.flatnonzero(variables["crossing_kind"] > 0)
-    kinds = (CROSSING_KINDS[int(variables["crossing_kind"][i])] for i in indices)
+    kinds = stored_crossing_kinds(variables)
     rows = []
     for name, label in HOPF_SYMBOLS_AND_UNITS.items():
-        numbers = zip(
-            variables[name][indices].tolist(), absolute_errors(variables, name)[indices].tolist(), strict=True
-        )
-        rows.append((label, *(cell for number in numbers for cell in number_and_error(*number))))
+        errors = absolute_errors(variables, name)
+        numbers = (number_and_error(float(variables[name][i]), float(errors[i])) for i in range(len(kinds)))
+        rows.append((label, *(text for number in numbers for text in number)))
     headings = ("", *(title for kind in kinds for title in (kind, "+-")))
-    return TextTable(headings, tuple(rows)) if len(indices) else None
+    return TextTable(headings, tuple(rows)) if kinds else None
 
 
-def _nearby_cycles_clause(variables: Mapping[str, np.ndarray], i: int) -> str:
+def _nearby_cycles_clause(variables: Mapping[str, np.ndarray], i: int, kind: str) -> str:
     """Clause on the cycles near the i-th Hopf point of the only rod in a file: whether F is larger or
-    smaller, and whether the cycles are stable."""
+    smaller, and whether the cycles are stable. kind: kind of the Hopf point."""
     sign = int(variables["criticality"][i])
     if sign == 0:
         return "the sign of Re c is within its error"
     side_text = "larger F" if variables["amplitude_coefficient"][i] > 0 else "smaller F"
-    count = int(variables["unstable_after"][i])
-    is_hopf = CROSSING_KINDS[int(variables["crossing_kind"][i])] == "hopf"
-    other_count = count - 2 if is_hopf else count
     if sign > 0:
         return f"unstable cycles at {side_text}"
-    if count < 0:
+    unstable_count = int(variables["unstable_after"][i])
+    other_count = unstable_count - 2 if kind == "hopf" else unstable_count
+    if unstable_count < 0:
         return f"cycles at {side_text}"
     if other_count:
         return f"cycles at {side_text}, unstable by {other_count} other modes"
     return f"stable cycles at {side_text}"
 
 
-def _subcritical_lines(view: ResultView) -> Iterator[str]:
+def _subcritical_lines(points: Selection) -> Iterator[str]:
     """Yields lines on rods with subcritical Hopf points; rods whose first Hopf point is subcritical come
     first."""
+    view = points.view
     criticality = view.by_point("criticality")
     rods = np.flatnonzero((criticality == 1).any(axis=-1))
     rods = rods[np.argsort(criticality[rods, 0] != 1, kind="stable")]
-    columns = view.point_columns
     for rod in rods[:MAX_LISTED_ITEMS]:
-        name = ", ".join(f"{key} = {column[rod]:.6g}" for key, column in columns.items())
-        indices = np.flatnonzero(criticality[rod] == 1)
-        names = ("crossing_F", "amplitude_coefficient", "amplitude_coefficient_error", "crossing_error")
-        forces, amplitude_coefficient, relative, absolute = (
-            view.by_point(name)[rod][indices] for name in names
-        )
+        name = ", ".join(f"{key} = {column[rod]:.6g}" for key, column in view.point_columns.items())
+        variables = view.point_values(int(rod))
+        errors = absolute_errors(variables, "amplitude_coefficient")
         texts = ", ".join(
-            f"F = {rounded_text(F, F_error)} (Hopf point {i + 1}, a = "
-            f"{rounded_text(coefficient, abs(coefficient) * relative_coefficient_error)} L)"
-            for F, F_error, i, coefficient, relative_coefficient_error in zip(
-                forces, absolute, indices, amplitude_coefficient, relative, strict=True
-            )
+            f"F = {rounded_text(variables['crossing_F'][i], variables['crossing_error'][i])} (Hopf point "
+            f"{i + 1}, a = {rounded_text(variables['amplitude_coefficient'][i], errors[i])} L)"
+            for i in np.flatnonzero(criticality[rod] == 1)
         )
         yield f"subcritical Hopf points, with the amplitude coefficient a, for {name}: {texts}"
     if len(rods) > MAX_LISTED_ITEMS:
@@ -154,25 +160,15 @@ def _subcritical_lines(view: ResultView) -> Iterator[str]:
 def _count_text(signs: np.ndarray) -> str:
     """Numbers of supercritical, subcritical and undecided Hopf points, as text. signs: signs of Re c, of any
     shape."""
-    counts = {word: int((signs == value).sum()) for value, word in CRITICALITY_WORDS.items()}
-    return ", ".join(f"{count} {word}" for word, count in counts.items() if count) or "none known"
+    return counts_by_word(signs, CRITICALITY_WORDS) or "none known"
 
 
-def _searched_range_line(view: ResultView, computed: np.ndarray) -> str:
+def _searched_range_line(points: Selection) -> str:
     """Line on the searched range of F, and on the completeness of the list of Hopf points."""
-    variables = view.variables
-    certified = int(variables["certified"][computed].sum())
-    rods = int(computed.sum())
-    unlisted = int(
-        variables["crossing_count"][computed].clip(min=0).sum()
-        - (variables["crossing_kind"][computed] > 0).sum()
-    )
-    ends = variables["F_end"][computed]
-    search_clause = f"searched up to F = {span_text(ends)}; " if np.isfinite(ends).any() else ""
-    return (
-        f"{search_clause}the list of Hopf points {proof_clause(view)} for "
-        f"{count_of_total(certified, rods, 'rod')}{unstored_crossings_clause(unlisted)}"
-    )
+    is_searched = np.isfinite(points.values("F_end")).any()
+    search_clause = points.sentence("searched up to F = {F_end}; ") if is_searched else ""
+    unlisted_clause = unstored_crossings_clause(unstored_crossing_count(points))
+    return f"{search_clause}the list of Hopf points {proved_for_text(points, 'rod')}{unlisted_clause}"
 
 
 def _maximum_text(values: np.ndarray) -> str:

@@ -5,8 +5,6 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from .number_texts import span_text
-
 RELATIVE_EIGENVALUE_ERROR = 1e-9
 """Relative error of the straight rod's eigenvalue in results of limit cycles, equal to the tolerance of the
 eigenvalue solver."""
@@ -121,10 +119,3 @@ def is_known(variables: Mapping[str, np.ndarray], name: str) -> np.ndarray:
     if name != "transient_time" or "growth_error" not in variables:
         return np.ones(values.shape, bool)
     return (values == 0) | ~(absolute_errors(variables, name) >= MAX_RELATIVE_ERROR_OF_KNOWN_TIME * values)
-
-
-def known_range_text(variables: Mapping[str, np.ndarray], name: str, mask: np.ndarray) -> str:
-    """Range of the variable `name` over the points in `mask`, (...,), as text, rounded according to the
-    errors; unknown values of transient_time are left out."""
-    selected = mask & is_known(variables, name) if name == "transient_time" else mask
-    return span_text(variables[name][selected], absolute_errors(variables, name)[selected])

@@ -2,12 +2,11 @@
 
 import numpy as np
 
-from ...results.file.view import ResultView
-from ...wording import count_of_total
 from ..branch_curves import branch_ends, followed_parameter
 from ..crushing import uncrushed_ranges
 from .number_texts import span_text
-from .summary_lines import proof_clause
+from .selection import Selection
+from .thresholds import proved_for_text
 
 MISSED_CYCLES_TEXT = (
     "cycles are missed if their branch comes from farther away, moves away from the range stable or with "
@@ -17,35 +16,30 @@ MISSED_CYCLES_TEXT = (
 """Clause on the cycles within the range that are not found."""
 
 
-def followed_beyond_range_text(
-    view: ResultView, computed: np.ndarray, parameter_name: str, prefix: str
-) -> str:
+def followed_beyond_range_text(points: Selection, parameter_name: str, prefix: str) -> str:
     """Clauses on how far beyond the range of the file branches are followed that may enter the range, and on
-    the cycles that are missed. computed: mask of the computed points, (...,). parameter_name: parameter along
-    which branches are followed. prefix: the variables are named `prefix` + "from" and `prefix` + "to"."""
-    limits = [view.variables[f"{prefix}{end}"][computed] for end in ("from", "to")]
+    the cycles that are missed. parameter_name: parameter along which branches are followed. prefix: the
+    variables are named `prefix` + "from" and `prefix` + "to"."""
+    limits = [points.values(f"{prefix}{end}") for end in ("from", "to")]
     if not all(np.isfinite(values).any() for values in limits):
         return MISSED_CYCLES_TEXT
     low_text, high_text = map(span_text, limits)
-    followed_sentence = (
-        f"branches that may enter the range are followed down to {parameter_name} = "
-        f"{low_text} and up to {high_text}"
+    return (
+        f"branches that may enter the range are followed down to {parameter_name} = {low_text} and up to "
+        f"{high_text}; {MISSED_CYCLES_TEXT}"
     )
-    return f"{followed_sentence}; {MISSED_CYCLES_TEXT}"
 
 
-def searched_range_line(view: ResultView, computed: np.ndarray) -> str:
-    """Line on the range of the followed parameter, and on the completeness of the list of Hopf points.
-    computed: mask of the computed points, (...,)."""
+def searched_range_line(points: Selection) -> str:
+    """Line on the range of the followed parameter, and on the completeness of the list of Hopf points."""
+    view = points.view
     parameter = followed_parameter(view)
     start, end = branch_ends(view)
-    ranges = uncrushed_ranges(view, np.flatnonzero(computed.ravel()).tolist())
+    ranges = uncrushed_ranges(view, np.flatnonzero(points.mask.ravel()).tolist())
     if all(last <= first for first, last in ranges):
         return "no branch is followed"
     note = "" if set(ranges) <= {(start, end)} else ", where the force does not crush the rod"
-    proved_text = count_of_total(view.variables["certified"][computed].sum(), computed.sum(), "rod")
     return (
         f"followed in {parameter} from {start:g} to {end:g}{note}; the list of Hopf points "
-        f"{proof_clause(view)} for {proved_text}; "
-        + followed_beyond_range_text(view, computed, parameter, "followed_")
+        f"{proved_for_text(points, 'rod')}; {followed_beyond_range_text(points, parameter, 'followed_')}"
     )

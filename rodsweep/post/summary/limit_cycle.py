@@ -1,28 +1,19 @@
-"""Limit cycles in `rodsweep show`: which rods beat, variables of the cycles, and reliability. variables:
-variables of the file, by name."""
+"""Limit cycles in `rodsweep show`: which rods beat, variables of the cycles, and reliability."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
 import numpy as np
 
 from ...model.parameters import NON_OPTIONAL_LINEAR_PARAMETERS
-from ...results.file.view import ResultView
 from ...results.layouts.limit_cycle import CYCLE_STATUSES, SECOND_STATES
 from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import count_of_total, counted
 from ..located_thresholds import StoredThresholds
 from .arm.arm import region_of_arms
-from .errors import absolute_errors, known_range_text
 from .number_texts import error_text, number_and_error, span_text
+from .selection import Selection, counts_at_places, region_of, varied_parameters_at_points
 from .stability import rod_and_arm_stability_lines
-from .summary_lines import (
-    SummaryLines,
-    TextTable,
-    in_brackets,
-    proof_clause,
-    region_text,
-    varied_parameters_at_points,
-)
+from .summary_lines import SummaryLines, TextTable, proof_clause
 
 OUTCOME_WORDS = {
     "cycle": "beats",
@@ -41,206 +32,190 @@ CYCLE_NUMBERS = (
     ("largest Floquet multiplier", "multiplier", ""),
 )
 """(printed name, variable, unit) of the numbers printed for a single cycle."""
+STRAIGHT_ROD_SENTENCE = (
+    "straight rod: leading growth rate {linear_growth_rate} 1/tau2, frequency {linear_frequency} rad/tau2"
+)
+"""Sentence on the eigenvalues of the straight rod."""
+TORUS_SENTENCE = (
+    "quasiperiodic motions: modulated at {modulation_ratio} times the frequency of the oscillation; the "
+    "unstable cycles inside the tori have a largest |Floquet multiplier| of {multiplier}"
+)
+"""Sentence on the motions on tori."""
+CYCLES_SENTENCE = "period: {period} tau2; largest y of the tip: {tip_y_max} L"
+"""Sentence of the answer on the cycles of several points."""
+CYCLE_DETAILS = (
+    "tip: least x {tip_x_min} L, largest x {tip_x_max} L, largest |theta| {tip_theta_max} rad",
+    "mean power of the force: {injection_mean} k3/(L tau2)",
+    "largest |Floquet multiplier|: {multiplier}; returns of the tip in the integration: {periods}; smallest "
+    "stretch h1: {least_stretch}",
+)
+"""Sentences on further results about the cycles."""
+SUBCRITICAL_SENTENCE = (
+    "the Hopf point at F = {subcritical_F} is subcritical, so a larger initial deflection may lead to a "
+    "cycle; `task: branch` follows the branch of these cycles"
+)
+"""Reason why a stable cycle may exist beside the stable straight rod."""
+ERROR_VARIABLES = {
+    "period": "period_error",
+    "largest y of the tip": "amplitude_error",
+    "other extrema of the tip": "extrema_error",
+    "energy balance": "energy_imbalance",
+    "multiplier": "multiplier_error",
+}
+"""Variables of which the largest absolute value is printed as error, by printed name."""
 
 
-def limit_cycle_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
-    """Summary of limit cycles. computed: mask of the computed points, of the shape of the points."""
-    variables = view.variables
-    beats = computed & view.has_status("cycle")
-    orbit = computed & view.has_status(*CYCLE_STATUSES)
-    stability, arm_sentences = _threshold_lines(view)
-    answer = [
-        outcome_count_line(view, computed, region_text),
-        *stability,
-        *_second_state_lines(view, computed),
-    ]
-    if view.quantities and computed.size > 1 and not beats[computed].all():
-        arm_sentences.insert(0, outcome_count_line(view, computed, region_of_arms))
-    reliability = _hopf_completeness_lines(view)
-    rate, frequency = (
-        known_range_text(variables, f"linear_{name}", computed) for name in ("growth_rate", "frequency")
-    )
-    details = [f"straight rod: leading growth rate {rate} 1/tau2, frequency {frequency} rad/tau2"]
+def limit_cycle_summary(points: Selection) -> SummaryLines:
+    """Summary of limit cycles at the computed points."""
+    view = points.view
+    cycles = points.with_status("cycle")
+    tori = points.with_status("torus")
+    is_single = points.mask.size == 1
+    stability_lines, arm_sentences = _threshold_lines(points)
+    if view.quantities and not is_single and cycles.count < points.count:
+        arm_sentences.insert(0, outcome_count_line(points, region_of_arms))
+    answer = [outcome_count_line(points)]
+    reliability = _hopf_completeness_lines(points)
     numbers = None
-    on_torus = computed & view.has_status("torus")
-    if on_torus.any():
-        ratio, modulus = (
-            known_range_text(variables, name, on_torus) for name in ("modulation_ratio", "multiplier")
-        )
-        details.append(
-            f"quasiperiodic motions: modulated at {ratio} times the frequency of the oscillation; the "
-            f"unstable cycles inside the tori have a largest |Floquet multiplier| of {modulus}"
-        )
-    if computed.size == 1 and orbit.any():
-        answer.insert(1, single_cycle_stability_line(variables, stable=bool(beats.any())))
-        numbers = single_cycle_table(variables)
-    elif beats.any():
-        period_text, y_text = (known_range_text(variables, name, beats) for name in ("period", "tip_y_max"))
-        answer.insert(1, f"period: {period_text} tau2; largest y of the tip: {y_text} L")
-        reliability.insert(0, _error_line(variables, beats))
-    details += _cycle_lines(variables, beats) if beats.any() else []
+    if is_single and points.with_status(*CYCLE_STATUSES).count:
+        answer.append(single_cycle_stability_line(points))
+        numbers = single_cycle_table(points)
+    elif cycles.count:
+        answer.append(cycles.sentence(CYCLES_SENTENCE))
+        reliability.insert(0, _error_line(cycles))
+    details = [points.sentence(STRAIGHT_ROD_SENTENCE)]
+    details += [tori.sentence(TORUS_SENTENCE)] if tori.count else []
+    details += _cycle_lines(cycles) if cycles.count else []
+    answer += [*stability_lines, *_second_state_lines(points)]
     return SummaryLines(answer, reliability, details, arm_sentences, numbers)
 
 
-def outcome_count_line(
-    view: ResultView, computed: np.ndarray, region: Callable[[ResultView, np.ndarray], str]
-) -> str:
-    """Line on the number of points with each outcome, and on the region of parameters of these points.
+def outcome_count_line(points: Selection, region: Callable[[Selection], str] = region_of) -> str:
+    """Line on the number of points with each outcome, and on their regions of parameters.
 
-    computed: mask of the computed points, of the shape of the points. region: function that describes the
-    points of a mask.
+    region: function that describes the place of points.
     """
-    status = view.variables["status"]
-    total_text = counted(int(computed.sum()), "point")
-    masks = {word: computed & (status == value) for value, word in view.flags.items() if value >= 0}
-    masks_of_outcomes = {
-        OUTCOME_WORDS.get(status_word, status_word.replace("_", " ")): mask
-        for status_word, mask in masks.items()
-        if mask.any()
+    view = points.view
+    points_text = counted(points.count, "point")
+    names = {
+        name: OUTCOME_WORDS.get(name, name.replace("_", " "))
+        for value, name in view.flags.items()
+        if value >= 0
     }
-    if len(masks_of_outcomes) == 1:
-        word = next(iter(masks_of_outcomes))
-        outcome_text = f"the rod {word}" if word in OUTCOME_WORDS.values() else word
-        place_text = f" at all {total_text}" if computed.sum() > 1 else " at the only solved point"
-        return outcome_text + place_text * (computed.size > 1)
-    counts = (
-        f"{word} at {int(mask.sum())}{in_brackets(region(view, mask))}"
-        for word, mask in masks_of_outcomes.items()
-    )
-    return f"of {total_text}: {', '.join(counts)}"
+    outcomes = points.parts({word: view.has_status(name) for name, word in names.items()})
+    if len(outcomes) > 1:
+        return f"of {points_text}: {counts_at_places(outcomes, region)}"
+    (word,) = outcomes
+    outcome_text = f"the rod {word}" if word in OUTCOME_WORDS.values() else word
+    place_text = f"at all {points_text}" if points.count > 1 else "at the only solved point"
+    return outcome_text if points.mask.size == 1 else f"{outcome_text} {place_text}"
 
 
-def _threshold_lines(view: ResultView) -> tuple[list[str], list[str]]:
+def _threshold_lines(points: Selection) -> tuple[list[str], list[str]]:
     """Returns (lines, lines in an arm's units) about thresholds of the straight rod along F, or along all
     varied parameters if F is not varied."""
+    view = points.view
     names = [name for name in NON_OPTIONAL_LINEAR_PARAMETERS if name in varied_parameters_at_points(view)]
     lines = list[str]()
     arm_sentences = list[str]()
     for name in names[:1] if "F" in names else names:
         thresholds_on = StoredThresholds(view, name).thresholds_up_to_end
-        threshold_text, sentences = rod_and_arm_stability_lines(view, name, thresholds_on)
-        lines += threshold_text
-        arm_sentences += sentences
+        rod_lines, arm_lines = rod_and_arm_stability_lines(view, name, thresholds_on)
+        lines += rod_lines
+        arm_sentences += arm_lines
     return lines, arm_sentences
 
 
-def _hopf_completeness_lines(view: ResultView) -> list[str]:
+def _hopf_completeness_lines(points: Selection) -> list[str]:
     """Sentence, in a list, on whether the Hopf points are proved complete; empty if no line of points was
     searched."""
-    variables = view.variables
+    variables = points.variables
     line_count = int(variables["hopf_lines"]) if "hopf_lines" in variables else 0
     if not line_count:
         return []
     proved_text = count_of_total(int(variables["hopf_lines_proved"]), line_count, "line")
-    return [f"the list of Hopf points between neighbouring points {proof_clause(view)} for {proved_text}"]
+    subject = "the list of Hopf points between neighbouring points"
+    return [f"{subject} {proof_clause(points.view)} for {proved_text}"]
 
 
-def single_cycle_stability_line(variables: Mapping[str, np.ndarray], stable: bool) -> str:
-    """Line that says whether the only cycle in a file is stable, or that no Floquet multiplier is computed.
-    variables: variables of the file, (1, ...) each. stable: whether the status is "cycle"."""
-    if np.isnan(variables["multiplier"]).all():
+def single_cycle_stability_line(points: Selection) -> str:
+    """Line that says whether the only cycle in a file is stable, or that no Floquet multiplier is
+    computed."""
+    if np.isnan(points.variables["multiplier"]).all():
         return "the motion in time settles on the cycle; no Floquet multiplier is computed"
-    if stable:
+    if points.with_status("cycle").count:
         return "the cycle is stable in the plane: its largest nontrivial Floquet multiplier is below 1"
     return "the cycle is unstable: its largest nontrivial Floquet multiplier is above 1"
 
 
-def single_cycle_table(variables: Mapping[str, np.ndarray]) -> TextTable:
-    """Table of the numbers of the only cycle in a file, with errors. variables: variables of the
-    file, (1, ...) each."""
+def single_cycle_table(points: Selection) -> TextTable:
+    """Table of the numbers of the only cycle in a file, with errors."""
     rows = []
     for label, name, unit in CYCLE_NUMBERS:
-        value = float(np.nanmax(variables[name], initial=-np.inf))
+        value = float(points.values(name).max())
         if np.isfinite(value):
-            rows.append(
-                (label, *number_and_error(value, float(absolute_errors(variables, name).max())), unit)
-            )
+            rows.append((label, *number_and_error(value, float(points.errors(name).max())), unit))
     return TextTable(("", "value", "+-", "unit"), tuple(rows))
 
 
-def _second_state_lines(view: ResultView, computed: np.ndarray) -> list[str]:
+def _second_state_lines(points: Selection) -> list[str]:
     """Lines about points at which a second stable state is certain or possible, or at which the straight rod
     is stable but the motion ended in no stable state."""
-    variables = view.variables
+    states = points.variables["second_state"]
     numbers = {word: number for number, word in SECOND_STATES}
+    straight = points.where(states == numbers["straight"])
+    bistable = straight.with_status("cycle", "torus")
+    straight_only = straight.where(~bistable.mask)
+    possible = points.where(states == numbers["cycle_possible"])
     lines = []
-    straight = computed & (variables["second_state"] == numbers["straight"])
-    cycle = computed & (variables["second_state"] == numbers["cycle_possible"])
-    are_bistable = straight & view.has_status("cycle", "torus")
-    if are_bistable.any():
-        at_points = _at_count(are_bistable, computed)
-        lines.append(f"two stable states{at_points}: the straight rod is stable as well")
-    if (straight_only := straight & ~are_bistable).any():
-        at_points = _at_count(straight_only, computed)
-        lines.append(f"the straight rod is stable{at_points} where the motion reached no stable state")
-    if cycle.any():
-        lines.append(
-            f"a stable cycle may exist beside the straight rod{_at_count(cycle, computed)}: the Hopf point "
-            f"at F = {span_text(variables['subcritical_F'][cycle])} is subcritical, so a larger initial "
-            "deflection may lead to a cycle; `task: branch` follows the branch of these cycles"
-        )
+    if bistable.count:
+        lines.append(f"two stable states{_at_points(bistable, points)}: the straight rod is stable as well")
+    if straight_only.count:
+        place_text = _at_points(straight_only, points)
+        lines.append(f"the straight rod is stable{place_text} where the motion reached no stable state")
+    if possible.count:
+        place_text = _at_points(possible, points)
+        reason = possible.sentence(SUBCRITICAL_SENTENCE)
+        lines.append(f"a stable cycle may exist beside the straight rod{place_text}: {reason}")
     return lines
 
 
-def _at_count(mask: np.ndarray, computed: np.ndarray) -> str:
-    """Clause on the number of points in the mask `computed` that are also in the mask `mask`; empty if
-    `computed` has a single point."""
-    return "" if computed.sum() == 1 else f" at {count_of_total(mask.sum(), computed.sum(), 'point')}"
+def _at_points(part: Selection, points: Selection) -> str:
+    """Clause on the number of points of the part; empty if there is a single point."""
+    return "" if points.count == 1 else f" at {part.of_total(points)}"
 
 
-def _cycle_lines(variables: Mapping[str, np.ndarray], is_cycle: np.ndarray) -> list[str]:
+def _cycle_lines(cycles: Selection) -> list[str]:
     """Lines on frequency, period in tau1, extrema of the tip, power, multiplier, integrated periods and least
     h1 of the cycles."""
-    tips = (
-        f"{label} {known_range_text(variables, f'tip_{name}', is_cycle)} {unit}"
-        for label, name, unit in (
-            ("least x", "x_min", "L"), ("largest x", "x_max", "L"), ("largest |theta|", "theta_max", "rad"),
-        )
-    )  # fmt: skip
-    frequency_text = known_range_text(variables, "frequency", is_cycle)
-    lines = [
-        f"frequency of the cycle: {frequency_text} rad/tau2{_relative_frequency_clause(variables, is_cycle)}"
-    ]
-    if "period_tau1" in variables:
-        lines.append(f"period: {known_range_text(variables, 'period_tau1', is_cycle)} tau1")
-    return [
-        *lines,
-        f"tip: {', '.join(tips)}",
-        f"mean power of the force: {known_range_text(variables, 'injection_mean', is_cycle)} k3/(L tau2)",
-        f"largest |Floquet multiplier|: {known_range_text(variables, 'multiplier', is_cycle)}; returns of "
-        f"the tip in the integration: {span_text(variables['periods'][is_cycle])}; smallest stretch h1: "
-        f"{known_range_text(variables, 'least_stretch', is_cycle)}",
-    ]
+    lines = [cycles.sentence("frequency of the cycle: {frequency} rad/tau2") + _mode_frequency_clause(cycles)]
+    if "period_tau1" in cycles.variables:
+        lines.append(cycles.sentence("period: {period_tau1} tau1"))
+    return [*lines, *map(cycles.sentence, CYCLE_DETAILS)]
 
 
-def _relative_frequency_clause(variables: Mapping[str, np.ndarray], is_cycle: np.ndarray) -> str:
+def _mode_frequency_clause(cycles: Selection) -> str:
     """Clause that compares the frequencies of the cycles with the frequencies of the leading modes; empty if
     no frequency of a leading mode is known."""
-    oscillates = is_cycle & (np.abs(variables["linear_frequency"]) > 0)
-    steady = is_cycle & (variables["linear_frequency"] == 0)
+    mode_frequencies = cycles.variables["linear_frequency"]
+    oscillating = cycles.where(np.abs(mode_frequencies) > 0)
+    steady = cycles.where(mode_frequencies == 0)
     clause = ""
-    if oscillates.any():
-        ratio = variables["frequency"][oscillates] / variables["linear_frequency"][oscillates]
-        ratio_text = span_text(ratio, ratio * variables["period_error"][oscillates])
+    if oscillating.count:
+        ratio = oscillating.values("frequency") / oscillating.values("linear_frequency")
+        ratio_text = span_text(ratio, ratio * oscillating.values("period_error"))
         clause = f", {ratio_text} times that of the leading mode of the straight rod"
-    if steady.any():
-        clause += f"; the leading mode of the straight rod does not oscillate{_at_count(steady, is_cycle)}"
+    if steady.count:
+        clause += f"; the leading mode of the straight rod does not oscillate{_at_points(steady, cycles)}"
     return clause
 
 
-def _error_line(variables: Mapping[str, np.ndarray], is_cycle: np.ndarray) -> str:
+def _error_line(cycles: Selection) -> str:
     """Line on the largest errors of the cycles."""
-    names = {
-        "period": "period_error",
-        "largest y of the tip": "amplitude_error",
-        "other extrema of the tip": "extrema_error",
-        "energy balance": "energy_imbalance",
-        "multiplier": "multiplier_error",
-    }
     errors = []
-    for word, name in names.items():
-        errors_of_cycles = np.abs(variables[name][is_cycle & np.isfinite(variables[name])])
-        errors.append(
-            f"{word} {error_text(float(errors_of_cycles.max())) if errors_of_cycles.size else 'not known'}"
-        )
+    for word, name in ERROR_VARIABLES.items():
+        values = np.abs(cycles.values(name))
+        known_errors = values[np.isfinite(values)]
+        largest_text = error_text(float(known_errors.max())) if known_errors.size else "not known"
+        errors.append(f"{word} {largest_text}")
     return f"worst errors: {', '.join(errors)}; multiplier errors are absolute, all other errors are relative"

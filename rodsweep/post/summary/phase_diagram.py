@@ -2,13 +2,12 @@
 
 import numpy as np
 
-from ...results.file.view import ResultView
 from ...results.layouts.phase_diagram import STABILITY_CLASSES
 from ...results.layouts.rods import has_standard_rods
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...results.layouts.variables import flag_number
-from ...wording import count_of_total, counted
-from ..plane_curves import PlaneParameters, plane_parameters
+from ...wording import counted
+from ..plane_curves import plane_parameters
 from .arm.arm import load_range_text
 from .diagram_curves import (
     criticality_lines,
@@ -16,8 +15,10 @@ from .diagram_curves import (
     diagram_curve_lines,
     incomplete_curve_lines,
 )
+from .diagram_rows import DiagramRows
 from .followed_ranges import followed_beyond_range_text
-from .number_texts import axis_values_text, span_text
+from .number_texts import span_text
+from .selection import Selection, counts_by_word, percents_by_word
 from .stable_states import stable_state_lines
 from .summary_lines import SummaryLines
 from .thresholds import cost_lines, search_lines
@@ -34,167 +35,137 @@ CROSSING_KIND_REMARKS = {
 """Explanation printed after the name of a kind of crossing."""
 COMPARED_GRID_SPACING = 1e-8
 """Spacing, in the unit of the parameter, of a uniform grid with which the cost of the rows is compared."""
+FLUTTER, UNDECIDED = (flag_number(word, STABILITY_CLASSES) for word in ("flutter", "undecided"))
+"""Stored numbers of two classes."""
 
 
-def phase_diagram_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
-    """Summary of a phase diagram. computed: mask of the computed rows, of the shape of the rows."""
-    variables = view.variables
-    parameters = plane_parameters(view)
-    classes = variables["class"][computed]
-    counts = {word: int((classes == value).sum()) for value, word in STABILITY_CLASSES}
-    counts = {word: count for word, count in counts.items() if count}
-    percents = ", ".join(f"{100 * count / classes.size:.1f} % {word}" for word, count in counts.items())
+def phase_diagram_summary(points: Selection) -> SummaryLines:
+    """Summary of the computed rows of a phase diagram."""
+    view = points.view
+    rows = DiagramRows(view, points.mask, plane_parameters(view))
+    classes = rows.values("class")
+    percents_text = percents_by_word(classes, dict(STABILITY_CLASSES))
     answer = [
-        f"behaviour of the straight rod, in % of the grid points: {percents}",
-        *lines_about_rows(view, computed, parameters),
+        f"behaviour of the straight rod, in % of the grid points: {percents_text}",
+        *lines_about_rows(rows),
     ]
-    if "stable_states" in variables:
-        answer += stable_state_lines(view, computed, parameters)
-    reliability = search_lines(view, computed, "row")
-    if "stable_states" in variables:
-        followed_text = followed_beyond_range_text(view, computed, parameters.line, "cycle_followed_")
+    reliability = search_lines(rows, "row")
+    if "stable_states" in rows.variables:
+        answer += stable_state_lines(rows)
+        followed_text = followed_beyond_range_text(rows, rows.parameters.line, "cycle_followed_")
         reliability.append(f"{followed_text}, unless a curve of folds or torus points crosses the row there")
-    counts_text = ", ".join(f"{count} {word}" for word, count in counts.items())
+    counts_text = counts_by_word(classes, dict(STABILITY_CLASSES))
     details = [
         f"of {counted(classes.size, 'grid point')} on the rows: {counts_text}",
-        *cost_lines(view, computed),
-        *cost_saving_lines(view, computed, parameters),
+        *cost_lines(rows),
+        *cost_saving_lines(rows),
     ]
-    if "curve_number" in variables:
-        answer += diagram_curve_lines(view, parameters)
-        reliability += [
-            *curve_count_lines(view, parameters),
-            *incomplete_curve_lines(view, parameters),
-        ]
-    if "curve_criticality" in variables:
+    if "curve_number" in rows.variables:
+        answer += diagram_curve_lines(view, rows.parameters)
+        reliability += curve_count_lines(view, rows.parameters)
+        reliability += incomplete_curve_lines(view, rows.parameters)
+    if "curve_criticality" in rows.variables:
         details += criticality_lines(view)
-    return SummaryLines(answer, reliability, details, straight_arm_threshold_lines(view, computed))
+    return SummaryLines(answer, reliability, details, straight_arm_threshold_lines(rows))
 
 
-def cost_saving_lines(view: ResultView, computed: np.ndarray, parameters: PlaneParameters) -> list[str]:
+def cost_saving_lines(rows: DiagramRows) -> list[str]:
     """List with a line that compares the cost of the rows with the cost of a uniform grid; empty if the cost
-    is not stored.
-
-    computed: mask of the computed rows, of the shape of the rows.
-    """
-    if not has_standard_rods(view.config):
+    is not stored."""
+    if not has_standard_rods(rows.view.config):
         return []
-    variables = view.variables
-    row_count = int(computed.sum())
-    solve_count = int(variables["solves"][computed].sum())
-    boxes = int(variables["boxes"][computed].sum())
-    uniform = float(np.ptp(variables[parameters.line])) / COMPARED_GRID_SPACING * row_count
+    line = rows.parameters.line
+    solve_count, box_count = (int(rows.values(name).sum()) for name in ("solves", "boxes"))
+    uniform = float(np.ptp(rows.variables[line])) / COMPARED_GRID_SPACING * rows.count
+    ratio = float(f"{uniform / max(solve_count + box_count, 1):.1g}")
     return [
-        f"in all {counted(solve_count, 'eigenproblem')} and {counted(boxes, 'evaluation')} of D; a uniform "
-        f"grid that resolves {parameters.line} to {COMPARED_GRID_SPACING:g} on these rows has {uniform:.2g} "
-        f"points, {float(f'{uniform / max(solve_count + boxes, 1):.1g}'):g} times as many"
+        f"in all {counted(solve_count, 'eigenproblem')} and {counted(box_count, 'evaluation')} of D; a "
+        f"uniform grid that resolves {line} to {COMPARED_GRID_SPACING:g} on these rows has {uniform:.2g} "
+        f"points, {ratio:g} times as many"
     ]
 
 
-def row_start_lines(view: ResultView, computed: np.ndarray, parameters: PlaneParameters) -> list[str]:
-    """List with a line on the classes at the starts of the rows; empty if all these classes are monotone.
-    computed: mask of the computed rows, (...,)."""
-    start_classes = view.variables["class"][computed][:, 0]
-    texts = [
-        f"{word} on {int((start_classes == value).sum())}"
-        for value, word in STABILITY_CLASSES
-        if (start_classes == value).any()
+def lines_about_rows(rows: DiagramRows) -> list[str]:
+    """Lines about the classes at the starts of the rows, crossings by kind, undecided ranges, and rows with
+    and without flutter."""
+    variables = rows.variables
+    stored_counts = (variables["crossing_kind"] > 0).sum(axis=-1)
+    has_unknown = (variables["crossing_count"] != stored_counts) | np.isfinite(variables["open_from"])
+    incomplete = rows.mask & has_unknown
+    return [
+        *_row_start_lines(rows),
+        *_crossing_lines(rows, incomplete),
+        *_undecided_and_flutter_lines(rows, incomplete),
     ]
-    if texts == [f"monotone on {len(start_classes)}"]:
+
+
+def _row_start_lines(rows: DiagramRows) -> list[str]:
+    """List with a line on the classes at the starts of the rows; empty if all these classes are monotone."""
+    start_classes = rows.values("class")[:, 0]
+    words = [(word, int((start_classes == value).sum())) for value, word in STABILITY_CLASSES]
+    if ("monotone", rows.count) in words:
         return []
-    place_text = f"{parameters.line} = {view.variables[parameters.line][0]:.6g}, where the rows begin"
-    return [f"the straight rod at {place_text}: {', '.join(texts)} of {counted(len(start_classes), 'row')}"]
+    line = rows.parameters.line
+    place_text = f"{line} = {rows.variables[line][0]:.6g}, where the rows begin"
+    counts_text = ", ".join(f"{word} on {count}" for word, count in words if count)
+    return [f"the straight rod at {place_text}: {counts_text} of {counted(rows.count, 'row')}"]
 
 
-def lines_about_rows(view: ResultView, computed: np.ndarray, parameters: PlaneParameters) -> list[str]:
-    """Lines about the rows in the mask `computed`, (...,): states at their starts, crossings by kind,
-    undecided ranges, rows with and without flutter."""
-    variables = view.variables
-    stored = (variables["crossing_kind"] > 0).sum(axis=-1)
-    is_incomplete = computed & ((variables["crossing_count"] != stored) | np.isfinite(variables["open_from"]))
-    return [
-        *row_start_lines(view, computed, parameters),
-        *_crossing_lines(view, computed, is_incomplete, parameters),
-        *_undecided_and_flutter_lines(view, computed, is_incomplete, parameters),
-    ]
-
-
-def _crossing_lines(
-    view: ResultView, computed: np.ndarray, unknown: np.ndarray, parameters: PlaneParameters
-) -> list[str]:
-    """Lines about the crossings of each kind on the rows in the mask `computed`; `unknown`: mask of rows with
-    further crossings that are not known."""
-    variables = view.variables
-    line, row = parameters
-    row_values = view.point_columns[row].reshape(computed.shape)
+def _crossing_lines(rows: DiagramRows, incomplete: np.ndarray) -> list[str]:
+    """Lines about the crossings of each kind; `incomplete`: mask of rows with further crossings that are not
+    known."""
     lines = []
     for number, word in enumerate(CROSSING_KINDS):
-        of_kind = (variables["crossing_kind"] == number) & computed[..., np.newaxis]
-        has_kind = of_kind.any(axis=-1)
-        if number and has_kind.any():
-            is_later = of_kind & (of_kind.cumsum(axis=-1) > 1)
-            masks = (of_kind & ~is_later, is_later)
-            first_text, later_text = (
-                span_text(variables["crossing_at"][mask], variables["crossing_error"][mask]) for mask in masks
-            )
-            bound = "at least " * bool((unknown & ~has_kind).any())
-            rows_text = f"on {bound}{count_of_total(has_kind.sum(), computed.sum(), 'row')}"
-            text = f"{word}{CROSSING_KIND_REMARKS.get(word, '')}: {rows_text}, {line} = {first_text}"
-            text += f", {row} = {axis_values_text(row_values[has_kind])}"
-            if is_later.any():
-                bound = "at least " * bool(unknown.any())
-                later_rows_text = f"{bound}{int(is_later.any(axis=-1).sum())} of these rows"
-                text += f"; again further along the row on {later_rows_text}, at {line} = {later_text}"
-            lines.append(text)
+        of_kind = rows.items(rows.variables["crossing_kind"] == number)
+        if number == 0 or not of_kind.any():
+            continue
+        is_later = of_kind & (of_kind.cumsum(axis=-1) > 1)
+        bound = "at least " if (incomplete & ~of_kind.any(axis=-1)).any() else ""
+        first_text = rows.place_text(of_kind & ~is_later, "crossing_at", "crossing_error", bound)
+        text = f"{word}{CROSSING_KIND_REMARKS.get(word, '')}: on {first_text}"
+        if is_later.any():
+            bound = "at least " if incomplete.any() else ""
+            rows_text = f"{bound}{rows.with_items(is_later).count} of these rows"
+            positions, errors = (rows.variables[name][is_later] for name in ("crossing_at", "crossing_error"))
+            positions_text = f"{rows.parameters.line} = {span_text(positions, errors)}"
+            text += f"; again further along the row on {rows_text}, at {positions_text}"
+        lines.append(text)
     return lines
 
 
-def _undecided_and_flutter_lines(
-    view: ResultView, computed: np.ndarray, unknown: np.ndarray, parameters: PlaneParameters
-) -> list[str]:
-    """Lines about undecided ranges, and about the rows with and without flutter. The masks as in
+def _undecided_and_flutter_lines(rows: DiagramRows, incomplete: np.ndarray) -> list[str]:
+    """Lines about undecided ranges, and about the rows with and without flutter. incomplete: as in
     `_crossing_lines`."""
-    variables = view.variables
-    line, row = parameters
-    row_values = view.point_columns[row].reshape(computed.shape)
+    classes = rows.variables["class"]
+    is_undecided = classes == UNDECIDED
+    undecided = rows.items(is_undecided)
     lines = []
-    flutter, unknown_class = (flag_number(word, STABILITY_CLASSES) for word in ("flutter", "undecided"))
-    undecided = (variables["class"] == unknown_class) & computed[..., np.newaxis]
     if undecided.any():
-        has_undecided = undecided.any(axis=-1)
-        values = np.broadcast_to(variables[line], undecided.shape)[undecided]
-        rows_text = (
-            f"on {count_of_total(has_undecided.sum(), computed.sum(), 'row')}, {line} = {span_text(values)}"
-        )
-        values_text = axis_values_text(row_values[has_undecided])
-        lines.append(f"behaviour undecided: {rows_text}, {row} = {values_text}")
+        lines.append(f"behaviour undecided: on {rows.place_text(undecided, rows.parameters.line)}")
     # A window of flutter may lie between two grid points: the located crossings show it.
-    flutters = (variables["class"] == flutter).any(axis=-1) | (variables["unstable_after"] > 0).any(axis=-1)
-    never_flutters = ~flutters & ~unknown & (variables["class"] != unknown_class).all(axis=-1)
-    flutters &= computed
-    never_flutters &= computed
-    if never_flutters.any() and flutters.any():
-        with_flutter, without = (axis_values_text(row_values[mask]) for mask in (flutters, never_flutters))
-        count_text = count_of_total(flutters.sum(), computed.sum(), "row")
-        none = int(never_flutters.sum())
-        lines.append(f"flutter: on {count_text}, {row} = {with_flutter}; none on {none}, {row} = {without}")
+    has_flutter = (classes == FLUTTER).any(axis=-1) | (rows.variables["unstable_after"] > 0).any(axis=-1)
+    flutter = rows.where(has_flutter)
+    no_flutter = rows.where(~has_flutter & ~incomplete & ~is_undecided.any(axis=-1))
+    if flutter.count and no_flutter.count:
+        lines.append(
+            f"flutter: on {flutter.of_total(rows, 'row')}, {flutter.row_values_text}; none on "
+            f"{no_flutter.count}, {no_flutter.row_values_text}"
+        )
     return lines
 
 
-def straight_arm_threshold_lines(view: ResultView, computed: np.ndarray) -> list[str]:
+def straight_arm_threshold_lines(rows: DiagramRows) -> list[str]:
     """Lines about the thresholds of the straight arms along F, by kind, in the arms' units; an empty list for
-    a rod, and for rows along another parameter. computed: mask of the computed rows, of the shape of the
-    rows."""
+    a rod, and for rows along another parameter."""
+    view = rows.view
     if not view.quantities or "F" in view.parameters:
         return []
-    variables = view.variables
     lines = []
     for number, word in list(enumerate(CROSSING_KINDS))[1:]:
-        is_of_kind = (variables["crossing_kind"] == number) & computed[..., np.newaxis]
-        if is_of_kind.any():
-            forces = variables["crossing_at"][is_of_kind]
-            rows_text = count_of_total(is_of_kind.any(axis=-1).sum(), computed.sum(), "row")
-            lines.append(
-                f"{word}: on {rows_text}, at {load_range_text(view, forces, np.zeros(len(forces), int))}"
-            )
+        of_kind = rows.items(rows.variables["crossing_kind"] == number)
+        if of_kind.any():
+            forces = rows.variables["crossing_at"][of_kind]
+            rows_text = rows.with_items(of_kind).of_total(rows, "row")
+            loads_text = load_range_text(view, forces, np.zeros(len(forces), int))
+            lines.append(f"{word}: on {rows_text}, at {loads_text}")
     return lines

@@ -7,18 +7,18 @@ from ...results.layouts.branch import SPECIAL_KINDS
 from ...results.layouts.phase_diagram import STABLE_STATES
 from ...results.layouts.thresholds import HOPF_CROSSING_CODES
 from ...results.layouts.variables import flag_number
-from ...wording import count_of_total, counted
-from ..plane_curves import PlaneParameters
-from .diagram_curves import CYCLE_CHANGE_WORDS
-from .number_texts import axis_values_text, span_text
+from ...wording import counted
+from .cycle_curves import CYCLE_CHANGE_WORDS
+from .diagram_rows import DiagramRows
+from .selection import percents_by_word
 
-STABLE_STATE_WORDS = {
-    "neither_known": "no stable state known",
-    "straight": "straight rod only",
-    "cycle": "cycle only",
-    "both": "straight rod and cycle",
+STABLE_STATE_WORDS = dict(STABLE_STATES) | {
+    flag_number("neither_known", STABLE_STATES): "no stable state known",
+    flag_number("straight", STABLE_STATES): "straight rod only",
+    flag_number("cycle", STABLE_STATES): "cycle only",
+    flag_number("both", STABLE_STATES): "straight rod and cycle",
 }
-"""Phrase for the stable states of a rod, by name; other names are printed as they are."""
+"""Phrase for the stable states of a rod, by stored number."""
 LISTED_STATES = {
     "straight rod and cycle both stable": "both",
     "no stable state known": "neither_known",
@@ -29,42 +29,25 @@ KINDS_WITHOUT_CYCLE_CHANGE = tuple(map(SPECIAL_KINDS.index, ("none", "hopf")))
 """Stored numbers of special points that are no change of cycles beside the changes of the straight rod."""
 
 
-def stable_state_lines(view: ResultView, computed: np.ndarray, parameters: PlaneParameters) -> list[str]:
+def stable_state_lines(rows: DiagramRows) -> list[str]:
     """Lines about the fraction of the grid with each stable state, the ranges of some states, and the special
-    points of cycles. computed: mask of the computed rows, (...,)."""
-    variables = view.variables
-    line, row = parameters
-    row_values = view.point_columns[row].reshape(computed.shape)
-    states = variables["stable_states"]
-    kinds = variables["cycle_special_kind"]
-    positions = variables[f"cycle_special_{line}"]
-    shares = (
-        (float((states[computed] == number).mean()), STABLE_STATE_WORDS.get(state_word, state_word))
-        for number, state_word in STABLE_STATES
-    )
-    texts = ", ".join(f"{100 * share:.1f} % {phrase}" for share, phrase in shares if share)
-    lines = [f"stable states, in % of the grid points: {texts}"]
+    points of cycles."""
+    states = rows.variables["stable_states"]
+    line = rows.parameters.line
+    percents_text = percents_by_word(states[rows.mask], STABLE_STATE_WORDS)
+    lines = [f"stable states, in % of the grid points: {percents_text}"]
     for phrase, state in LISTED_STATES.items():
-        in_state = (states == flag_number(state, STABLE_STATES)) & computed[..., np.newaxis]
+        in_state = rows.items(states == flag_number(state, STABLE_STATES))
         if in_state.any():
-            at_points = in_state.any(axis=-1)
-            rows_text = f"at grid points of {count_of_total(at_points.sum(), computed.sum(), 'row')}"
-            values_text = span_text(np.broadcast_to(variables[line], in_state.shape)[in_state])
-            rows = axis_values_text(row_values[at_points])
-            lines.append(f"{phrase}: {rows_text}, {line} = {values_text}, {row} = {rows}")
-        is_hidden = computed & ~in_state.any(axis=-1) & _is_both_only_between_points(view, line)
-        if state == "both" and is_hidden.any():
-            rows = counted(int(is_hidden.sum()), "row")
-            hidden_values = axis_values_text(row_values[is_hidden])
-            lines.append(f"{phrase}: only between grid points on {rows}, {row} = {hidden_values}")
+            lines.append(f"{phrase}: at grid points of {rows.place_text(in_state, line)}")
+        if state == "both":
+            hidden = rows.where(~in_state.any(axis=-1) & _is_both_only_between_points(rows.view, line))
+            rows_text = f"on {counted(hidden.count, 'row')}, {hidden.row_values_text}"
+            lines += [f"{phrase}: only between grid points {rows_text}"] if hidden.count else []
     for kind, phrase in CYCLE_CHANGE_WORDS.items():
-        is_of_kind = (kinds == SPECIAL_KINDS.index(kind)) & computed[..., np.newaxis]
-        has_kind = is_of_kind.any(axis=-1)
-        if has_kind.any():
-            rows_text = f"on {count_of_total(has_kind.sum(), computed.sum(), 'row')}"
-            rows = axis_values_text(row_values[has_kind])
-            values_text = span_text(positions[is_of_kind])
-            lines.append(f"{phrase}: {rows_text}, {line} = {values_text}, {row} = {rows}")
+        of_kind = rows.items(rows.variables["cycle_special_kind"] == SPECIAL_KINDS.index(kind))
+        if of_kind.any():
+            lines.append(f"{phrase}: on {rows.place_text(of_kind, f'cycle_special_{line}')}")
     return lines
 
 
@@ -79,17 +62,15 @@ def _is_both_only_between_points(view: ResultView, line_parameter: str) -> np.nd
     is_between = np.zeros(variables["stable_states"].shape[:-1], dtype=bool)
     for row in np.ndindex(is_between.shape):
         states = variables["stable_states"][row]
-        hopfs = variables["crossing_at"][row][np.isin(variables["crossing_kind"][row], HOPF_CROSSING_CODES)]
-        specials = variables[f"cycle_special_{line_parameter}"][row][
-            ~np.isin(variables["cycle_special_kind"][row], KINDS_WITHOUT_CYCLE_CHANGE)
-        ]
-        for i in np.flatnonzero(states[:-1] + states[1:] == straight + cycle):
-            positions_between = [
+        is_hopf = np.isin(variables["crossing_kind"][row], HOPF_CROSSING_CODES)
+        is_change = ~np.isin(variables["cycle_special_kind"][row], KINDS_WITHOUT_CYCLE_CHANGE)
+        hopfs = variables["crossing_at"][row][is_hopf]
+        specials = variables[f"cycle_special_{line_parameter}"][row][is_change]
+        for i, pair in enumerate(zip(states[:-1], states[1:], strict=True)):
+            of_straight, of_cycle = (
                 positions[(positions > x[i]) & (positions < x[i + 1])] for positions in (hopfs, specials)
-            ]
-            if {states[i], states[i + 1]} != {straight, cycle} or list(map(len, positions_between)) != [1, 1]:
-                continue
-            (change_of_straight,), (change_of_cycle,) = positions_between
-            # The state of the second point begins before the state of the first point ends.
-            is_between[row] |= (change_of_straight < change_of_cycle) == (states[i] == cycle)
+            )
+            if set(pair) == {straight, cycle} and len(of_straight) == len(of_cycle) == 1:
+                # The state of the second point begins before the state of the first point ends.
+                is_between[row] |= (of_straight[0] < of_cycle[0]) == (pair[0] == cycle)
     return is_between

@@ -1,14 +1,16 @@
 """Lines and tables of the summary of a result file."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from ...results.file.view import ResultView
 from ...results.layouts.rods import has_standard_rods
 from ...wording import counted
-from .number_texts import axis_values_text
+from .number_texts import number_and_error
+from .selection import varied_parameters_at_points
 
 MAX_LISTED_ITEMS = 8
 """Largest number of rods, branches or points that are listed one by one."""
@@ -53,16 +55,22 @@ class Summary(SummaryLines):
     """Lines about computing time, MPI ranks, dates and versions."""
 
 
-def varied_parameters_at_points(view: ResultView) -> dict[str, np.ndarray]:
-    """Parameters that differ between points of a file, by name: values at all points, (points,)."""
-    return {name: column for name, column in view.point_columns.items() if len(np.unique(column)) > 1}
+def number_table(*columns: tuple[str, Iterable[Any], np.ndarray | None]) -> TextTable | None:
+    """Table of numbers, with their errors in columns of their own; None without rows.
 
-
-def region_text(view: ResultView, mask: np.ndarray) -> str:
-    """Ranges of the varied parameters over the points in `mask`, (...,), as text; empty if no parameter
-    varies."""
-    columns = varied_parameters_at_points(view)
-    return ", ".join(f"{name} = {axis_values_text(column[mask.ravel()])}" for name, column in columns.items())
+    columns: (heading, numbers, absolute errors of the numbers, (rows,)), or (heading, texts, None).
+    """
+    headings = list[str]()
+    cells = list[Sequence[str]]()
+    for heading, values, errors in columns:
+        headings.append(heading)
+        if errors is None:
+            cells.append(list(values))
+            continue
+        headings.append("+-")
+        cells += zip(*map(number_and_error, map(float, values), map(float, errors)), strict=True)
+    rows = tuple(zip(*cells, strict=True))
+    return TextTable(tuple(headings), rows) if rows else None
 
 
 def point_text(view: ResultView, index: int) -> str:
@@ -77,11 +85,6 @@ def first_lines(lines: Sequence[str], noun: str) -> Iterator[str]:
     yield from (f"  {line}" for line in lines[:MAX_LISTED_ITEMS])
     if len(lines) > MAX_LISTED_ITEMS:
         yield f"  and {counted(len(lines) - MAX_LISTED_ITEMS, noun)} more"
-
-
-def in_brackets(text: str) -> str:
-    """`text` in brackets, preceded by a space; an empty text if `text` is empty."""
-    return f" ({text})" if text else ""
 
 
 def proof_clause(view: ResultView) -> str:

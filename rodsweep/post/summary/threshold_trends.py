@@ -7,7 +7,7 @@ import numpy as np
 
 from ...results.file.view import ResultView
 from ...wording import count_of_total
-from .summary_lines import in_brackets
+from .selection import in_brackets
 
 TREND_ROUNDING = 1e-12
 """Steps between neighbouring thresholds of at most this relative size are rounding errors."""

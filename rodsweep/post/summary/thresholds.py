@@ -1,6 +1,6 @@
 """Thresholds of the straight rod in `rodsweep show`: positions, completeness, and cost of the search."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -9,11 +9,12 @@ from ...results.file.view import ResultView
 from ...results.layouts.rods import has_standard_rods
 from ...results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from ...results.layouts.variables import ANGULAR_UNIT
-from ...wording import count_of_total, counted, plural
+from ...wording import counted, is_or_are, plural
 from .arm.arm import crossings_of_arm
-from .number_texts import error_text, number_and_error, rounded_text, span_text
+from .number_texts import error_text, rounded_text, span_text
+from .selection import Selection, in_brackets
 from .stability import FORCE_THRESHOLD_WORDS
-from .summary_lines import SummaryLines, TextTable, in_brackets, point_text, proof_clause
+from .summary_lines import SummaryLines, TextTable, number_table, point_text, proof_clause
 from .threshold_trends import monotonicity_lines
 
 RATE_VARIABLE_BY_THRESHOLD_KIND = {
@@ -46,50 +47,53 @@ def later_flutter_changes(kinds: Sequence[str]) -> list[int]:
     return indices[1:]  # the first is the end of the first window
 
 
-def thresholds_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
-    """Summary of thresholds. computed: mask of the computed points, of the shape of the points."""
-    if computed.size == 1:
-        details = cost_lines(view, computed)
-        arm_sentences = crossings_of_arm(view)
+def thresholds_summary(points: Selection) -> SummaryLines:
+    """Summary of thresholds at the computed points."""
+    view = points.view
+    costs = cost_lines(points)
+    if points.mask.size == 1:
         return SummaryLines(
             single_rod_crossing_lines(view),
             completeness_lines(view),
-            details,
-            arm_sentences,
+            costs,
+            crossings_of_arm(view),
             crossing_table(view),
         )
-    answer = [first_threshold_line(view, computed, event) for event in RATE_VARIABLE_BY_THRESHOLD_KIND]
-    reliability = search_lines(view, computed, "rod")
-    ends = view.variables["F_end"][computed]
-    if np.isfinite(ends).any():
-        reliability.append(f"searched up to F = {span_text(ends)}")
-    return SummaryLines(answer, reliability, [*monotonicity_lines(view), *cost_lines(view, computed)])
+    answer = [first_threshold_line(points, event) for event in RATE_VARIABLE_BY_THRESHOLD_KIND]
+    reliability = search_lines(points, "rod")
+    if np.isfinite(points.values("F_end")).any():
+        reliability.append(points.sentence("searched up to F = {F_end}"))
+    return SummaryLines(answer, reliability, [*monotonicity_lines(view), *costs])
 
 
-def first_threshold_line(view: ResultView, computed: np.ndarray, event: str) -> str:
+def first_threshold_line(points: Selection, event: str) -> str:
     """Line on the forces and rates at the first threshold of the kind `event`, and on the numbers of rods
-    with this threshold and with an unknown result. computed: mask of the computed points, of the shape of the
-    points."""
+    with this threshold and with an unknown result."""
+    view = points.view
     phrase = FORCE_THRESHOLD_WORDS[event]
     rate_name, noun, unit = RATE_VARIABLE_BY_THRESHOLD_KIND[event]
-    variables = view.variables
-    F = np.where(computed, variables[f"F_{event}"], np.nan).ravel()
-    mask = np.isfinite(F)
-    rods = int(computed.sum())
-    searched = variables["crossing_count"].ravel() >= 0
-    decided = searched & ~np.isfinite(variables["open_from"].ravel()) & ~view.has_status(ENDED_EARLY).ravel()
-    unknown_text = unknown_clause(int((computed.ravel() & ~mask & ~decided).sum()))
-    if not mask.any():
-        return f"{phrase}: at none of {counted(rods, 'rod')}{unknown_text}"
-    table, stored_errors = map(view.by_point, ("crossing_F", "crossing_error"))
-    errors = np.where(table == F[:, None], stored_errors, 0.0).max(axis=1)
-    ends = (int(np.nanargmin(F)), int(np.nanargmax(F)))
-    extremes = [f"{rounded_text(F[i], errors[i])}{in_brackets(point_text(view, i))}" for i in ends]
-    forces_text = " to ".join(extremes if extremes[0] != extremes[1] else extremes[:1])
-    every_rod_text = f"all {counted(rods, 'rod')}"
-    rods_text = every_rod_text if mask.sum() == rods else count_of_total(int(mask.sum()), rods, "rod")
-    rates_text = span_text(variables[rate_name][computed])
-    return f"{phrase}: F = {forces_text}, at {rods_text}{unknown_text}; {noun} {rates_text} {unit}"
+    rods_text = counted(points.count, "rod")
+    with_threshold = points.where(np.isfinite(points.variables[f"F_{event}"]))
+    decided = (points.variables["crossing_count"] >= 0) & ~np.isfinite(points.variables["open_from"])
+    decided &= ~view.has_status(ENDED_EARLY)
+    unknown_text = unknown_clause(points.where(~(with_threshold.mask | decided)).count)
+    if not with_threshold.count:
+        return f"{phrase}: at none of {rods_text}{unknown_text}"
+    F = with_threshold.values(f"F_{event}")
+    is_first = with_threshold.values("crossing_F") == F[:, np.newaxis]
+    errors = np.where(is_first, with_threshold.values("crossing_error"), 0.0).max(axis=1)
+    indices = np.flatnonzero(with_threshold.mask)
+    extremes = [
+        f"{rounded_text(F[i], errors[i])}{in_brackets(point_text(view, indices[i]))}"
+        for i in (F.argmin(), F.argmax())
+    ]
+    forces_text = " to ".join(dict.fromkeys(extremes))
+    if with_threshold.count < points.count:
+        rods_text = with_threshold.of_total(points, "rod")
+    else:
+        rods_text = f"all {rods_text}"
+    rates_text = points.sentence(f"{noun} {{{rate_name}}} {unit}")
+    return f"{phrase}: F = {forces_text}, at {rods_text}{unknown_text}; {rates_text}"
 
 
 def unknown_beyond_clause(view: ResultView, F: float) -> str:
@@ -103,49 +107,56 @@ def single_rod_crossing_lines(view: ResultView) -> list[str]:
     """Lines about the first thresholds and the number of crossings of the only rod in a file, and the meaning
     of the kinds of crossings."""
     variables = view.point_values(0)
-    end_text = f"F = {variables['F_end']:.15g}{unknown_beyond_clause(view, float(variables['F_end']))}"
-    if kinds := [
-        CROSSING_KINDS[int(kind)] for kind in variables["crossing_kind"][variables["crossing_kind"] > 0]
-    ]:
-        first_forces = {word: variables[f"F_{event}"] for event, word in FIRST_CROSSING_WORDS.items()}
-        changes = [f"{word} F = {F:.6g}" for word, F in first_forces.items() if np.isfinite(F)]
-        for i in later_flutter_changes(kinds):
-            changes.append(f"{LATER_CROSSING_WORDS[kinds[i]]} F = {variables['crossing_F'][i]:.6g}")
-        text = ", ".join(changes)
-        count_text = f"{counted(int(variables['crossing_count']), 'crossing')} up to {end_text}"
-        meanings = (f"{kind}: {CROSSING_MEANINGS[kind]}" for kind in dict.fromkeys(kinds))
-        return ["; ".join(filter(None, (text, count_text))), *meanings]
     if variables["crossing_count"] < 0:
         return ["the thresholds of this rod are not known"]
-    none_text = "no threshold is located" if np.isfinite(variables["open_from"]) else "no threshold"
-    return [f"{none_text} up to {end_text}"]
+    end_text = f"F = {variables['F_end']:.15g}{unknown_beyond_clause(view, float(variables['F_end']))}"
+    kinds = stored_crossing_kinds(variables)
+    if not kinds:
+        is_undecided = np.isfinite(variables["open_from"])
+        return [f"{'no threshold is located' if is_undecided else 'no threshold'} up to {end_text}"]
+    first_forces = ((word, variables[f"F_{event}"]) for event, word in FIRST_CROSSING_WORDS.items())
+    changes = [f"{word} F = {F:.6g}" for word, F in first_forces if np.isfinite(F)]
+    for i in later_flutter_changes(kinds):
+        changes.append(f"{LATER_CROSSING_WORDS[kinds[i]]} F = {variables['crossing_F'][i]:.6g}")
+    count_text = f"{counted(int(variables['crossing_count']), 'crossing')} up to {end_text}"
+    meanings = (f"{kind}: {CROSSING_MEANINGS[kind]}" for kind in dict.fromkeys(kinds))
+    return ["; ".join(filter(None, (", ".join(changes), count_text))), *meanings]
+
+
+def stored_crossing_kinds(variables: Mapping[str, np.ndarray]) -> list[str]:
+    """Kinds of the stored crossings of a single rod. variables: variables of the rod by name;
+    lists have the shape (crossings,)."""
+    return [CROSSING_KINDS[int(kind)] for kind in variables["crossing_kind"] if kind > 0]
 
 
 def crossing_table(view: ResultView) -> TextTable | None:
     """Table of the crossings of the only rod in a file; None if there is no crossing."""
     variables = view.point_values(0)
-    rows = []
-    for i in np.flatnonzero(variables["crossing_kind"] > 0):
-        F = number_and_error(float(variables["crossing_F"][i]), float(variables["crossing_error"][i]))
-        rates = (f"{variables[f'crossing_{name}'][i] + 0.0:.6g}" for name in ("growth_rate", "frequency"))
-        unstable_count = int(variables["unstable_after"][i])
-        kind = CROSSING_KINDS[int(variables["crossing_kind"][i])]
-        rows.append((kind, *F, *rates, str(unstable_count) if unstable_count >= 0 else "not known"))
-    unit = PARAMETERS["F"].unit
-    rate_headings = ("growth rate\n1/tau2", f"frequency\n{ANGULAR_UNIT}", "unstable\nabove")
-    return TextTable(("kind", f"F\n{unit}", "+-", *rate_headings), tuple(rows)) if rows else None
+    stored = variables["crossing_kind"] > 0
+    growth_rates, frequencies = (
+        [f"{value + 0.0:.6g}" for value in variables[f"crossing_{name}"][stored]]
+        for name in ("growth_rate", "frequency")
+    )
+    unstable_counts = variables["unstable_after"][stored]
+    return number_table(
+        ("kind", stored_crossing_kinds(variables), None),
+        (f"F\n{PARAMETERS['F'].unit}", variables["crossing_F"][stored], variables["crossing_error"][stored]),
+        ("growth rate\n1/tau2", growth_rates, None),
+        (f"frequency\n{ANGULAR_UNIT}", frequencies, None),
+        ("unstable\nabove", [str(n) if n >= 0 else "not known" for n in unstable_counts], None),
+    )
 
 
 def completeness_lines(view: ResultView) -> list[str]:
     """Lines on the searched range, the completeness of the list of crossings, and the undecided range, for
     the only rod in a file."""
     variables = view.point_values(0)
-    unlisted = int(variables["crossing_count"]) - int((variables["crossing_kind"] > 0).sum())
+    unlisted = int(variables["crossing_count"]) - len(stored_crossing_kinds(variables))
     proof_text = proof_clause(view)
     if not variables["certified"]:
         proof_text = proof_text.replace("is ", "is not ", 1)
     search_text = f"searched up to F = {variables['F_end']:.15g}; " if np.isfinite(variables["F_end"]) else ""
-    lines = [f"{search_text}the list of crossings {proof_text}{unstored_crossings_clause(max(unlisted, 0))}"]
+    lines = [f"{search_text}the list of crossings {proof_text}{unstored_crossings_clause(unlisted)}"]
     if np.isfinite(variables["open_from"]):
         lines.append(
             f"undecided from F = {variables['open_from']:.9g} to {variables['open_to']:.9g}: this range may "
@@ -161,59 +172,51 @@ def unknown_clause(rod_count: int) -> str:
 
 def unstored_crossings_clause(crossing_count: int) -> str:
     """Clause on the number `crossing_count` of crossings that are not stored because the list was full; empty
-    for 0."""
-    verb_form = "is" if crossing_count == 1 else "are"
-    return (
-        f"; {crossing_count} more {verb_form} not stored, raise the option crossings"
-        if crossing_count > 0
-        else ""
-    )
+    for 0 and for an unknown number, -1."""
+    text = f"; {crossing_count} more {is_or_are(crossing_count)} not stored, raise the option crossings"
+    return text if crossing_count > 0 else ""
 
 
-def search_lines(view: ResultView, computed: np.ndarray, noun: str) -> list[str]:
-    """Lines about completeness, undecided ranges, numbers of stored crossings and errors of the searches.
+def proved_for_text(points: Selection, noun: str) -> str:
+    """Predicate for the lists of crossings of the points: "is proved complete for 2 of 4 rods"."""
+    certified = points.where(points.variables["certified"] > 0)
+    return f"{proof_clause(points.view)} for {certified.of_total(points, noun)}"
 
-    computed: mask of the computed points, of the shape of the points.
-    """
-    variables = view.variables
-    searches = int(computed.sum())
-    is_crossing = variables["crossing_kind"][computed] > 0
+
+def unstored_crossing_count(points: Selection) -> int:
+    """Number of the crossings of all points that are not stored because the lists were full."""
+    stored_counts = (points.values("crossing_kind") > 0).sum(axis=-1)
+    return int((points.values("crossing_count") - stored_counts).clip(min=0).sum())
+
+
+def search_lines(points: Selection, noun: str) -> list[str]:
+    """Lines about completeness, undecided ranges, numbers of stored crossings and errors of the searches."""
+    is_crossing = points.values("crossing_kind") > 0
     stored_counts = is_crossing.sum(axis=-1)
-    errors = variables["crossing_error"][computed][is_crossing]
-    known_errors = errors[np.isfinite(errors)]
-    error_bound_clause = (
-        f"; absolute error at most {error_text(float(known_errors.max()))}" if known_errors.size else ""
-    )
-    undecided = int(np.isfinite(variables["open_from"][computed]).sum())
-    proved_text = count_of_total(int(variables["certified"][computed].sum()), searches, noun)
-    window = f"; for {counted(undecided, noun)} a narrow window of flutter may be missing" * (undecided > 0)
-    unlisted = int((variables["crossing_count"][computed] - stored_counts).clip(min=0).sum())
-    lines = [f"the list of crossings {proof_clause(view)} for {proved_text}{window}"]
+    errors = points.values("crossing_error")[is_crossing & np.isfinite(points.values("crossing_error"))]
+    undecided = int(np.isfinite(points.values("open_from")).sum())
+    window_text = f"; for {counted(undecided, noun)} a narrow window of flutter may be missing"
+    lines = [f"the list of crossings {proved_for_text(points, noun)}{window_text if undecided else ''}"]
+    unlisted = unstored_crossing_count(points)
     if stored_counts.any() or unlisted:
+        error_clause = f"; absolute error at most {error_text(float(errors.max()))}" if errors.size else ""
         lines.append(
             f"crossings stored: {int(stored_counts.sum())}, at most {int(stored_counts.max())} on a "
-            f"{noun}{error_bound_clause}{unstored_crossings_clause(unlisted)}"
+            f"{noun}{error_clause}{unstored_crossings_clause(unlisted)}"
         )
     return lines
 
 
-def cost_lines(view: ResultView, computed: np.ndarray) -> list[str]:
-    """List with a line on the cost of the searches. computed: mask of the computed points, of the shape of
-    the points.
-
-    The list is empty for searches that count unstable modes, which store no cost.
-    """
-    if not has_standard_rods(view.config):
+def cost_lines(points: Selection) -> list[str]:
+    """List with a line on the cost of the searches; empty for searches that count unstable modes, which store
+    no cost."""
+    if not has_standard_rods(points.view.config):
         return []
-    variables = view.variables
-    boxes, solve_counts = (variables[name][computed] for name in ("boxes", "solves"))
-    return [
-        f"cost of a search: {count_range(boxes, 'evaluation')} of the determinant D over a box, "
-        f"{count_range(solve_counts, 'eigenproblem')}"
-    ]
-
-
-def count_range(values: np.ndarray, noun: str) -> str:
-    """Range of the integer counts `values`, (n,), as text."""
-    text = span_text(values)
-    return f"{text} {noun if text == '1' else plural(noun)}"
+    boxes, solve_counts = (
+        f"{text} {noun if text == '1' else plural(noun)}"
+        for text, noun in (
+            (span_text(points.values("boxes")), "evaluation"),
+            (span_text(points.values("solves")), "eigenproblem"),
+        )
+    )
+    return [f"cost of a search: {boxes} of the determinant D over a box, {solve_counts}"]

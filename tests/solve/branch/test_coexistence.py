@@ -16,6 +16,7 @@ from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.errors import InputError
 from rodsweep.model.rod import Rod
 from rodsweep.post.summary.phase_diagram import phase_diagram_summary
+from rodsweep.post.summary.selection import Selection
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.phase_diagram import CYCLE_CURVE_ENDS
 from rodsweep.solve.branch import coexistence
@@ -394,5 +395,5 @@ def test_a_run_killed_on_a_branch_from_beyond_resumes_to_the_same_file(beyond):
 def test_where_no_stable_state_is_known_is_listed(beyond):
     view = read_view(beyond.directory / "beyond.h5")
     view.variables["stable_states"][..., 1] = StableStates.neither_known
-    told = phase_diagram_summary(view, view.variables["status"] >= 0).answer
+    told = phase_diagram_summary(Selection(view, view.variables["status"] >= 0)).answer
     assert "no stable state known: at grid points of 2 of 2 rows, F = 110, k1 = 322.11 to 322.2" in told

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ....arrays import Array
 from ....errors import InputError
 from ....results.file.view import ResultView
-from ...summary.summary_lines import varied_parameters_at_points
+from ...summary.selection import varied_parameters_at_points
 from ..grid_slices import infinite_values_clause
 from ..style import is_logarithmic
 

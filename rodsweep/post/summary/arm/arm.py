@@ -22,6 +22,7 @@ from ...located_thresholds import LocatedThreshold
 from ...tables.rows_and_columns import quantities_of_view
 from ..errors import absolute_errors, is_known
 from ..number_texts import MAX_RANGE_END_DIGITS, rounded_text, span_text
+from ..selection import Selection
 
 SI_LINE_WIDTH = 80
 """Largest length of a line with variables in SI units, in characters."""
@@ -97,10 +98,11 @@ def varied_columns(view: ResultView) -> dict[str, np.ndarray]:
     return {name: column for name, column in columns.items() if len(np.unique(column[~np.isnan(column)])) > 1}
 
 
-def region_of_arms(view: ResultView, mask: np.ndarray) -> str:
-    """Ranges of an arm's quantities and of the taper over the points in `mask`, (...,), as text; empty if all
-    points of the file have the same arm."""
-    flat_mask = mask.ravel()
+def region_of_arms(points: Selection) -> str:
+    """Ranges of an arm's quantities and of the taper over the points, as text; empty if all points of the
+    file have the same arm."""
+    view = points.view
+    flat_mask = points.mask.ravel()
     range_texts = [
         quantity_range(view, name, column, flat_mask) for name, column in varied_columns(view).items()
     ]

@@ -7,6 +7,7 @@ from ....model.arm.neglected import COMPRESSION_LIMIT, DOUBTFUL_RATIO
 from ....model.arm.quantities import SCALE_NAMES, UNITS
 from ....results.file.view import ResultView
 from ...crushing import material_of_rods
+from ..selection import Selection
 from .arm import range_in_unit, region_of_arms
 
 ANSWER_DIGITS = 3
@@ -39,7 +40,7 @@ def extreme_arms_text(view: ResultView, rods: np.ndarray, loads: np.ndarray, sma
         return ""
     indices = np.flatnonzero(rods)
     ends = [indices[argument(loads)] for argument in (np.nanargmin, np.nanargmax)]
-    first_text, last_text = (region_of_arms(view, np.arange(rods.size) == end) for end in ends)
+    first_text, last_text = (region_of_arms(Selection(view, np.arange(rods.size) == end)) for end in ends)
     return "" if first_text == last_text else f"{smallest} at {first_text}; largest at {last_text}"
 
 

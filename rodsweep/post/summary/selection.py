@@ -1,0 +1,120 @@
+"""Points of a result file that a mask selects, with their numbers, ranges and places as text."""
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+
+from ...results.file.view import ResultView
+from ...wording import count_of_total
+from .errors import absolute_errors, is_known
+from .number_texts import axis_values_text, span_text
+
+RANGE_PATTERN = re.compile(r"\{(first )?(\w+)\}")
+"""Pattern for the place of a range in a sentence: the name of a variable in braces, for a list of each point
+after the word "first" if only the first items of the lists are meant."""
+
+
+@dataclass(frozen=True, slots=True)
+class Selection:
+    """Points of a result file. mask: mask of the selected points, of the shape of the points."""
+
+    view: ResultView
+    mask: np.ndarray
+
+    @property
+    def variables(self) -> Mapping[str, np.ndarray]:
+        """Variables of the file at all points, by name."""
+        return self.view.variables
+
+    @property
+    def count(self) -> int:
+        """Number of selected points."""
+        return int(self.mask.sum())
+
+    def where(self, condition: np.ndarray) -> Self:
+        """The selected points at which the mask `condition` is true."""
+        return replace(self, mask=self.mask & condition)
+
+    def with_status(self, *statuses: str) -> Self:
+        """The selected points whose status has one of the names `statuses`."""
+        return self.where(self.view.has_status(*statuses))
+
+    def parts(self, masks: Mapping[str, np.ndarray]) -> dict[str, "Selection"]:
+        """The selected points in each of the masks, by word; without words to which no point belongs."""
+        parts = {word: self.where(mask) for word, mask in masks.items()}
+        return {word: part for word, part in parts.items() if part.count}
+
+    def values(self, name: str) -> np.ndarray:
+        """Values of a variable at the selected points, (points, ...)."""
+        return self.variables[name][self.mask]
+
+    def errors(self, name: str) -> np.ndarray:
+        """Absolute errors of a variable at the selected points, (points, ...)."""
+        return absolute_errors(self.variables, name)[self.mask]
+
+    def of_total(self, total: "Selection", noun: str = "point") -> str:
+        """Number of the points out of those in `total`, such as "2 of 4 points"."""
+        return count_of_total(self.count, total.count, noun)
+
+    def range_text(self, name: str) -> str:
+        """Range of a variable as text, rounded according to the errors; unknown values are left out."""
+        known = is_known(self.variables, name)[self.mask]
+        return span_text(self.values(name)[known], self.errors(name)[known])
+
+    def sentence(self, template: str) -> str:
+        """`template` with the ranges of the variables named in braces: "period: {period} tau2" becomes
+        "period: 0.1 to 0.2 tau2"."""
+
+        def text(place: re.Match[str]) -> str:
+            first, name = place.groups()
+            return (
+                span_text(self.values(name)[:, 0], self.errors(name)[:, 0])
+                if first
+                else self.range_text(name)
+            )
+
+        return RANGE_PATTERN.sub(text, template)
+
+    @property
+    def region(self) -> str:
+        """Ranges of the varied parameters as text; empty if no parameter varies in the file."""
+        columns = varied_parameters_at_points(self.view)
+        chosen = self.mask.ravel()
+        return ", ".join(f"{name} = {axis_values_text(column[chosen])}" for name, column in columns.items())
+
+
+def region_of(points: Selection) -> str:
+    """Ranges of the varied parameters over the points as text."""
+    return points.region
+
+
+def varied_parameters_at_points(view: ResultView) -> dict[str, np.ndarray]:
+    """Parameters that differ between points of a file, by name: values at all points, (points,)."""
+    return {name: column for name, column in view.point_columns.items() if len(np.unique(column)) > 1}
+
+
+def counts_at_places(parts: Mapping[str, Selection], region: Callable[[Selection], str] = region_of) -> str:
+    """Number and region of the points of each part: "stable at 2 (F = 1 to 2), unstable at 1 (F = 3)"."""
+    return ", ".join(f"{word} at {part.count}{in_brackets(region(part))}" for word, part in parts.items())
+
+
+def counts_by_word(codes: np.ndarray, words: Mapping[int, str]) -> str:
+    """Number of items with each code that occurs: "3 supercritical, 1 subcritical"; empty if none occurs.
+    codes: codes of the items, of any shape."""
+    counts = {word: int((codes == code).sum()) for code, word in words.items()}
+    return ", ".join(f"{count} {word}" for word, count in counts.items() if count)
+
+
+def percents_by_word(codes: np.ndarray, words: Mapping[int, str]) -> str:
+    """Percentage of the items with each code that occurs: "75.0 % monotone, 25.0 % flutter". codes: codes of
+    the items, of any shape."""
+    counts = {word: int((codes == code).sum()) for code, word in words.items()}
+    return ", ".join(f"{100 * count / codes.size:.1f} % {word}" for word, count in counts.items() if count)
+
+
+def in_brackets(text: str) -> str:
+    """`text` in brackets, preceded by a space; an empty text if `text` is empty."""
+    return f" ({text})" if text else ""
