@@ -144,7 +144,8 @@ def _answer_lines(view: ResultView, computed: np.ndarray, summary: SummaryLines)
     points, of the shape of the points."""
     if not view.quantities or not computed.any():
         return [*summary.answer]
-    lines = [*arm_answer(view, computed), *summary.arm_sentences, *arm_lines(view, computed)]
+    points = Selection(view, computed)
+    lines = [*arm_answer(points), *summary.arm_sentences, *arm_lines(points)]
     return [*lines, "", "the same in dimensionless numbers:", *summary.answer] if summary.answer else lines
 
 

@@ -8,13 +8,19 @@ import numpy as np
 from ....config.arm.status import NOT_SLENDER
 from ....model.arm.neglected import Validity
 from ....model.arm.quantities import SCALE_NAMES, UNITS
-from ....results.file.view import ResultView
 from ....results.layouts.si_variables import VALIDITY_VARIABLES
 from ....results.layouts.thresholds import CROSSING_KINDS
-from ....wording import count_of_total, counted
+from ....wording import counted
+from ..selection import Selection
 from .arm import errors_in_si, range_in_unit
-from .drag_range import arm_index_of_points, drag_lines
-from .load_lines import ANSWER_DIGITS, compression_lines, extreme_arms_text, flutter_force_line
+from .load_lines import (
+    ANSWER_DIGITS,
+    arm_index_of_points,
+    compression_lines,
+    drag_lines,
+    extreme_arms_text,
+    flutter_force_line,
+)
 from .validity_sentences import judged_row_motion_clause, plane_lines, validity_sentence
 
 Lines = list[str]
@@ -32,153 +38,165 @@ NO_CYCLE_WORDS = {
 """Predicate for an arm without a stable cycle, by status."""
 
 
-def arm_answer(view: ResultView, computed: np.ndarray) -> Lines:
-    """Lines with the answer about the arms at the points in the mask `computed`, (...,); empty for a rod."""
+SEARCH_TASKS = ("thresholds", "criticality", "branch", "phase_diagram")
+"""Tasks that search for thresholds, which may fail."""
+
+
+def arm_answer(points: Selection) -> Lines:
+    """Lines with the answer about the arms at the computed points; empty for a rod."""
+    view = points.view
     if not view.quantities:
         return []
-    rods = computed & (view.variables["status"] < NOT_SLENDER)
-    lines = _validity_lines(view, computed, rods)
-    return [*plane_lines(view.quantities), *lines, *compression_lines(view, rods)]
+    arms = points.where(view.variables["status"] < NOT_SLENDER)
+    return [
+        *plane_lines(view.quantities),
+        *_validity_and_answer_lines(points, arms),
+        *compression_lines(arms),
+    ]
 
 
-def _validity_lines(view: ResultView, computed: np.ndarray, rods: np.ndarray) -> Lines:
-    """Line on the validity of the model, and lines with the answer for the points in `rods` to which it
-    applies; for all these points if it applies to none. computed, rods: masks of computed points and rods."""
-    if not rods.any():
+def _validity_and_answer_lines(points: Selection, arms: Selection) -> Lines:
+    """Line on the validity of the model, and lines with the answer for the arms to which it applies; for all
+    arms if it applies to none. points: all computed points. arms: the points with a rod of the model."""
+    if not arms.count:
         no_rods = ["none of these arms corresponds to a rod of the model; the statuses state the reasons"]
-        return no_rods if computed.any() else []
-    validity = {variable.name: view.variables[variable.name][rods] for variable in VALIDITY_VARIABLES}
-    noun = "row" if "crossing_at" in view.variables else "point"
-    caveat = validity_sentence(validity, judged_row_motion_clause(view, rods), noun)
-    is_in_model = rods & (view.variables["model_applies"] != Validity.does_not_apply)
-    answer_lines = ANSWER_LINES_BY_TASK[view.task]
-    if not is_in_model.any():
-        return [caveat, *(f"if the model applied: {line}" for line in answer_lines(view, rods))]
-    if (is_in_model != rods).any():
-        return [caveat, *(f"where the model applies: {line}" for line in answer_lines(view, is_in_model))]
-    answer = answer_lines(view, rods)
+        return no_rods if points.count else []
+    validity = {variable.name: arms.values(variable.name) for variable in VALIDITY_VARIABLES}
+    noun = "row" if "crossing_at" in arms.variables else "point"
+    caveat = validity_sentence(validity, judged_row_motion_clause(arms), noun)
+    in_model = arms.where(arms.variables["model_applies"] != Validity.does_not_apply)
+    answer = _task_lines(in_model if in_model.count else arms)
+    if not in_model.count:
+        return [caveat, *(f"if the model applied: {line}" for line in answer)]
+    if in_model.count < arms.count:
+        return [caveat, *(f"where the model applies: {line}" for line in answer)]
     return [caveat, *answer] if validity["model_applies"].any() else [*answer[:1], caveat, *answer[1:]]
 
 
-def range_text(view: ResultView, values: np.ndarray, si: str, errors: np.ndarray | float = 0.0) -> str:
+def _task_lines(arms: Selection) -> Lines:
+    """Lines with the answer of the task, for searches with a line on those that failed."""
+    task = arms.view.task
+    failed = arms.with_status(FAILED_STATUS)
+    if task not in SEARCH_TASKS or not failed.count:
+        return ANSWER_LINES_BY_TASK[task](arms)
+    solved = arms.where(~failed.mask)
+    lines = ANSWER_LINES_BY_TASK[task](solved) if solved.count else []
+    return [*lines, f"the result is not known{_count_clause(failed, arms)}: the search failed"]
+
+
+def range_text(arms: Selection, values: np.ndarray, si: str, errors: np.ndarray | float = 0.0) -> str:
     """Range of `values`, in the SI unit `si`, as text in the unit that the user typed. errors:
     absolute errors, of the shape of `values`, or 0."""
-    return range_in_unit(view, values, si, errors, ANSWER_DIGITS)
+    return range_in_unit(arms.view, values, si, errors, ANSWER_DIGITS)
 
 
-def si_loads_text(view: ResultView, loads: np.ndarray) -> str:
+def loads_text(arms: Selection, loads: np.ndarray) -> str:
     """Range of the loads `loads`, (n,) in SI units, as text in the unit that the user typed."""
-    return range_text(view, loads, UNITS[view.load_kind][0])
+    return range_text(arms, loads, UNITS[arms.view.load_kind][0])
 
 
-def _with_failure(answer: Callable[[ResultView, np.ndarray], tuple[Lines, Lines]]) -> Callable[..., Lines]:
-    """Function from (view, mask of the points in the model) to the answer's lines, with a line on failed
-    searches. answer: function from (view, mask of the solved points) to (answer, further lines)."""
+def _count_clause(part: Selection, arms: Selection) -> str:
+    """Clause on the number of points of the part; empty if there is one arm only."""
+    return f" at {part.count} of {arms.count} points" if arms.count > 1 else ""
 
-    def lines(view: ResultView, rods: np.ndarray) -> Lines:
-        failed = rods & view.has_status(FAILED_STATUS)
-        failure = f"the result is not known{_count_clause(failed, rods)}: the search failed"
-        unsolved = [failure] if failed.any() else []
-        if (failed == rods).all():
-            return unsolved
-        first_line, other_lines = answer(view, rods & ~failed)
-        return [*first_line, *unsolved, *other_lines]
 
+def _threshold_lines(arms: Selection) -> Lines:
+    """Lines about flutter, extreme arms, effect of drag, onset of oscillation and return to stability."""
+    load = arms.view.load_kind
+    names = (f"{load}_hopf", f"{load}_end", "frequency_hopf_hz")
+    flutter, ends, rates = map(arms.values, names)
+    lines = _flutter_lines(arms, flutter, ends, rates)
+    if np.isfinite(flutter).sum() > 1:
+        extremes_text = extreme_arms_text(arms, flutter, "smallest flutter load")
+        lines += [extremes_text] if extremes_text else []
+        lines += drag_lines(arms, {"flutter": names[0], "its frequency": names[2]})
+    lines += flutter_force_line(arms)
+    onset, restabilized = (arms.values(f"{load}_{event}") for event in ("onset", "restabilization"))
+    if arms.count > 1 and np.isfinite(onset).any():
+        lines.append(f"decaying disturbances oscillate from {loads_text(arms, onset)} on")
+    if arms.count > 1 and np.isfinite(restabilized).any():
+        points_text = f"{np.isfinite(restabilized).sum()} of {counted(arms.count, 'point')}"
+        again_text = f"from {loads_text(arms, restabilized)} on"
+        lines.append(f"the straight arm is stable again at {points_text}, {again_text}")
     return lines
 
 
-def _threshold_lines(view: ResultView, rods: np.ndarray) -> tuple[Lines, Lines]:
-    """Returns (lines about flutter, lines about extreme arms, effect of drag, onset of oscillation and return
-    to stability)."""
-    load = view.load_kind
-    variables = view.variables
-    flutter, ends, rates = (
-        variables[name][rods] for name in (f"{load}_hopf", f"{load}_end", "frequency_hopf_hz")
-    )
-    lines = [*_extreme_arm_lines(view, rods, flutter), *flutter_force_line(view, rods)]
-    onset = variables[f"{load}_onset"][rods]
-    restabilized = variables[f"{load}_restabilization"][rods]
-    if len(flutter) > 1 and np.isfinite(onset).any():
-        lines.append(f"decaying disturbances oscillate from {si_loads_text(view, onset)} on")
-    if len(flutter) > 1 and np.isfinite(restabilized).any():
-        points = count_of_total(int(np.isfinite(restabilized).sum()), len(restabilized), "point")
-        lines.append(
-            f"the straight arm is stable again at {points}, from {si_loads_text(view, restabilized)} on"
-        )
-    return _flutter_lines(view, flutter, ends, rates), lines
-
-
-def _extreme_arm_lines(view: ResultView, rods: np.ndarray, loads: np.ndarray) -> Lines:
-    """Lines on the arms with the smallest and the largest flutter load, and on the effect of drag; empty with
-    fewer than two loads. loads: flutter loads of the points in the mask `rods`, (n,)."""
-    if np.isfinite(loads).sum() < 2:
-        return []
-    extremes_text = extreme_arms_text(view, rods, loads, "smallest flutter load")
-    lines = [extremes_text] if extremes_text else []
-    indices = np.flatnonzero(rods)
-    numbers = {"flutter": loads, "its frequency": view.variables["frequency_hopf_hz"][rods]}
-    on_all_points = {name: np.full(rods.size, np.nan) for name in numbers}
-    for name, values in numbers.items():
-        on_all_points[name][indices] = values
-    return [*lines, *drag_lines(view, on_all_points)]
-
-
-def _crossing_lines(view: ResultView, rods: np.ndarray) -> tuple[Lines, Lines]:
-    """Returns (lines about loads and frequencies at the first Hopf points, [])."""
-    variables = view.variables
-    load = view.load_kind
-    loads, frequency = _at_first_hopf(view, rods, f"crossing_{load}")
-    return _flutter_lines(view, loads, variables[f"{load}_end"][rods], frequency), []
-
-
-def _count_clause(mask: np.ndarray, rods: np.ndarray) -> str:
-    """Clause on the number of points in the mask `mask`; empty if the mask `rods` has one point only."""
-    return f" at {int(mask.sum())} of {int(rods.sum())} points" if rods.sum() > 1 else ""
-
-
-def _flutter_lines(view: ResultView, loads: np.ndarray, end: np.ndarray, frequency: np.ndarray) -> Lines:
-    """Lines about flutter. loads: flutter loads. end: largest searched loads. frequency: in Hz. All (n,)."""
-    flutters = np.isfinite(loads)
-    search = f"up to {si_loads_text(view, end)}" if np.isfinite(end).any() else ""
-    if not flutters.any():
-        return [f"does not flutter {search}".rstrip()]
-    count_clause = f" at {int(flutters.sum())} of {len(loads)} points" if not flutters.all() else ""
-    sentence = f"flutter begins{count_clause} at {si_loads_text(view, loads)}"
-    lines = [f"{sentence}; there the arm beats at {range_text(view, frequency, 'Hz')}"]
+def _flutter_lines(arms: Selection, loads: np.ndarray, ends: np.ndarray, frequency: np.ndarray) -> Lines:
+    """Lines about flutter. loads: flutter loads. ends: largest searched loads. frequency: in Hz. All (n,)."""
+    flutter_count = int(np.isfinite(loads).sum())
+    search = f" up to {loads_text(arms, ends)}" if np.isfinite(ends).any() else ""
+    if not flutter_count:
+        return [f"does not flutter{search}"]
+    count_clause = f" at {flutter_count} of {len(loads)} points" if flutter_count < len(loads) else ""
+    sentence = f"flutter begins{count_clause} at {loads_text(arms, loads)}"
+    lines = [f"{sentence}; there the arm beats at {range_text(arms, frequency, 'Hz')}"]
     if count_clause:
-        lines.append(f"does not flutter at {int((~flutters).sum())} of {len(loads)} points {search}".rstrip())
+        lines.append(f"does not flutter at {len(loads) - flutter_count} of {len(loads)} points{search}")
     return lines
 
 
-def _cycle_lines(view: ResultView, rods: np.ndarray) -> Lines:
-    """Lines about frequency, amplitude and effect of drag of limit cycles; if there is no cycle, about the
-    outcomes. rods: mask of the points to which the rod model applies."""
-    names = {"frequency_hz": "frequency", "tip_y_max_si": "tip_y_max"}
-    values = {name: view.variables[name][rods] for name in names}
-    errors = {name: errors_in_si(view.variables, source, name)[rods] for name, source in names.items()}
-    cycles = rods & view.has_status("cycle")
-    if not cycles.any():  # if some arms beat, another line of the summary counts all outcomes
-        masks = {phrase: rods & view.has_status(status) for status, phrase in NO_CYCLE_WORDS.items()}
-        return [f"{phrase}{_count_clause(mask, rods)}" for phrase, mask in masks.items() if mask.any()]
-    is_cycle = cycles[rods]
-    height, frequency = (
-        range_text(view, values[name][is_cycle], unit, errors[name][is_cycle])
-        for name, unit in (("tip_y_max_si", "m"), ("frequency_hz", "Hz"))
+def _crossing_lines(arms: Selection) -> Lines:
+    """Lines about loads and frequencies at the first Hopf points."""
+    load = arms.view.load_kind
+    return _flutter_lines(
+        arms,
+        _at_first_hopf(arms, f"crossing_{load}"),
+        arms.values(f"{load}_end"),
+        _at_first_hopf(arms, "crossing_frequency_hz"),
     )
-    motion = f"beats{_count_clause(cycles, rods)} at {frequency}, its tip by {height} to either side"
-    keys = {"frequency": "frequency_hz", "reach of the tip": "tip_y_max_si", "power": "injection_mean_si"}
-    numbers = {name: np.where(cycles, view.variables[key], np.nan).ravel() for name, key in keys.items()}
-    return [motion, *_drag_outcome_line(view, rods), *drag_lines(view, numbers)]
 
 
-def _drag_outcome_line(view: ResultView, rods: np.ndarray) -> Lines:
+def _row_lines(arms: Selection) -> Lines:
+    """Lines about loads and frequencies at the first Hopf points of rows along F; empty for rows along
+    another parameter."""
+    view = arms.view
+    if "F" in view.parameters:
+        return []
+    scale = np.broadcast_to(view.variables[SCALE_NAMES[view.load_kind]], arms.mask.shape)[arms.mask]
+    last_force = np.minimum(view.variables["F"][-1], view.point_columns["k1"][arms.mask.ravel()])
+    forces = _at_first_hopf(arms, "crossing_at")
+    return _flutter_lines(
+        arms, forces * scale, last_force * scale, _at_first_hopf(arms, "crossing_frequency_hz")
+    )
+
+
+def _at_first_hopf(arms: Selection, name: str) -> np.ndarray:
+    """Values of the variable `name` at the first Hopf point of each arm, (n,); NaN for an arm without a Hopf
+    point."""
+    is_hopf = arms.values("crossing_kind") == CROSSING_KINDS.index("hopf")
+    first_hopf = np.arange(arms.count), np.argmax(is_hopf, axis=-1)
+    return np.where(is_hopf.any(axis=-1), arms.values(name)[first_hopf], np.nan)
+
+
+def _cycle_lines(arms: Selection) -> Lines:
+    """Lines about frequency, amplitude and effect of drag of limit cycles; if there is no cycle, about the
+    outcomes."""
+    cycles = arms.with_status("cycle")
+    if not cycles.count:  # if some arms beat, another line of the summary counts all outcomes
+        outcomes = {phrase: arms.with_status(status) for status, phrase in NO_CYCLE_WORDS.items()}
+        return [f"{phrase}{_count_clause(part, arms)}" for phrase, part in outcomes.items() if part.count]
+    height_text, frequency_text = (
+        range_text(
+            arms, cycles.values(si_name), unit, errors_in_si(arms.variables, name, si_name)[cycles.mask]
+        )
+        for name, si_name, unit in (("tip_y_max", "tip_y_max_si", "m"), ("frequency", "frequency_hz", "Hz"))
+    )
+    motion = (
+        f"beats{_count_clause(cycles, arms)} at {frequency_text}, its tip by {height_text} to either side"
+    )
+    names = {"frequency": "frequency_hz", "reach of the tip": "tip_y_max_si", "power": "injection_mean_si"}
+    return [motion, *_drag_outcome_line(arms), *drag_lines(cycles, names)]
+
+
+def _drag_outcome_line(arms: Selection) -> Lines:
     """Line with the numbers of arms (with load) that beat for all, some or no drags of their range. Empty
     list if drag is not varied or an outcome is undecided."""
-    arms = arm_index_of_points(view)
-    if arms is None or (rods & ~view.has_status("cycle", "straight")).any():
+    arm_indices = arm_index_of_points(arms.view)
+    if arm_indices is None or arms.with_status("cycle", "straight").count < arms.count:
         return []
-    is_cycle = view.has_status("cycle").ravel()
-    by_arm = [is_cycle[(arms == arm) & rods.ravel()] for arm in np.unique(arms[rods.ravel()])]
+    is_cycle = arms.with_status("cycle").mask.ravel()[arms.mask.ravel()]
+    own_indices = arm_indices[arms.mask.ravel()]
+    by_arm = [is_cycle[own_indices == index] for index in np.unique(own_indices)]
     always = sum(mask.all() for mask in by_arm)
     never = sum(not mask.any() for mask in by_arm)
     some = len(by_arm) - always - never
@@ -187,64 +205,40 @@ def _drag_outcome_line(view: ResultView, rods: np.ndarray) -> Lines:
     return [f"of {counted(len(by_arm), 'combination')} of arm and load: beats {counts_text}"]
 
 
-def _mode_lines(view: ResultView, rods: np.ndarray) -> Lines:
+def _mode_lines(arms: Selection) -> Lines:
     """Lines about stability and leading frequency of the straight arms."""
-    count = view.variables["unstable_count"]
-    unstable = rods & (count > 0)
-    is_unknown = rods & (count < 0)
+    unstable_count = arms.variables["unstable_count"]
+    unstable = arms.where(unstable_count > 0)
+    unknown = arms.where(unstable_count < 0)
     lines = []
-    if unstable.any():
-        frequency = range_text(view, np.abs(view.variables["frequency_hz"][unstable][:, 0]), "Hz")
-        count_clause = _count_clause(unstable, rods)
-        lines = [f"the straight arm is unstable{count_clause}; its leading mode oscillates at {frequency}"]
-    elif not is_unknown.any():
+    if unstable.count:
+        frequency = range_text(arms, np.abs(unstable.values("frequency_hz")[:, 0]), "Hz")
+        place_text = _count_clause(unstable, arms)
+        lines = [f"the straight arm is unstable{place_text}; its leading mode oscillates at {frequency}"]
+    elif not unknown.count:
         lines = ["the straight arm is stable"]
-    if is_unknown.any():
-        lines.append(f"whether the straight arm is stable is not known{_count_clause(is_unknown, rods)}")
+    if unknown.count:
+        lines.append(f"whether the straight arm is stable is not known{_count_clause(unknown, arms)}")
     return lines
 
 
-def _branch_lines(view: ResultView, rods: np.ndarray) -> tuple[Lines, Lines]:
-    """Returns (lines about loads and frequencies of cycles on branches, [])."""
-    loads = view.variables[f"branch_{view.load_kind}"][rods]
+def _branch_lines(arms: Selection) -> Lines:
+    """Lines about loads and frequencies of cycles on branches."""
+    loads = arms.values(f"branch_{arms.view.load_kind}")
     if not np.isfinite(loads).any():
-        return ["has no branch of cycles from a Hopf point in the range searched"], []
-    frequency = 1 / view.variables["period_si"][rods]
-    rate_text = range_text(view, frequency, "Hz", errors=frequency * view.variables["period_error"][rods])
-    return [f"cycles, stable or not, exist at {si_loads_text(view, loads)}; they beat at {rate_text}"], []
+        return ["has no branch of cycles from a Hopf point in the range searched"]
+    frequency = 1 / arms.values("period_si")
+    rate_text = range_text(arms, frequency, "Hz", errors=frequency * arms.values("period_error"))
+    return [f"cycles, stable or not, exist at {loads_text(arms, loads)}; they beat at {rate_text}"]
 
 
-def _row_lines(view: ResultView, rods: np.ndarray) -> tuple[Lines, Lines]:
-    """Returns (lines about loads and frequencies at the first Hopf points, [])."""
-    variables = view.variables
-    scale = np.broadcast_to(variables[SCALE_NAMES[view.load_kind]], rods.shape)[rods]
-    forces, frequency = _at_first_hopf(view, rods, "crossing_at")
-    last_force = np.minimum(variables["F"][-1], view.point_columns["k1"].reshape(rods.shape)[rods])
-    return _flutter_lines(view, forces * scale, last_force * scale, frequency), []
-
-
-def _at_first_hopf(view: ResultView, rods: np.ndarray, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """Returns (values of the variable `name`, frequencies in Hz) at the first Hopf point of each arm in the
-    mask `rods`, (n,) each; NaN for an arm without a Hopf point."""
-    is_hopf = view.variables["crossing_kind"][rods] == CROSSING_KINDS.index("hopf")
-    first_hopf = np.arange(len(is_hopf)), np.argmax(is_hopf, axis=-1)
-    has_hopf = is_hopf.any(axis=-1)
-    names = (name, "crossing_frequency_hz")
-    values, frequency = (
-        np.where(has_hopf, view.variables[variable_name][rods][first_hopf], np.nan) for variable_name in names
-    )
-    return values, frequency
-
-
-ANSWER_LINES_BY_TASK: dict[str, Callable[[ResultView, np.ndarray], Lines]] = {
+ANSWER_LINES_BY_TASK: dict[str, Callable[[Selection], Lines]] = {
     "spectrum": _mode_lines,
     "modes": _mode_lines,
-    "thresholds": _with_failure(_threshold_lines),
-    "criticality": _with_failure(_crossing_lines),
+    "thresholds": _threshold_lines,
+    "criticality": _crossing_lines,
     "limit_cycle": _cycle_lines,
-    "branch": _with_failure(_branch_lines),
-    "phase_diagram": lambda view, rods: (
-        [] if "F" in view.parameters else _with_failure(_row_lines)(view, rods)
-    ),
+    "branch": _branch_lines,
+    "phase_diagram": _row_lines,
 }
-"""For each task, the function of the view and a mask of computed points that returns the answer's lines."""
+"""For each task, the function of the arms that returns the lines of the answer."""

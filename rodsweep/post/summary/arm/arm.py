@@ -18,6 +18,7 @@ from ....results.layouts import LAYOUT_MAKERS
 from ....results.layouts.si_units import HERTZ
 from ....results.layouts.si_variables import si_variables_of
 from ....results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
+from ....results.layouts.variables import Variable
 from ...located_thresholds import LocatedThreshold
 from ...tables.rows_and_columns import quantities_of_view
 from ..errors import absolute_errors, is_known
@@ -131,31 +132,27 @@ def quantity_range(view: ResultView, name: str, column: np.ndarray, mask: np.nda
     return f"{quantity_words(name)} {range_text} {unit}".rstrip()
 
 
-def arm_lines(view: ResultView, computed: np.ndarray) -> list[str]:
-    """Lines with the ranges of an arm's variables, in typed or SI units, at the points in the mask
-    `computed`, (...,), without errors, crossings, and (for several points) other lists. Empty list for a
-    rod."""
+def arm_lines(points: Selection) -> list[str]:
+    """Lines with the ranges of an arm's variables, in typed or SI units, without errors, crossings, and (for
+    several points) other lists. Empty list for a rod."""
+    view = points.view
     if not view.quantities:
         return []
-    si_variables = si_variables_of(LAYOUT_MAKERS[view.task](view.config), view.config)
-    printed = {
-        name: v
-        for name, v in si_variables.items()
-        if "error" not in v.name and (not v.extra or (computed.size == 1 and v.extra != ("crossing",)))
-    }
-    known = {name: is_known(view.variables, name)[computed] for name in printed}
-    values = {
-        name: np.where(known[name], view.variables[v.name][computed], np.nan) for name, v in printed.items()
-    }
-    values = {name: column for name, column in values.items() if np.isfinite(column).any()}
+    values: dict[tuple[str, Variable], np.ndarray] = {}
     largest: dict[str, float] = {}
-    for name, column in values.items():
-        largest[printed[name].units] = max(largest.get(printed[name].units, 0.0), _largest_absolute(column))
+    for name, variable in si_variables_of(LAYOUT_MAKERS[view.task](view.config), view.config).items():
+        is_printed_list = points.mask.size == 1 and variable.extra != ("crossing",)
+        if "error" in variable.name or (variable.extra and not is_printed_list):
+            continue
+        known = is_known(view.variables, name)[points.mask]
+        column = np.where(known, points.values(variable.name), np.nan)
+        if np.isfinite(column).any():
+            values[name, variable] = column
+            largest[variable.units] = max(largest.get(variable.units, 0.0), _largest_absolute(column))
     rows = []
-    for name, column in values.items():
-        variable = printed[name]
+    for (name, variable), column in values.items():
         factor, unit = printing_unit(view, variable.units, largest[variable.units])
-        errors = errors_in_si(view.variables, name, variable.name)[computed]
+        errors = errors_in_si(view.variables, name, variable.name)[points.mask]
         numbers_text = _numbers_text(factor * column, factor * errors)
         rows.append(f"{variable.name.removesuffix('_si').removesuffix('_hz')} = {numbers_text} {unit}")
     if not rows:

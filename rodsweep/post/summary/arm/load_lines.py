@@ -1,14 +1,17 @@
-"""Loads of arms in words: flutter as a force at the tip, the arms with extreme flutter loads, and the loads
-that compress an arm beyond the limit of the model."""
+"""Loads of arms in words: flutter as a force at the tip, the arms with extreme flutter loads, the effect of
+drag, and the loads that compress an arm beyond the limit of the model."""
+
+from collections.abc import Mapping
 
 import numpy as np
 
 from ....model.arm.neglected import COMPRESSION_LIMIT, DOUBTFUL_RATIO
 from ....model.arm.quantities import SCALE_NAMES, UNITS
 from ....results.file.view import ResultView
+from ....wording import two_digits
 from ...crushing import material_of_rods
 from ..selection import Selection
-from .arm import range_in_unit, region_of_arms
+from .arm import range_in_unit, region_of_arms, varied_columns
 
 ANSWER_DIGITS = 3
 """Largest number of significant digits in an answer; a number with a large error has fewer digits."""
@@ -19,48 +22,92 @@ VERDICTS_BY_COMPRESSION = {
 """Verdict on the model, by the compression above which the verdict holds, as a fraction of its limit."""
 
 
-def flutter_force_line(view: ResultView, rods: np.ndarray) -> list[str]:
+def flutter_force_line(arms: Selection) -> list[str]:
     """Line with the range of the flutter forces at the tip, and with their extreme arms; empty if the load is
-    a force, and if no arm flutters. rods: mask of the points with a result, (...,).
+    a force, and if no arm flutters.
 
     Of two arms with tips of different size, the larger flutter pressure may be the smaller force.
     """
-    forces = (view.variables["F_hopf"] * view.variables[SCALE_NAMES["force"]])[rods]
-    if view.load_kind == "force" or not np.isfinite(forces).any():
+    forces = (arms.variables["F_hopf"] * arms.variables[SCALE_NAMES["force"]])[arms.mask]
+    if arms.view.load_kind == "force" or not np.isfinite(forces).any():
         return []
-    extremes_text = extreme_arms_text(view, rods, forces, "smallest")
-    text = range_in_unit(view, forces, "N", 0.0, ANSWER_DIGITS)
+    extremes_text = extreme_arms_text(arms, forces, "smallest")
+    text = range_in_unit(arms.view, forces, "N", 0.0, ANSWER_DIGITS)
     return [f"flutter as a force at the tip: {text}{f', {extremes_text}' if extremes_text else ''}"]
 
 
-def extreme_arms_text(view: ResultView, rods: np.ndarray, loads: np.ndarray, smallest: str) -> str:
-    """The arms with the smallest and with the largest load as text; empty for fewer than two loads. loads:
-    loads of the points in the mask `rods`, (n,)."""
+def extreme_arms_text(arms: Selection, loads: np.ndarray, smallest: str) -> str:
+    """The arms with the smallest and with the largest of the loads, (n,), as text; empty for fewer than two
+    loads, and if both arms are described by the same text."""
     if np.isfinite(loads).sum() < 2:
         return ""
-    indices = np.flatnonzero(rods)
-    ends = [indices[argument(loads)] for argument in (np.nanargmin, np.nanargmax)]
-    first_text, last_text = (region_of_arms(Selection(view, np.arange(rods.size) == end)) for end in ends)
+    indices = np.flatnonzero(arms.mask)
+    ends = (indices[np.nanargmin(loads)], indices[np.nanargmax(loads)])
+    first_text, last_text = (
+        region_of_arms(Selection(arms.view, np.arange(arms.mask.size) == end)) for end in ends
+    )
     return "" if first_text == last_text else f"{smallest} at {first_text}; largest at {last_text}"
 
 
-def compression_lines(view: ResultView, rods: np.ndarray) -> list[str]:
+def drag_lines(arms: Selection, names: Mapping[str, str]) -> list[str]:
+    """Line on the variation of variables over the drags of an arm; an empty list if drag does not vary.
+    names: variables by printed name."""
+    arm_indices = arm_index_of_points(arms.view)
+    if arm_indices is None:
+        return []
+    up_to = "up to " if len(np.unique(arm_indices)) > 1 else ""
+    variations = []
+    for word, name in names.items():
+        values = np.where(arms.mask, arms.variables[name], np.nan).ravel()
+        ratio = _largest_spread(values, arm_indices)
+        if np.isfinite(ratio):
+            factor_text = f"{two_digits(100 * (ratio - 1))} %" if ratio < 2 else f"a factor of {ratio:.3g}"
+            variations.append(f"{word} by {up_to}{factor_text}")
+    drag_count = len(np.unique(varied_columns(arms.view)["drag"]))
+    text = f"the results of an arm vary over the {drag_count} drags of its range: {', '.join(variations)}"
+    return [text] if variations else []
+
+
+def arm_index_of_points(view: ResultView) -> np.ndarray | None:
+    """Index of the arm at each point, (points,): equal for points that differ only in drag. None if drag does
+    not vary."""
+    columns = varied_columns(view)
+    if columns.pop("drag", None) is None:
+        return None
+    point_count = view.variables["status"].size
+    table = np.stack([np.zeros(point_count), *map(np.nan_to_num, columns.values())], axis=-1)
+    return np.unique(table, axis=0, return_inverse=True)[1].ravel()
+
+
+def _largest_spread(values: np.ndarray, arm_indices: np.ndarray) -> float:
+    """Maximum, over all arms, of the largest value of an arm divided by the smallest; NaN if no arm has two
+    positive values. arm_indices: index of the arm at each point, as from `arm_index_of_points`."""
+    ratios = []
+    for index in np.unique(arm_indices):
+        arm_values = values[(arm_indices == index) & np.isfinite(values)]
+        if len(arm_values) > 1 and arm_values.min() > 0:
+            ratios.append(float(arm_values.max() / arm_values.min()))
+    return max(ratios, default=np.nan)
+
+
+def compression_lines(rows: Selection) -> list[str]:
     """Lines with the ranges of loads above which compression makes the model doubtful on the rows of a phase
     diagram, and above which it exceeds the limit; empty for other tasks, and if all loads of the rows are
-    smaller. rods: mask of rows, (...,).
+    smaller.
 
     The validity of a row is that at its first Hopf point, and a row has larger loads. Rubber has no limit of
     compression, because its law includes large compression. Raises InputError if this version of rodsweep
     does not accept the config of the file.
     """
-    if "F" in view.parameters or "F" not in view.variables or not rods.any():
+    view = rows.view
+    if "F" in view.parameters or "F" not in view.variables or not rows.count:
         return []  # no rows along F
     columns = view.point_columns
     tapers = columns.get("taper", np.ones_like(columns["k1"]))
     largest = COMPRESSION_LIMIT * columns["k1"] * material_of_rods(view).relative_crushing_forces(tapers)
-    limits = largest.reshape(rods.shape)[rods]
+    limits = largest[rows.mask.ravel()]
     kind = view.load_kind
-    scale = np.broadcast_to(view.variables[SCALE_NAMES[kind]], rods.shape)[rods]
+    scale = np.broadcast_to(view.variables[SCALE_NAMES[kind]], rows.mask.shape)[rows.mask]
     lines = []
     for max_fraction, verdict in VERDICTS_BY_COMPRESSION.items():
         if max_fraction * limits.min() < view.variables["F"].max():

@@ -5,10 +5,10 @@ from collections.abc import Mapping
 import numpy as np
 
 from ....model.arm.neglected import DOUBTFUL_RATIO, Validity
-from ....results.file.view import ResultView
 from ....results.layouts.si_variables import NEGLECTED_EFFECTS, UNKNOWN_VALIDITY_NUMBER, VALIDITY_VARIABLES
 from ....results.layouts.thresholds import HOPF_CROSSING_CODES
 from ....wording import count_of_total, counted, two_digits
+from ..selection import Selection
 
 OTHER_PLANE_WARNING = (
     "the motion is in the plane of the height; where the height exceeds the width, the arm flutters first in "
@@ -75,25 +75,24 @@ def validity_sentence(validity: Mapping[str, np.ndarray], condition: str = "", n
     )
 
 
-def judged_row_motion_clause(view: ResultView, rows: np.ndarray) -> str:
+def judged_row_motion_clause(rows: Selection) -> str:
     """Clause on the motion by which the validity of the model on rows of a phase diagram was judged: the
     first Hopf point of each row, or rest on a row without Hopf point. Empty for other tasks, and for rows
-    whose motion is not known. rows: mask of the rows, (...,).
+    whose motion is not known.
 
     Loads along a row without Hopf point do not enter: `compression_lines` compares them.
     """
-    if "crossing_at" not in view.variables:  # no rows of a phase diagram
+    if "crossing_at" not in rows.variables:  # no rows of a phase diagram
         return ""
-    rows = rows & (view.variables["model_applies"] != UNKNOWN_VALIDITY_NUMBER)
-    if not rows.any():
+    judged = rows.where(rows.variables["model_applies"] != UNKNOWN_VALIDITY_NUMBER)
+    has_hopf = np.isin(judged.values("crossing_kind"), HOPF_CROSSING_CODES).any(axis=-1)
+    at_rest_text = "at rest" if "F" in rows.view.parameters else "at rest without load"
+    if not judged.count:
         return ""
-    hopf = np.isin(view.variables["crossing_kind"][rows], HOPF_CROSSING_CODES).any(axis=-1)
-    at_rest_text = "at rest" if "F" in view.parameters else "at rest without load"
-    if not hopf.any():
+    if not has_hopf.any():
         return f", judged {at_rest_text}"
-    if len(hopf) == 1:
+    if judged.count == 1:
         return ", judged at the first Hopf point"
-    remaining_clause = (
-        "" if hopf.all() else f", and {at_rest_text} on {counted(int((~hopf).sum()), 'row')} without"
-    )
-    return f", judged at the first Hopf point of each row{remaining_clause}"
+    clause = ", judged at the first Hopf point of each row"
+    rest_count = int((~has_hopf).sum())
+    return f"{clause}, and {at_rest_text} on {counted(rest_count, 'row')} without" if rest_count else clause
