@@ -94,18 +94,15 @@ class Cell:
 
 @dataclass(frozen=True, slots=True)
 class PageTable:
-    """Table on the page.
-
-    column_heads: (name, unit, meaning) of each shown column. rows: cells of the shown rows. total_rows:
-    number of rows of the result, of which at most MAX_ROWS are shown. constant_columns: (name, cell, unit,
-    meaning) of each column with equal values in all rows; these columns are listed outside the table.
-    """
+    """Table on the page: columns, and cells of the shown rows. total_rows: number of rows of the result, of
+    which at most MAX_ROWS are shown. constants: (column, cell) for each column with equal values in all rows;
+    these columns are listed outside the table."""
 
     name: str
-    column_heads: tuple[tuple[str, str, str], ...]
-    rows: tuple[tuple[Cell, ...], ...]
+    columns: Sequence[Column]
+    rows: Sequence[tuple[Cell, ...]]
     total_rows: int
-    constant_columns: tuple[tuple[str, Cell, str, str], ...]
+    constants: Sequence[tuple[Column, Cell]]
 
 
 def page_tables(view: ResultView) -> Iterator[PageTable]:
@@ -121,35 +118,31 @@ def _table_for_page(table: Table) -> PageTable:
     """The table in a form for the page: without empty columns; columns with equal values in all rows are
     listed separately."""
     filled_columns = [column for column in table.columns if not column.absent.all()]
-    complete = [c for c in filled_columns if table.rows > 1 and c.name != "status" and not c.absent.any()]
-    constant_columns = [column for column in complete if len(np.unique(column.values)) == 1]
-    varied_columns = [column for column in filled_columns if column not in constant_columns]
-    cells = [_cells(column.rows(slice(0, MAX_ROWS))) for column in varied_columns]
-    firsts = ((column, _cells(column.rows(slice(0, 1)))[0]) for column in constant_columns)
-    return PageTable(
-        name=table.name,
-        column_heads=tuple((column.name, column.printed_unit, column.meaning) for column in varied_columns),
-        rows=tuple(zip(*cells, strict=True)),
-        total_rows=table.rows,
-        constant_columns=tuple(
-            (column.name, first, column.printed_unit, column.meaning) for column, first in firsts
-        ),
-    )
+    is_constant = {
+        column.name: table.rows > 1
+        and column.name != "status"
+        and not column.absent.any()
+        and len(np.unique(column.values)) == 1
+        for column in filled_columns
+    }
+    columns = [column for column in filled_columns if not is_constant[column.name]]
+    cells = [_cells(column.rows(slice(0, MAX_ROWS))) for column in columns]
+    constants = [
+        (column, _cells(column.rows(slice(0, 1)))[0]) for column in filled_columns if is_constant[column.name]
+    ]
+    return PageTable(table.name, columns, list(zip(*cells, strict=True)), table.rows, constants)
 
 
 def _cells(column: Column) -> list[Cell]:
-    """Cells for all values of a column."""
-    return [_cell(column, text, value) for text, value in zip(column.texts(), column.values, strict=True)]
-
-
-def _cell(column: Column, text: str, value: float) -> Cell:
-    """Cell for the value `value` of a column. text: the value with all digits; empty if the value is
-    missing."""
-    is_number = column.values.dtype.kind == "f" and not column.flag_meanings and not column.is_estimate
-    if not text or not is_number:
-        return Cell(text)
-    rounded_text = f"{value:.{CELL_DIGITS}g}"
-    return Cell(rounded_text, text) if len(rounded_text) < len(text) else Cell(text)
+    """Cells for all values of a column; the text of a missing value is empty."""
+    texts = column.texts()
+    if column.values.dtype.kind != "f" or column.flag_meanings or column.is_estimate:
+        return list(map(Cell, texts))
+    rounded_texts = [f"{value:.{CELL_DIGITS}g}" for value in column.values]
+    return [
+        Cell(rounded, text) if len(rounded) < len(text) else Cell(text)
+        for rounded, text in zip(rounded_texts, texts, strict=True)
+    ]
 
 
 VERSION_WORDS = {

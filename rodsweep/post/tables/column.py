@@ -56,13 +56,20 @@ class Column:
         return "error" in self.name or self.name == SECONDS_VARIABLE.name
 
     def rows(self, indices: NDArray[np.int64] | slice) -> "Column":
-        """Column with the rows `indices`: indices, in the order of the new column, or a slice. The index -1
-        gives a missing value."""
-        if isinstance(indices, slice):
-            return replace(self, values=self.values[indices], absent=self.absent[indices])
-        # An appended row makes index -1 a missing value.
-        values = np.append(self.values, np.zeros(1, self.values.dtype))[indices]
-        return replace(self, values=values, absent=np.append(self.absent, True)[indices])
+        """Column with the rows `indices`: indices, in the order of the new column, or a slice."""
+        return replace(self, values=self.values[indices], absent=self.absent[indices])
+
+    def followed_by(self, other: "Column | None", length: int) -> "Column":
+        """Column of `length` rows: the rows of this column, then those of `other`, or missing values if
+        `other` is None."""
+        added = length - len(self.values)
+        values = np.zeros(added, self.values.dtype) if other is None else other.values
+        absent = np.ones(added, bool) if other is None else other.absent
+        return replace(
+            self,
+            values=np.concatenate([self.values, values]),
+            absent=np.concatenate([self.absent, absent]),
+        )
 
     def texts(self) -> list[str]:
         """Values as text for CSV: words, or the shortest decimal number from which the value can be

@@ -1,7 +1,7 @@
 """Results as tables with one row per item, for `rodsweep export` and for pandas DataFrames."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -109,60 +109,34 @@ class Tables:
         return rows, [*columns, *si_columns(self.view, variables, columns, points)]
 
     def _branches(self) -> tuple[NDArray[np.int64], list[Column]]:
-        """Returns (point_indices, columns) of the table `branches`: cycles, with special points between the
-        cycles. point_indices: index of the point of each row, (rows,)."""
-        cycles, of_cycles = self._list("cycles")
-        special_rows, special_columns = self._list("special_points")
-        points, cycle_indices, at_special = merged_rows(self.view, cycles, special_rows)
+        """Returns (point_indices, columns) of the table `branches`: cycles, with the special points between
+        the cycles, and the kind of special point. point_indices: index of the point of each row, (rows,)."""
+        cycles, cycle_columns = self._list("cycles")
+        special_points, special_columns = self._list("special_points")
+        by_name = {column.name: column for column in special_columns}
         parameter = followed_parameter(self.view)
-        return points, merged_columns(of_cycles, special_columns, cycle_indices, at_special, parameter)
+        order = _order_along_branches(self.view, cycles, special_points)
+        columns = [
+            column.followed_by(by_name.get(_special_point_variable(column.name, parameter)), len(order))
+            for column in cycle_columns
+        ]
+        kinds = by_name["special_kind"]
+        no_kinds = kinds.rows(slice(0, 0)).followed_by(None, len(cycles[0]))
+        columns.append(no_kinds.followed_by(kinds, len(order)))
+        points = np.concatenate([cycles[0], special_points[0]])
+        return points[order], [column.rows(order) for column in columns]
 
 
-def merged_rows(view: ResultView, cycles: Rows, special_points: Rows) -> tuple[NDArray, NDArray, NDArray]:
-    """Returns (points, of_cycle, of_special), (rows,) each, for the rows of the table `branches` in order.
-
-    points: index of the point. of_cycle, of_special: row in `cycles` and in `special_points`; -1 if the row
-    is not a cycle, or not a special point. A special point follows the cycle that precedes it on the branch.
-    """
-    branch_of_cycle = view.by_point("branch")[cycles]
-    branch_of_special, position_of_special = (
-        view.by_point(name)[special_points] for name in ("special_branch", "special_point")
-    )
-    branch = np.concatenate([branch_of_cycle, branch_of_special])
-    position = np.concatenate([cycles[1] + 1, position_of_special])
-    point, number = (np.concatenate(pair) for pair in zip(cycles, special_points, strict=True))
+def _order_along_branches(view: ResultView, cycles: Rows, special_points: Rows) -> NDArray[np.int64]:
+    """Order of the cycles, followed by the special points, along the branches: a special point follows the
+    cycle that precedes it on the branch."""
+    branches = [view.by_point("branch")[cycles], view.by_point("special_branch")[special_points]]
+    positions = [cycles[1] + 1, view.by_point("special_point")[special_points]]
+    points, numbers = (np.concatenate(pair) for pair in zip(cycles, special_points, strict=True))
     is_special_point = np.repeat([0, 1], [len(cycles[0]), len(special_points[0])])
-    order = np.lexsort((number, is_special_point, position, branch, point))
-    row_index = np.concatenate([np.arange(len(cycles[0])), np.arange(len(special_points[0]))])
-    cycle_indices, special_indices = (
-        np.where(is_special_point == own_kind, row_index, -1)[order] for own_kind in (0, 1)
+    return np.lexsort(
+        (numbers, is_special_point, np.concatenate(positions), np.concatenate(branches), points)
     )
-    return point[order], cycle_indices, special_indices
-
-
-def merged_columns(
-    cycles: list[Column],
-    special_columns: list[Column],
-    cycle_rows: NDArray,
-    special_rows: NDArray,
-    parameter_name: str,
-) -> list[Column]:
-    """Columns of the table `branches`: the columns of cycles, with values at special points in the rows of
-    special points, and the kind of special point.
-
-    cycle_rows, special_rows: as from `merged_rows`, (rows,).
-    """
-    by_name = {column.name: column for column in special_columns}
-    result = []
-    for column in cycles:
-        values = column.rows(cycle_rows)
-        counterpart = by_name.get(_special_point_variable(column.name, parameter_name))
-        if counterpart is not None:
-            special_values = counterpart.rows(special_rows)
-            joined_values = np.where(values.absent, special_values.values, values.values)
-            values = replace(values, values=joined_values, absent=values.absent & special_values.absent)
-        result.append(values)
-    return [*result, by_name["special_kind"].rows(special_rows)]
 
 
 def _special_point_variable(cycle_variable: str, parameter_name: str) -> str:
