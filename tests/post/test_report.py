@@ -15,7 +15,6 @@ from surveyed import RODS, only
 from rodsweep.post.figures.cycle.point_map import cell_centres, cell_edges
 from rodsweep.post.report import write_report
 from rodsweep.post.report.label_text import label_text
-from rodsweep.post.report.vector_picture import MIN_CONTRAST, _contrast_with_dark_page, dark_page_colour
 from rodsweep.post.summary import summary_of
 from rodsweep.results.file.view import read_view
 from rodsweep.tasks import TASKS
@@ -255,27 +254,15 @@ def test_centres_of_cells_are_the_values_that_made_the_edges():
     assert cell_centres(np.log(cell_edges(logarithmic))) == pytest.approx(np.log(logarithmic), abs=1e-14)
 
 
-@pytest.mark.parametrize("colour", ["0072b2", "6a3d9a", "440154", "d55e00", "ffff00", "000000", "000001"])
-def test_colours_are_lightened_until_they_stand_out_on_a_dark_page(colour):
-    found = dark_page_colour(colour)
-    assert (
-        _contrast_with_dark_page([int(found[place : place + 2], 16) for place in (0, 2, 4)]) >= MIN_CONTRAST
-    )
-
-
 @pytest.mark.long
 @needs_browser
-def test_a_figure_with_a_bitmap_is_dark_on_a_dark_page(command):
+def test_a_figure_is_dark_on_a_dark_page(command):
     reported(command, "phase_diagram")
     with Browser(dark=True) as browser:
         browser.show((command.directory / "phase_diagram.html").as_uri())
-        box = "document.querySelector('.bitmap svg').getBoundingClientRect()"
+        box = "document.querySelector('.picture svg').getBoundingClientRect()"
         corner = browser.run(f"const box = {box}; return [box.left + 3, box.top + 3]")
         paper, figure = ([*browser.screenshot().getpixel(place)] for place in ((2, 2), tuple(corner)))
         assert figure == pytest.approx(paper, abs=2)
         assert max(paper) < 40
         assert browser.complaints() == []
-
-
-def test_white_paper_becomes_the_dark_page():
-    assert dark_page_colour("ffffff") == "1b1b1b"

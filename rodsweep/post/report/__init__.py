@@ -21,7 +21,6 @@ from ...wording import counted
 from ..figures.request import CycleShapeSolver
 from ..output_files import atomic_write, require_output_path
 from .report_contents import MAX_ROWS, Pictures, ReportContents, pictures_of, report_contents
-from .vector_picture import VectorPicture, dark_page_colour
 
 QUOTED_TEXT_PATTERN = re.compile("`([^`]*)`")
 """Pattern for a text between backquotes in a sentence: a command, or a key of a config."""
@@ -52,13 +51,11 @@ def write_report(views: Sequence[ResultView], output: Path, shapes: CycleShapeSo
 
 def page_text(results: Sequence[ReportContents], shared_pictures: Pictures) -> str:
     """HTML text of the page. shared_pictures: figures that show several results in the same panels."""
-    pictures = [captioned.picture for result in results for captioned in result.pictures.shown]
-    pictures += [captioned.picture for captioned in shared_pictures.shown]
     title = "; ".join(result.title for result in results)
-    return rendered_template("page.html", pictures, title=title, results=results, together=shared_pictures)
+    return rendered_template("page.html", title=title, results=results, together=shared_pictures)
 
 
-def rendered_template(template: str, page_pictures: Sequence[VectorPicture], **contents: Any) -> str:
+def rendered_template(template: str, **contents: Any) -> str:
     """HTML text made from a template of this package. contents: variables of the template."""
     spaces: dict[str, Any] = {"trim_blocks": True, "lstrip_blocks": True, "keep_trailing_newline": True}
     loader = PackageLoader(__name__)
@@ -67,7 +64,5 @@ def rendered_template(template: str, page_pictures: Sequence[VectorPicture], **c
     environment.filters["with_code"] = lambda text: Markup(
         QUOTED_TEXT_PATTERN.sub(r"<code>\1</code>", str(escape(text)))
     )
-    colours = sorted(set[str]().union(*(picture.colours for picture in page_pictures)))
-    contents["colours"] = [(colour, dark_page_colour(colour)) for colour in colours]
     contents |= {"max_rows": MAX_ROWS, "version": __version__, "written": utc_time()}
     return environment.get_template(template).render(contents)

@@ -63,7 +63,6 @@ def portrait_page(results: RodResults) -> str:
     views += [(f"limit cycle at {load_text(F)}", view) for F, view in results.cycles]
     return rendered_template(
         "portrait.html",
-        [picture],
         kind=results.rod.kind,
         title=f"{results.rod.kind.capitalize()} with {results.rod.description}",
         paragraph=paragraph(results),

@@ -15,10 +15,9 @@ from .diagram_curves import (
     diagram_curve_lines,
     incomplete_curve_lines,
 )
-from .diagram_rows import DiagramRows
 from .followed_ranges import followed_beyond_range_text
 from .number_texts import span_text
-from .selection import Selection, counts_by_word, percents_by_word
+from .selection import DiagramRows, Selection, counts_by_word, percents_by_word
 from .stable_states import stable_state_lines
 from .summary_lines import SummaryLines
 from .thresholds import cost_lines, search_lines

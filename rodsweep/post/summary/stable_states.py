@@ -9,8 +9,7 @@ from ...results.layouts.thresholds import HOPF_CROSSING_CODES
 from ...results.layouts.variables import flag_number
 from ...wording import counted
 from .cycle_curves import CYCLE_CHANGE_WORDS
-from .diagram_rows import DiagramRows
-from .selection import percents_by_word
+from .selection import DiagramRows, percents_by_word
 
 STABLE_STATE_WORDS = dict(STABLE_STATES) | {
     flag_number("neither_known", STABLE_STATES): "no stable state known",
