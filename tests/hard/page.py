@@ -24,7 +24,6 @@ BOOKKEEPING = (
     "time per",
     "time of the",
     "cost of a search",
-    "in all ",
     "unknowns of the mesh",
     "no mesh was needed",
     "last run",
@@ -39,18 +38,11 @@ WIDEST = "500"
 
 
 class Page(list):
-    """The lines of a page but for the first; the block in an arm's units is one line."""
+    """The lines of a page but for the first."""
 
     def __init__(self, text):
-        lines, in_block = [], False
-        for line in text.splitlines()[1:]:
-            if in_block and line.startswith("  "):
-                lines[-1] += f" {line.strip()}"
-                continue
-            in_block = line == "in the arm's units:"
-            lines += [line.rstrip()] * bool(line.strip())
-        super().__init__(lines)
-        self.seen = {line: set() for line in lines}
+        super().__init__(line.rstrip() for line in text.splitlines()[1:] if line.strip())
+        self.seen = {line: set() for line in self}
 
     def mark(self, line, span):
         """A part of a line was read."""

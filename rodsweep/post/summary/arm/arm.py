@@ -4,7 +4,6 @@ Loads and lengths are in the units typed by the user, frequencies in Hz. All pow
 unit.
 """
 
-import textwrap
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -25,8 +24,6 @@ from ..errors import absolute_errors, is_known
 from ..number_texts import MAX_RANGE_END_DIGITS, rounded_text, span_text
 from ..selection import Selection
 
-SI_LINE_WIDTH = 80
-"""Largest length of a line with variables in SI units, in characters."""
 FEW_ITEMS = 4
 """Up to this number of values of an array are listed one by one; more values are printed as a range."""
 TYPED_UNIT_QUANTITIES = {"m": ("length",), "Pa": ("pressure", "young"), "N": ("force",)}
@@ -133,8 +130,8 @@ def quantity_range(view: ResultView, name: str, column: np.ndarray, mask: np.nda
 
 
 def arm_lines(points: Selection) -> list[str]:
-    """Lines with the ranges of an arm's variables, in typed or SI units, without errors, crossings, and (for
-    several points) other lists. Empty list for a rod."""
+    """List with a line on the ranges of an arm's variables, in typed or SI units, without errors, crossings,
+    and (for several points) other lists. Empty list for a rod."""
     view = points.view
     if not view.quantities:
         return []
@@ -155,11 +152,7 @@ def arm_lines(points: Selection) -> list[str]:
         errors = errors_in_si(view.variables, name, variable.name)[points.mask]
         numbers_text = _numbers_text(factor * column, factor * errors)
         rows.append(f"{variable.name.removesuffix('_si').removesuffix('_hz')} = {numbers_text} {unit}")
-    if not rows:
-        return []
-    text = "; ".join(row.replace(" ", "\xa0") for row in rows)  # no line ends at a no-break space
-    lines = textwrap.wrap(text, SI_LINE_WIDTH - 2, break_long_words=False, break_on_hyphens=False)
-    return ["in the arm's units:", *("  " + line.replace("\xa0", " ") for line in lines)]
+    return [f"in the arm's units: {'; '.join(rows)}"] if rows else []
 
 
 def _numbers_text(values: np.ndarray, errors: np.ndarray) -> str:
