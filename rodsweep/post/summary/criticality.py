@@ -9,9 +9,9 @@ from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import counted
 from .arm.arm import crossings_of_arm
 from .errors import absolute_errors
-from .number_texts import number_and_error, rounded_text, span_text
+from .number_texts import rounded_text, span_text
 from .selection import Selection, counts_by_word, in_brackets
-from .summary_lines import MAX_LISTED_ITEMS, SummaryLines, TextTable
+from .summary_lines import MAX_LISTED_ITEMS, SummaryLines, TextTable, number_table
 from .thresholds import (
     ENDED_EARLY,
     proved_for_text,
@@ -108,14 +108,11 @@ def _hopf_lines(variables: Mapping[str, np.ndarray]) -> Iterator[str]:
 def _hopf_table(variables: Mapping[str, np.ndarray]) -> TextTable | None:
     """Table with one column for each Hopf point of the only rod in a file; None if the rod has no Hopf
     point."""
+    numbers = np.array([variables[name] for name in HOPF_SYMBOLS_AND_UNITS])
+    errors = np.array([absolute_errors(variables, name) for name in HOPF_SYMBOLS_AND_UNITS])
     kinds = stored_crossing_kinds(variables)
-    rows = []
-    for name, label in HOPF_SYMBOLS_AND_UNITS.items():
-        errors = absolute_errors(variables, name)
-        numbers = (number_and_error(float(variables[name][i]), float(errors[i])) for i in range(len(kinds)))
-        rows.append((label, *(text for number in numbers for text in number)))
-    headings = ("", *(title for kind in kinds for title in (kind, "+-")))
-    return TextTable(headings, tuple(rows)) if kinds else None
+    columns = [(kind, numbers[:, i], errors[:, i]) for i, kind in enumerate(kinds)]
+    return number_table(("", HOPF_SYMBOLS_AND_UNITS.values(), None), *columns) if columns else None
 
 
 def _nearby_cycles_clause(variables: Mapping[str, np.ndarray], i: int, kind: str) -> str:

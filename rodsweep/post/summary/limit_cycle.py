@@ -10,10 +10,10 @@ from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import count_of_total, counted
 from ..located_thresholds import StoredThresholds
 from .arm.arm import region_of_arms
-from .number_texts import error_text, number_and_error, span_text
+from .number_texts import error_text, span_text
 from .selection import Selection, counts_at_places, region_of, varied_parameters_at_points
 from .stability import rod_and_arm_stability_lines
-from .summary_lines import SummaryLines, TextTable, proof_clause
+from .summary_lines import SummaryLines, TextTable, number_table, proof_clause
 
 OUTCOME_WORDS = {
     "cycle": "beats",
@@ -148,14 +148,14 @@ def single_cycle_stability_line(points: Selection) -> str:
     return "the cycle is unstable: its largest nontrivial Floquet multiplier is above 1"
 
 
-def single_cycle_table(points: Selection) -> TextTable:
-    """Table of the numbers of the only cycle in a file, with errors."""
-    rows = []
-    for label, name, unit in CYCLE_NUMBERS:
-        value = float(points.values(name).max())
-        if np.isfinite(value):
-            rows.append((label, *number_and_error(value, float(points.errors(name).max())), unit))
-    return TextTable(("", "value", "+-", "unit"), tuple(rows))
+def single_cycle_table(points: Selection) -> TextTable | None:
+    """Table of the numbers of the only cycle in a file, with errors; None if no number is known."""
+    known = [row for row in CYCLE_NUMBERS if np.isfinite(points.values(row[1])).all()]
+    numbers = [points.values(name).max() for _, name, _ in known]
+    errors = np.array([points.errors(name).max() for _, name, _ in known])
+    labels = [label for label, _, _ in known]
+    units = [unit for _, _, unit in known]
+    return number_table(("", labels, None), ("value", numbers, errors), ("unit", units, None))
 
 
 def _second_state_lines(points: Selection) -> list[str]:
