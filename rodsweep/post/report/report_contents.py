@@ -145,27 +145,11 @@ def _cells(column: Column) -> list[Cell]:
     ]
 
 
-VERSION_WORDS = {
-    "rodsweep_version": "rodsweep",
-    "git_commit": "commit",
-    "format": "format of the file",
-    "python_version": "Python",
-    "numpy_version": "NumPy",
-    "numba_version": "numba",
-    "petsc_version": "PETSc",
-    "petsc4py_version": "petsc4py",
-    "slepc_version": "SLEPc",
-    "slepc4py_version": "slepc4py",
-    "mpi4py_version": "mpi4py",
-    "h5py_version": "h5py",
-    "hdf5_version": "HDF5",
-    "petsc_options": "options of PETSc",
-    "started": "started",
-    "finished": "finished",
-    "fingerprint": "fingerprint of the config",
-}
-"""Printed names of the attributes of the result file that the page lists. No attribute contains the name of a
-machine or a user."""
+PAGE_ATTRIBUTES = ("git_commit", "format", "petsc_options", "started", "finished", "fingerprint")
+"""Attributes of the result file that the page lists below the versions of the software. None contains the
+name of a machine or a user."""
+VERSION_SUFFIX = "_version"
+"""Ending of the attributes with versions of the software."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -187,7 +171,7 @@ class ReportContents:
     complete_config: str
     """Config with the defaults of all keys filled in."""
     versions: Sequence[tuple[str, str]]
-    """(printed name, value) of the attributes in VERSION_WORDS."""
+    """(printed name, value) of the versions of the software and of the attributes in PAGE_ATTRIBUTES."""
 
 
 def report_contents(view: ResultView, pictures: Pictures) -> ReportContents:
@@ -195,6 +179,7 @@ def report_contents(view: ResultView, pictures: Pictures) -> ReportContents:
     attributes = view.attributes
     summary = summary_of(view)
     name = printable(view.path.name)
+    version_keys = [key for key in attributes if key.endswith(VERSION_SUFFIX)]
     return ReportContents(
         name=name,
         title=str(attributes.get("title", "")) or name,
@@ -206,8 +191,8 @@ def report_contents(view: ResultView, pictures: Pictures) -> ReportContents:
         config=str(attributes.get("config", "")).strip("\n"),
         complete_config=tree_yaml(view.config).strip("\n"),
         versions=[
-            (word, str(attributes[key]))
-            for key, word in VERSION_WORDS.items()
+            (key.removesuffix(VERSION_SUFFIX).replace("_", " "), str(attributes[key]))
+            for key in (*version_keys, *PAGE_ATTRIBUTES)
             if str(attributes.get(key, ""))
         ],
     )
