@@ -207,7 +207,7 @@ def _with_parameter_ranges(view: ResultView, statuses: TextTable) -> TextTable:
     rows = []
     for word, count_text, meaning in statuses.rows:
         ranges_text = (
-            Selection(list_view, list_view.has_status(word)).region if word in view.flags.values() else ""
+            Selection(list_view, list_view.has_status(word)).region() if word in view.flags.values() else ""
         )
         rows.append((word, count_text, ranges_text, meaning))
     status_heading, count_heading, meaning_heading = statuses.headings

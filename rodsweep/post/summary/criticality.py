@@ -58,7 +58,7 @@ def criticality_summary(points: Selection) -> SummaryLines:
     unknown = points.where(
         (variables["crossing_count"] < 0) | (points.view.has_status(ENDED_EARLY) & ~with_hopf.mask)
     )
-    place_text = in_brackets(with_hopf.region) if with_hopf.count else ""
+    place_text = in_brackets(with_hopf.region()) if with_hopf.count else ""
     answer = [
         f"Hopf points at {with_hopf.of_total(points, 'rod')}{place_text}{unknown_clause(unknown.count)}"
     ]

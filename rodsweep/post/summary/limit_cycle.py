@@ -11,7 +11,7 @@ from ...wording import count_of_total, counted
 from ..located_thresholds import StoredThresholds
 from .arm.arm import region_of_arms
 from .number_texts import error_text, span_text
-from .selection import Selection, counts_at_places, region_of, varied_parameters_at_points
+from .selection import Selection, counts_at_places, varied_parameters_at_points
 from .stability import rod_and_arm_stability_lines
 from .summary_lines import SummaryLines, TextTable, number_table, proof_clause
 
@@ -90,7 +90,7 @@ def limit_cycle_summary(points: Selection) -> SummaryLines:
     return SummaryLines(answer, reliability, details, arm_sentences, numbers)
 
 
-def outcome_count_line(points: Selection, region: Callable[[Selection], str] = region_of) -> str:
+def outcome_count_line(points: Selection, region: Callable[[Selection], str] = Selection.region) -> str:
     """Line on the number of points with each outcome, and on their regions of parameters.
 
     region: function that describes the place of points.

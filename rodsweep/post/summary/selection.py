@@ -79,7 +79,6 @@ class Selection:
 
         return RANGE_PATTERN.sub(text, template)
 
-    @property
     def region(self) -> str:
         """Ranges of the varied parameters as text; empty if no parameter varies in the file."""
         columns = varied_parameters_at_points(self.view)
@@ -122,17 +121,14 @@ class DiagramRows(Selection):
         return f"{bound}{with_items.of_total(self, 'row')}, {positions_text}, {with_items.row_values_text}"
 
 
-def region_of(points: Selection) -> str:
-    """Ranges of the varied parameters over the points as text."""
-    return points.region
-
-
 def varied_parameters_at_points(view: ResultView) -> dict[str, np.ndarray]:
     """Parameters that differ between points of a file, by name: values at all points, (points,)."""
     return {name: column for name, column in view.point_columns.items() if len(np.unique(column)) > 1}
 
 
-def counts_at_places(parts: Mapping[str, Selection], region: Callable[[Selection], str] = region_of) -> str:
+def counts_at_places(
+    parts: Mapping[str, Selection], region: Callable[[Selection], str] = Selection.region
+) -> str:
     """Number and region of the points of each part: "stable at 2 (F = 1 to 2), unstable at 1 (F = 3)"."""
     return ", ".join(f"{word} at {part.count}{in_brackets(region(part))}" for word, part in parts.items())
 
