@@ -587,9 +587,6 @@ def _row_bars(d, axes, view, mesh, words, rods, row):
 def _curves(d, axes, view, line, row, rods, states):
     """Boundaries, their names, folds, the partial beam, and the points where Re c = 0."""
     v, found = view.variables, []
-    for note in d.take(axes, Annotation):
-        found.append((plain(note.get_text()), _at_named(plain(note.get_text()), rods(*note.xy))))
-        read(d.page, r"^F\*\*? = NUMBER$")
     stored, count = int((v["crossing_kind"] > 0).sum()), int(v["crossing_count"].clip(min=0).sum())
     for text, match in read(d.page, r"curves through NUMBER of NUMBER crossings of the rows: raise"):
         found.append((text, "" if (int(match[1]), int(match[2])) == (stored, count) else f"{stored} {count}"))
@@ -641,14 +638,6 @@ def _told_place(view, what, match, names, of):
         off = abs(float(text) - values[i]) + errors[i]
         why.append("" if off <= unit_of(text) else f"{text} is {values[i]} +- {errors[i]}")
     return "; ".join(filter(None, why))
-
-
-def _at_named(name, rod):
-    """Why a boundary has another name: at F** the leading mode is on the axis, at F* it is double."""
-    w = roots_of(rod, 4)
-    if name.startswith("F**"):
-        return "" if abs(w[0].real) < 1e-3 * abs(w[0]) else f"eigenvalues are {w}"
-    return "" if abs(w[0] - w[1]) < 3e-2 * abs(w[0]) else f"eigenvalues are {w}"
 
 
 def _chords(d, axes, one, view, line, row, rods):

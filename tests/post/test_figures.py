@@ -11,7 +11,7 @@ from conftest import ROOT
 from matplotlib.colors import to_hex
 from matplotlib.contour import QuadContourSet
 from matplotlib.figure import Figure
-from matplotlib.text import Annotation, Text
+from matplotlib.text import Text
 from PIL import Image
 from shown import HOPF, STABLE_AGAIN
 
@@ -678,7 +678,7 @@ def test_thresholds_of_several_files_are_lines_of_one_figure(command, drawn):
     views = [read_view(command.directory / f"{name}.h5") for name in "ab"]
     assert "critical forces against k1 of 2 files" in draw(views, command.directory / "f.png")
     (axes,) = drawn[0].axes
-    hopf = [line.get_ydata() for line in axes.lines if line.get_marker() == "s"]
+    hopf = [line.get_ydata() for line in axes.lines if line.get_marker() == "s" and len(line.get_ydata())]
     for line, view in zip(hopf, views, strict=True):
         np.testing.assert_array_equal(line, view.variables["F_hopf"].ravel())
     labels = [text.get_text() for text in drawn[0].legends[0].get_texts()]
@@ -705,11 +705,12 @@ def test_folds_of_rows_are_marked_where_no_curve_goes_through_them():
     }
     view = ResultView(Path("f.h5"), {"task": "phase_diagram"}, variables, ("k1",), {0: "ok"}, 0)
     axes = Figure().subplots()
-    (folds,) = mark_cycles_on_rows(axes, view, PlaneParameters("F", "k1"))
+    mark_cycles_on_rows(axes, view, PlaneParameters("F", "k1"))
+    (folds,) = axes.lines
     assert folds.get_xydata().tolist() == [[70.0, 150.0]]
     bare = {name: values for name, values in variables.items() if not name.startswith("cycle_curve")}
-    (folds,) = mark_cycles_on_rows(axes, replace(view, variables=bare), PlaneParameters("F", "k1"))
-    assert len(folds.get_xydata()) == 3
+    mark_cycles_on_rows(axes, replace(view, variables=bare), PlaneParameters("F", "k1"))
+    assert len(axes.lines[1].get_xydata()) == 3
 
 
 def test_a_fold_beside_an_extremum_of_its_curve_lies_on_it():
@@ -727,7 +728,9 @@ def test_a_fold_beside_an_extremum_of_its_curve_lies_on_it():
         "cycle_curve_k1": 133 + 0.051 * ((F - 79) / 4) ** 2,
     }
     view = ResultView(Path("f.h5"), {"task": "phase_diagram"}, variables, ("k1",), {0: "ok"}, 0)
-    assert mark_cycles_on_rows(Figure().subplots(), view, PlaneParameters("F", "k1")) == []
+    axes = Figure().subplots()
+    mark_cycles_on_rows(axes, view, PlaneParameters("F", "k1"))
+    assert not axes.lines
 
 
 def figure_of(task, **words):
@@ -879,15 +882,7 @@ phase_diagram: {crossings: CROSSINGS}
 @pytest.mark.parametrize(
     ("crossings", "said"), [(6, "curves through 12 of 18 crossings of the rows"), (16, "")]
 )
-def test_symbols_of_close_curves_stand_apart_and_missing_curves_are_said(
-    command, monkeypatch, crossings, said
-):
-    """F* = 20 and F** = 38 are one place on an axis up to 3000."""
+def test_curves_that_the_rows_have_no_room_for_are_said_to_be_missing(command, monkeypatch, crossings, said):
     figure, _ = drawn_of(command, monkeypatch, CROWDED_DIAGRAM.replace("CROSSINGS", str(crossings)))
-    figure.draw_without_rendering()
-    (panel,) = figure.axes
-    labels = [child for child in panel.get_children() if isinstance(child, Annotation)]
-    one, two = (label.get_window_extent() for label in labels)
-    assert not one.overlaps(two)
     assert ("crossings" in figure.get_suptitle()) == bool(said)
     assert said in figure.get_suptitle()

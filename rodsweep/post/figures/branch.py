@@ -4,11 +4,12 @@ A third panel compares the amplitudes near Hopf points with the prediction of th
 """
 
 from collections.abc import Sequence
+from itertools import cycle
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.ticker import NullFormatter
 
 from ...results.layouts.variables import MISSING_STATUS
@@ -34,10 +35,8 @@ SPECIAL_POINT_MARKS = {
 }
 """(marker, legend entry) of a special point, by kind, or by reason for the end of a branch. Other ends are
 not marked."""
-PREDICTION_LINE_STYLE = (0, (4, 1, 1, 1))
-"""Line style of the amplitude predicted by the normal form near a Hopf point."""
-PREDICTION_WORD = "predicted by the normal form"
-"""Legend entry of the amplitude predicted by the normal form."""
+PREDICTION_LOOK: dict[str, Any] = {"ls": (0, (4, 1, 1, 1)), "label": "predicted by the normal form"}
+"""Line style and legend entry of the amplitude predicted by the normal form near a Hopf point."""
 BRANCH_COLOURS = (
     style.BLUE,
     style.VERMILION,
@@ -72,18 +71,18 @@ def draw_branch(request: FigureRequest) -> str:
     upper, lower, *hopf_panel = figure.subplots(2 + has_hopf_panel, 1)
     lower.sharex(upper)
     upper.tick_params(labelbottom=False)
-    marker_handles = draw_branch_curves(upper, lower, curves, colours)
+    add_stability_entries(upper, curves)
+    common_text, rod_texts = shared_and_own_of_points(view, [rod.index + 1 for rod in drawn_rods])
+    for colour, text in zip(BRANCH_COLOURS, rod_texts, strict=False):
+        upper.plot([], [], color=colour, lw=2, label=text or None)
+    draw_branch_curves(upper, lower, curves, colours)
     if is_single:
         draw_straight_rod(upper, drawn_rods[0])
     upper.set_ylabel("largest $y/L$ of the tip")
     lower.set(ylabel=r"period$/\tau_2$", xlabel=style.LABELS[parameter], yscale="log")
     for axes in hopf_panel:
-        marker_handles["predicted"] = _draw_predicted_amplitudes(axes, curves, colours, parameter)
-    handles = stability_entries(curves)
-    common_text, rod_texts = shared_and_own_of_points(view, [rod.index + 1 for rod in drawn_rods])
-    pairs = zip(BRANCH_COLOURS, rod_texts, strict=False)
-    handles += [Line2D([], [], color=colour, lw=2, label=text) for colour, text in pairs if text]
-    style.draw_legend_below(figure, [*handles, *marker_handles.values()], column_count=3)
+        _draw_predicted_amplitudes(axes, curves, colours, parameter)
+    style.draw_shared_legend(figure, column_count=3)
     figure.suptitle(style.heading_text(view, common_text))
     caption = f"{counted(len(curves), 'branch')} of cycles over {parameter}"
     return request.write(figure, caption + _omissions_clause(rods, len(rods_with_cycles), len(drawn_rods)))
@@ -91,16 +90,19 @@ def draw_branch(request: FigureRequest) -> str:
 
 def draw_branch_curves(
     upper: Axes, lower: Axes, curves: Sequence[StoredBranch], colours: Sequence[str]
-) -> dict[str, Line2D]:
-    """Draws branches into two panels; returns legend entries of special points, by kind. upper: panel of the
-    largest y of the tip. lower: panel of the period. colours: colours of the branches, used cyclically."""
-    marker_handles: dict[str, Line2D] = {}
-    for number, curve in enumerate(curves):
+) -> None:
+    """Draws branches with their special points into two panels. upper: panel of the largest y of the tip.
+    lower: panel of the period. colours: colours of the branches, used cyclically."""
+    for curve, colour in zip(curves, cycle(colours), strict=False):
         parameter_values, y, period, stable = smooth_curve_of_branch(curve)
-        for axes, values in ((upper, y), (lower, period)):
-            _draw_pieces(axes, parameter_values, values, stable, colours[number % len(colours)])
-        _mark_special_points(upper, lower, curve, marker_handles)
-    return marker_handles
+        _draw_pieces(upper, parameter_values, y, stable, colour)
+        _draw_pieces(lower, parameter_values, period, stable, colour)
+        for special in curve.special:
+            kind_or_reason = special.reason if special.kind == "end" else special.kind
+            if kind_or_reason in SPECIAL_POINT_MARKS:
+                marker, label = SPECIAL_POINT_MARKS[kind_or_reason]
+                for axes, value in ((upper, special.tip_y_max), (lower, special.period)):
+                    axes.plot(special.at, value, marker, color="k", ms=5, label=label)
 
 
 def draw_straight_rod(axes: Axes, rod: RodBranches) -> None:
@@ -114,12 +116,13 @@ def draw_straight_rod(axes: Axes, rod: RodBranches) -> None:
             axes.plot([low, high], [0, 0], STABILITY_LOOKS[stable][0], color="k", lw=1.4)
 
 
-def stability_entries(curves: Sequence[StoredBranch]) -> list[Line2D]:
-    """Legend entries for the line styles of stable and unstable parts of branches, and of parts of unknown
-    stability if there are any."""
+def add_stability_entries(axes: Axes, curves: Sequence[StoredBranch]) -> None:
+    """Adds legend entries for the line styles of stable and unstable parts of branches, and of parts of
+    unknown stability if there are any."""
     stabilities = {int(stability) for curve in curves for stability in curve.stable} | {1, 0}
-    looks = (STABILITY_LOOKS[stability] for stability in sorted(stabilities)[::-1])
-    return [Line2D([], [], color="k", ls=line, label=word) for line, word in looks]
+    for stability in sorted(stabilities, reverse=True):
+        line_style, label = STABILITY_LOOKS[stability]
+        axes.plot([], [], color="k", ls=line_style, label=label)
 
 
 def _omissions_clause(rods: Sequence[RodBranches], cycling: int, drawn_count: int) -> str:
@@ -146,44 +149,22 @@ def _draw_pieces(
         axes.plot(x[vertices], y[vertices], ls=STABILITY_LOOKS[kind][0], marker=marker, color=colour, lw=1.4)
 
 
-def _mark_special_points(
-    upper: Axes, lower: Axes, curve: StoredBranch, marker_handles: dict[str, Line2D]
-) -> None:
-    """Marks the special points of a branch in two panels, as in `draw_branch_curves`; adds legend entries to
-    `marker_handles`."""
-    for special in curve.special:
-        kind_or_reason = special.reason if special.kind == "end" else special.kind
-        if kind_or_reason not in SPECIAL_POINT_MARKS:
-            continue
-        marker, word = SPECIAL_POINT_MARKS[kind_or_reason]
-        (artist,) = upper.plot(special.at, special.tip_y_max, marker, color="k", ms=5, ls="", label=word)
-        lower.plot(special.at, special.period, marker, color="k", ms=5, ls="")
-        marker_handles.setdefault(kind_or_reason, artist)
-
-
 def _draw_predicted_amplitudes(
     axes: Axes, curves: list[StoredBranch], colours: Sequence[str], parameter_name: str
-) -> Line2D:
+) -> None:
     """Draws the amplitudes near Hopf points and the amplitudes predicted by the normal form, divided by the
-    amplitude coefficient |a|; returns the legend entry of the prediction. Each branch is drawn up to its
-    first fold, beyond which the prediction is not valid."""
-    nearest = []
-    distances = []
-    for number, curve in enumerate(curves):
+    amplitude coefficient |a|. Each branch is drawn up to its first fold, beyond which the prediction is not
+    valid."""
+    for curve, colour in zip(curves, cycle(colours), strict=False):
         for relative_distance, y, stable in curve.scaled_curves_near_hopf_points():
-            _draw_pieces(axes, relative_distance, y, stable, colours[number % len(colours)], marker=".")
-            nearest.append(float(relative_distance[0]))
-            distances.append(float(relative_distance[-1]))
-    ends = np.array([min(nearest), max(distances)])
-    (law,) = axes.plot(ends, ends**0.5, ls=PREDICTION_LINE_STYLE, color="0.4", lw=1.4, zorder=0)
-    law.set_label(PREDICTION_WORD)
+            _draw_pieces(axes, relative_distance, y, stable, colour, marker=".")
+    ends = axes.dataLim.intervalx
+    axes.plot(ends, ends**0.5, color="0.4", lw=1.4, zorder=0, **PREDICTION_LOOK)
     symbol = style.TEX_SYMBOLS[parameter_name]
     axes.set(xscale="log", yscale="log", ylabel="largest $y/|a|$")
     symbol = f"({symbol})" if "/" in symbol else symbol
     ratio_symbol = rf"{symbol}/{symbol}^\mathrm{{H}}"
     axes.set_xlabel(rf"$|{ratio_symbol} - 1|$, distance from the Hopf point")
-    style.label_few_decades(axes.xaxis, *axes.get_xlim())
-    style.label_few_decades(axes.yaxis, *axes.get_ylim())
     for axis in (axes.xaxis, axes.yaxis):
+        style.label_few_decades(axis, *axis.get_view_interval())
         axis.set_minor_formatter(NullFormatter())
-    return law

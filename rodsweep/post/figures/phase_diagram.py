@@ -1,13 +1,11 @@
 """Phase diagrams, as in the paper's Fig. 4: stability class of the rod over two parameters, and boundary
 curves."""
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from ...arrays import Array
 from ...config.parameters_section import DEFAULT_VALUES_OF_PARAMETERS
@@ -31,18 +29,6 @@ from .stability.diagram_curves import (
 )
 from .stability.regions import PIXEL_COUNT, ClassifiedPoints, DrawnPlane, pixel_classes
 from .stability.row_classes import classes_between_crossings, pixel_classes_of_row
-
-
-@dataclass(frozen=True, slots=True)
-class ClassMap:
-    """Content of a map of classes. plane: the rectangle of the map. classes: class of the rod at each
-    computed point, (rows, columns). crushing_ratio: force divided by the crushing force (zero stretch), at
-    every pixel, (pixels, pixels)."""
-
-    plane: DrawnPlane
-    classes: Array
-    crushing_ratio: Array
-
 
 CURVE_END_CRUSHING_RATIO = 1 - 3e-3
 """Curves of a file may end at this ratio of force to crushing force; rods with larger ratios bound regions as
@@ -74,17 +60,16 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     ratio = crushing_ratio(view, parameters, pixel_coordinates[0], pixel_coordinates[1][:, None])
     figure = Figure(figsize=(5.8, 4.6), layout="constrained")
     axes = figure.subplots()
-    pixels = _class_of_pixels(view, palette, parameters, ClassMap(plane, table, ratio))
+    pixels = _class_of_pixels(view, palette, plane, table, ratio)
     unit: dict[str, Any] = {"extent": (0, 1, 0, 1), "transform": axes.transAxes, "aspect": "auto"}
     axes.imshow(pixels, interpolation="nearest", origin="lower", **unit, **palette.colour_keywords)
     style.scale_axis(axes, "x", x)
     style.scale_axis(axes, "y", y)
-    boundaries: list[Any] = [*_draw_crushing(axes, ratio, *pixel_coordinates)]
-    boundaries += hatch_compressed(axes, view, ratio, *pixel_coordinates)
+    _draw_crushing(axes, ratio, *pixel_coordinates)
+    areas = [*palette.legend_entries(pixels), *hatch_compressed(axes, view, ratio, *pixel_coordinates)]
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), xlabel=style.LABELS[line], ylabel=style.LABELS[row])
-    curves = _draw_stored_curves(axes, view, palette, parameters)
-    handles = [*palette.legend_entries(pixels), *curves, *boundaries]
-    style.draw_legend_below(figure, handles, column_count=2 if "bautin_curve" in view.variables else 3)
+    _draw_stored_curves(axes, view, palette, parameters)
+    style.draw_shared_legend(figure, 2 if "bautin_curve" in view.variables else 3, areas)
     set_heading(figure, view, _constant_parameters_text(view, parameters), unstored_crossings_text(view))
     lacks_curves = lacks_sweep_wide_variables(view.attributes)
     missing_clause = "; curves are missing, the file is not finished" if lacks_curves else ""
@@ -94,19 +79,14 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     )
 
 
-def _draw_stored_curves(
-    axes: Axes, view: ResultView, palette: Palette, parameters: PlaneParameters
-) -> list[Any]:
-    """Draws the boundary curves, curves of cycles and special points of rows that a file contains; returns
-    their legend entries."""
-    handles: list = []
+def _draw_stored_curves(axes: Axes, view: ResultView, palette: Palette, parameters: PlaneParameters) -> None:
+    """Draws the boundary curves, curves of cycles and special points of rows that a file contains."""
     if "curve_number" in view.variables:
-        handles += draw_boundary_curves(axes, view, parameters, palette is STATE_PALETTE)
+        draw_boundary_curves(axes, view, parameters, hopf_only=palette is STATE_PALETTE)
     if "cycle_curve_number" in view.variables:
-        handles += draw_cycle_curves(axes, view, parameters)
+        draw_cycle_curves(axes, view, parameters)
     if "cycle_special_kind" in view.variables:
-        handles += mark_cycles_on_rows(axes, view, parameters)
-    return handles
+        mark_cycles_on_rows(axes, view, parameters)
 
 
 def _constant_parameters_text(view: ResultView, parameters: PlaneParameters) -> str:
@@ -120,13 +100,12 @@ def _constant_parameters_text(view: ResultView, parameters: PlaneParameters) -> 
     return style.parameter_text(fixed)
 
 
-def _draw_crushing(axes: Axes, ratio: Array, x: Array, y: Array) -> list[Line2D]:
-    """Draws the line on which the force begins to crush the rod; returns a list with its legend entry. ratio:
-    force divided by the crushing force at x and y, (pixels, pixels). x, y: coordinates, (pixels,)."""
-    if not ratio.min() < 1 < ratio.max():
-        return []
-    axes.contour(x, y, ratio, levels=[1.0], colors="0.4", linewidths=1.2)
-    return [Line2D([], [], color="0.4", lw=1.2, label="crushing force")]
+def _draw_crushing(axes: Axes, ratio: Array, x: Array, y: Array) -> None:
+    """Draws the line on which the force begins to crush the rod. ratio: force divided by the crushing force
+    at x and y, (pixels, pixels). x, y: coordinates, (pixels,)."""
+    if ratio.min() < 1 < ratio.max():
+        axes.contour(x, y, ratio, levels=[1.0], colors="0.4", linewidths=1.2)
+        axes.plot([], [], color="0.4", lw=1.2, label="crushing force")
 
 
 def _draw_rows(view: ResultView, palette: Palette, parameters: PlaneParameters) -> Figure:
@@ -151,22 +130,23 @@ def _draw_rows(view: ResultView, palette: Palette, parameters: PlaneParameters) 
     axes.set_yticks(np.arange(len(y)), texts)
     axes.tick_params("y", length=0)
     axes.set(xlim=(x[0], x[-1]), xlabel=style.LABELS[parameters.line])
-    style.draw_legend_below(figure, palette.legend_entries(table), column_count=3)
+    style.draw_shared_legend(figure, 3, palette.legend_entries(table))
     set_heading(figure, view, _constant_parameters_text(view, parameters))
     return figure
 
 
 def _class_of_pixels(
-    view: ResultView, palette: Palette, parameters: PlaneParameters, map_: ClassMap
+    view: ResultView, palette: Palette, plane: DrawnPlane, classes: Array, ratio: Array
 ) -> Array:
     """Class of every pixel of the plane, (pixels, pixels). The regions of equal class are bounded by the
-    curves of the file and by the crushing force."""
-    plane = map_.plane
+    curves of the file and by the crushing force. classes: class at each computed point, (rows, columns).
+    ratio: force divided by the crushing force (zero stretch), at every pixel, (pixels, pixels)."""
+    parameters = plane_parameters(view)
     crushed_class = flag_number("crushed", palette.words)
     columns, rows = np.meshgrid(plane.x, plane.y)
-    is_known = map_.classes != crushed_class
+    is_known = classes != crushed_class
     places = plane.fractions_of_axes(columns[is_known], rows[is_known])
-    computed = ClassifiedPoints(places, map_.classes[is_known])
+    computed = ClassifiedPoints(places, classes[is_known])
     row_points = ClassifiedPoints(np.zeros((0, 2)), np.zeros(0, int))
     if palette is CLASS_PALETTE:
         x, row_values, row_classes = classes_between_crossings(view, parameters)
@@ -178,7 +158,5 @@ def _class_of_pixels(
         paths = curve_paths(view, parameters, kind, code).values()
         curves += [plane.fractions_of_axes(*path.T) for path in paths]
     undecided = flag_number("undecided", palette.words)
-    pixels = pixel_classes(
-        computed, row_points, curves, map_.crushing_ratio > CURVE_END_CRUSHING_RATIO, undecided
-    )
-    return np.where(map_.crushing_ratio < 1, pixels, crushed_class)
+    pixels = pixel_classes(computed, row_points, curves, ratio > CURVE_END_CRUSHING_RATIO, undecided)
+    return np.where(ratio < 1, pixels, crushed_class)

@@ -5,10 +5,12 @@ from math import isinf
 from typing import Any, Literal
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from ...errors import InputError
@@ -154,6 +156,19 @@ def require_content(view: ResultView, available: object, noun: str) -> None:
         raise InputError(
             f"{view.path} holds no {noun} that could be drawn; `rodsweep show` gives the statuses"
         )
+
+
+def draw_shared_legend(figure: Figure, column_count: int, areas: Sequence[Artist] = ()) -> None:
+    """Draws one legend below the panels, with up to `column_count` columns: `areas`, then the labelled areas
+    and then the labelled lines of all panels. Of artists with equal labels, the legend shows the first."""
+    entries = {str(artist.get_label()): artist for artist in areas}
+    for axes in figure.axes:
+        for artist, label in zip(*axes.get_legend_handles_labels(), strict=True):
+            entries.setdefault(label, artist)
+    labels = sorted(entries, key=lambda label: isinstance(entries[label], Line2D))
+    if labels:
+        look = {"loc": "outside lower center", "ncols": column_count, "frameon": False}
+        figure.legend([entries[label] for label in labels], labels, **look)
 
 
 def draw_legend_below(figure: Figure, handles: list[Any], column_count: int) -> None:

@@ -115,9 +115,7 @@ def _threshold_maps(view: ResultView, names: list[str], is_narrow: bool) -> tupl
         lacking |= bool(np.isnan(values).any())
     label_maps(panels, points)
     if lacking:
-        style.draw_legend_below(
-            figure, [Patch(facecolor=NO_THRESHOLD_COLOUR, label="none found")], column_count=1
-        )
+        style.draw_shared_legend(figure, 1, [Patch(fc=NO_THRESHOLD_COLOUR, label="none found")])
     constants_text = style.parameter_text(points.common_parameters)
     set_heading(figure, view, constants_text, searched_range_clause(view))
     return figure, points.omissions

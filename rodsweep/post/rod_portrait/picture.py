@@ -7,17 +7,15 @@ from typing import Any
 
 import matplotlib
 import numpy as np
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from ...results.file.view import ResultView
 from ...results.layouts.limit_cycle import CYCLE_STATUSES
 from ..figures import style
-from ..figures.branch import BRANCH_COLOURS, draw_branch_curves, draw_straight_rod, stability_entries
+from ..figures.branch import BRANCH_COLOURS, add_stability_entries, draw_branch_curves, draw_straight_rod
 from ..figures.cycle.portrait import ARROW_LENGTH, UNUSED_COLOUR_FRACTION, draw_clamp, draw_force_arrow
-from ..figures.stability.class_bars import class_legend_entries, draw_class_bar, mark_thresholds_on_bars
+from ..figures.stability.class_bars import draw_class_bar, mark_thresholds_on_bars
 from .paragraph import paragraph
 from .portrait_units import rescale_panel
 from .results import RodResults
@@ -63,8 +61,8 @@ def portrait_figure(results: RodResults, with_words: bool = True) -> Figure:
         bar_panel = figure.add_subplot(grid[0, :])
         upper = figure.add_subplot(grid[1, :], sharex=bar_panel)
         lower = figure.add_subplot(grid[2, :], sharex=bar_panel)
-        handles = _draw_thresholds(bar_panel, results)
-        handles += _draw_branches(upper, lower, results)
+        _draw_thresholds(bar_panel, results)
+        _draw_branches(upper, lower, results)
         _convert_to_portrait_units((bar_panel, upper, lower), results)
         if not lower.axison:  # the bar has the only axis of the force
             bar_panel.tick_params(labelbottom=True)
@@ -73,7 +71,7 @@ def portrait_figure(results: RodResults, with_words: bool = True) -> Figure:
             _draw_mode(figure.add_subplot(grid[3, column]), results, kind)
         panels = [figure.add_subplot(grid[3, len(modes) + cycle_index]) for cycle_index in range(CYCLE_COUNT)]
         _draw_cycles(panels, results)
-        style.draw_legend_below(figure, handles, column_count=4)
+        style.draw_shared_legend(figure, column_count=4)
         if with_words:
             paragraph_text = textwrap.fill(paragraph(results), PARAGRAPH_WIDTH)
             figure.suptitle(style.escape_dollar_signs(paragraph_text), x=0.01, ha="left", fontsize=8)
@@ -95,9 +93,9 @@ def _convert_to_portrait_units(panels: Sequence[Axes], results: RodResults) -> N
     panels[0].set_xlim(0, units.force.factor * end)
 
 
-def _draw_thresholds(axes: Axes, results: RodResults) -> list[Artist]:
-    """Draws the stability of the straight rod along F, with the thresholds; returns legend entries. If the
-    thresholds are unknown, the panel states the reason, and the list is empty."""
+def _draw_thresholds(axes: Axes, results: RodResults) -> None:
+    """Draws the stability of the straight rod along F, with the thresholds. If the thresholds are unknown,
+    the panel states the reason."""
     view = results.views["thresholds"]
     variables = view.point_values(0)
     axes.set(ylim=(-0.6, 0.6), yticks=[])
@@ -105,52 +103,37 @@ def _draw_thresholds(axes: Axes, results: RodResults) -> list[Artist]:
     axes.tick_params(labelbottom=False)
     if not np.isfinite(variables["F_end"]):
         _write_sentence(axes, f"thresholds: {_status_meaning(view)}", PARAGRAPH_WIDTH)
-        return []
+        return
     axes.set_xlim(0, float(variables["F_end"]))
-    drawn_classes = draw_class_bar(axes, view, 0, is_vertical=False)
+    draw_class_bar(axes, view, 0, is_vertical=False)
     force = results.units.force
-    marks = mark_thresholds_on_bars(axes, view, is_vertical=False, unit=force.name, factor=force.factor)
-    return [*class_legend_entries(drawn_classes), *marks]
+    mark_thresholds_on_bars(axes, view, is_vertical=False, unit=force.name, factor=force.factor)
 
 
-def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist]:
-    """Draws the branches of cycles, and the ranges with two stable states; returns legend entries. Without
-    branches, the upper panel states the reason, and the list is empty."""
+def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> None:
+    """Draws the branches of cycles, the ranges with two stable states, and marks of the cycles whose shapes
+    are drawn. Without branches, the upper panel states the reason."""
     rod = results.branches
     if rod is None or not _has_branches(results):
         lower.set_axis_off()
         reason = results.missing.get("branch", "no branch of cycles begins in this range")
         _write_sentence(upper, reason, PARAGRAPH_WIDTH)
-        return []
-    handles: list[Artist] = [*stability_entries(rod.curves)]
-    handles += draw_branch_curves(upper, lower, rod.curves, BRANCH_COLOURS).values()
+        return
+    add_stability_entries(upper, rod.curves)
+    draw_branch_curves(upper, lower, rod.curves, BRANCH_COLOURS)
     draw_straight_rod(upper, rod)
-    if not rod.hidden_count:
-        for ranges, (colour, word) in (
-            (rod.coexistence_ranges, COEXISTENCE_LOOK),
-            (rod.two_cycle_ranges, TWO_CYCLES_LOOK),
-        ):
-            bands = [upper.axvspan(*ends, color=colour, alpha=0.25, lw=0, label=word) for ends in ranges]
-            handles += bands[:1]
-    handles += _mark_cycles(upper, lower, results)
+    bands = ((rod.coexistence_ranges, COEXISTENCE_LOOK), (rod.two_cycle_ranges, TWO_CYCLES_LOOK))
+    for ranges, (colour, label) in () if rod.hidden_count else bands:
+        for ends in ranges:
+            upper.axvspan(*ends, color=colour, alpha=0.25, lw=0, label=label)
+    cycles = [(F, view.point_values(0)) for F, view in results.cycles if _has_cycle(view)]
+    look: dict[str, Any] = {"color": "k", "ms": 9, "mec": "white", "mew": 0.6, "label": CYCLE_LEGEND_ENTRY}
+    for axes, name in ((upper, "tip_y_max"), (lower, "period")) if cycles else ():
+        axes.plot([F for F, _ in cycles], [float(stored[name]) for _, stored in cycles], "*", **look)
     upper.tick_params(labelbottom=False)
     force, y, period = results.units.labels
     upper.set_ylabel(y)
     lower.set(ylabel=period, xlabel=force, yscale="log")
-    return handles
-
-
-def _mark_cycles(upper: Axes, lower: Axes, results: RodResults) -> list[Line2D]:
-    """In the panels of the branches, marks the cycles whose shapes are drawn; returns a list with the legend
-    entry, empty without such cycles."""
-    cycles = [(F, view.point_values(0)) for F, view in results.cycles if _has_cycle(view)]
-    handles: list[Line2D] = []
-    look: dict[str, Any] = {"color": "k", "ms": 9, "mec": "white", "mew": 0.6, "label": CYCLE_LEGEND_ENTRY}
-    for axes, name in ((upper, "tip_y_max"), (lower, "period")):
-        handles = axes.plot(
-            [F for F, _ in cycles], [float(stored[name]) for _, stored in cycles], "*", **look
-        )
-    return handles if cycles else []
 
 
 def _draw_mode(axes: Axes, results: RodResults, kind: str) -> None:

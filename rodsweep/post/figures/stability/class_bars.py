@@ -1,7 +1,7 @@
 """Colours and legend entries of the stability classes of the straight rod and of the stable states, and the
 classes of single rods along F: one bar for each rod, with thresholds."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,7 +9,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ....arrays import Array
@@ -57,14 +56,8 @@ LEGEND_ENTRIES = {
 entry."""
 
 
-def class_legend_entries(drawn_classes: set[str]) -> list[Patch]:
-    """Legend entries for the classes in `drawn_classes`."""
-    return _legend_entries([word for word in CLASS_COLOURS if word in drawn_classes], CLASS_COLOURS)
-
-
-def _legend_entries(words: Sequence[str], colours: Mapping[str, str]) -> list[Patch]:
-    look: dict[str, Any] = {"edgecolor": "0.5", "lw": 0.5}
-    return [Patch(facecolor=colours[word], label=LEGEND_ENTRIES.get(word, word), **look) for word in words]
+CLASS_EDGE_LOOK: dict[str, Any] = {"ec": "0.5", "lw": 0.5}
+"""Edge of bars and of legend entries, so that light classes are visible on white paper."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,16 +75,16 @@ class Palette:
         numbers = [number for number, _ in self.words]
         return {
             "cmap": ListedColormap([self.colours[word] for _, word in self.words]),
-            "norm": BoundaryNorm(
-                [*(number_of_word - 0.5 for number_of_word in numbers), numbers[-1] + 0.5], len(numbers)
-            ),
+            "norm": BoundaryNorm(np.append(numbers, numbers[-1] + 1) - 0.5, len(numbers)),
         }
 
     def legend_entries(self, table: Array) -> list[Patch]:
         """Legend entries for the words whose integers occur in `table`, (rows, columns)."""
-        return _legend_entries(
-            [class_word for number, class_word in self.words if (table == number).any()], self.colours
-        )
+        words = [word for number, word in self.words if (table == number).any()]
+        return [
+            Patch(fc=self.colours[word], label=LEGEND_ENTRIES.get(word, word), **CLASS_EDGE_LOOK)
+            for word in words
+        ]
 
 
 CLASS_PALETTE = Palette("class", STABILITY_CLASSES, CLASS_COLOURS)
@@ -126,11 +119,9 @@ def draw_class_bars(view: ResultView) -> Figure:
     style.require_content(view, np.isfinite(variables["F_end"]).any(), "computed rod")
     figure = Figure(figsize=(5.8, 2.2 if rod_count == 1 else 4.0), layout="constrained")
     axes = figure.subplots()
-    drawn_classes = set[str]()
     for rod in range(rod_count):
-        drawn_classes |= draw_class_bar(axes, view, rod, is_vertical=rod_count > 1)
-    handles: list = class_legend_entries(drawn_classes)
-    handles += mark_thresholds_on_bars(axes, view, is_vertical=rod_count > 1)
+        draw_class_bar(axes, view, rod, is_vertical=rod_count > 1)
+    mark_thresholds_on_bars(axes, view, is_vertical=rod_count > 1)
     largest_force = float(np.nanmax(variables["F_end"]))
     if rod_count == 1:
         axes.set(xlim=(0, largest_force), ylim=(-0.75, 0.75), yticks=[], xlabel=style.LABELS["F"])
@@ -138,7 +129,7 @@ def draw_class_bars(view: ResultView) -> Figure:
     else:
         axes.set(ylim=(0, largest_force), ylabel=style.LABELS["F"])
         label_point_numbers(axes, view, rod_count)
-    style.draw_legend_below(figure, handles, column_count=2)
+    style.draw_shared_legend(figure, column_count=2)
     set_heading(figure, view, style.parameter_text(shared_parameters(view)))
     return figure
 
@@ -163,25 +154,24 @@ def classes_over_force(view: ResultView, rod: int) -> Iterator[tuple[float, floa
         yield start, largest_force, word
 
 
-def draw_class_bar(axes: Axes, view: ResultView, rod: int, is_vertical: bool) -> set[str]:
-    """Draws the bar along F of the rod with the index `rod`, coloured by stability class; returns the classes
-    of the bar."""
+def draw_class_bar(axes: Axes, view: ResultView, rod: int, is_vertical: bool) -> None:
+    """Draws the bar along F of the rod with the index `rod`, coloured by stability class."""
     intervals = list(classes_over_force(view, rod))
-    undecided_from, undecided_to = (view.variables[name].ravel()[rod] for name in ("open_from", "open_to"))
+    undecided_from, undecided_to = (view.by_point(name)[rod] for name in ("open_from", "open_to"))
     if np.isfinite(undecided_from):
         intervals.append((float(undecided_from), float(undecided_to), "undecided"))
     for start, end, word in intervals:
+        look = CLASS_EDGE_LOOK | {"fc": CLASS_COLOURS[word], "label": LEGEND_ENTRIES.get(word, word)}
         if is_vertical:
-            axes.bar(rod + 1, end - start, BAR_WIDTH, bottom=start, color=CLASS_COLOURS[word])
+            axes.bar(rod + 1, end - start, BAR_WIDTH, bottom=start, **look)
         else:
-            axes.barh(0, end - start, BAR_WIDTH, left=start, color=CLASS_COLOURS[word])
-    return {word for *_, word in intervals}
+            axes.barh(0, end - start, BAR_WIDTH, left=start, **look)
 
 
 def mark_thresholds_on_bars(
     axes: Axes, view: ResultView, is_vertical: bool, unit: str = "", factor: float = 1.0
-) -> list[Line2D]:
-    """Marks the thresholds of all bars; returns legend entries, which for a single rod contain the forces.
+) -> None:
+    """Marks the thresholds of all bars. The legend entries of a single rod contain the forces.
 
     unit: unit of the loads in legend entries; empty for F. factor: load at F = 1, in this unit.
     """
@@ -189,7 +179,7 @@ def mark_thresholds_on_bars(
     is_hopf = kinds == CROSSING_KINDS.index("hopf")
     masks = {kind: kinds == CROSSING_KINDS.index(kind) for kind in CROSSING_MARKS if kind != FURTHER_HOPF}
     masks |= {"hopf": is_hopf & (counts <= 2), FURTHER_HOPF: is_hopf & (counts > 2)}
-    handles = []
+    look: dict[str, Any] = {"mec": "white", "mew": 0.6, "ms": 6, "clip_on": False}
     for kind, (colour, marker, word) in CROSSING_MARKS.items():
         rods, crossing_indices = np.nonzero(masks[kind])
         if not rods.size:
@@ -201,6 +191,4 @@ def mark_thresholds_on_bars(
             name = name.partition(" $")[0]
         loads_text = ", ".join(f"{factor * force_value:#.{THRESHOLD_DIGITS}g}" for force_value in force)
         label = name if is_vertical else f"{name} = {loads_text} {unit}".rstrip()
-        look: dict[str, Any] = {"color": colour, "mec": "white", "mew": 0.6, "ms": 6, "clip_on": False}
-        handles += axes.plot(x, y, marker, label=label, **look)
-    return handles
+        axes.plot(x, y, marker, color=colour, label=label, **look)

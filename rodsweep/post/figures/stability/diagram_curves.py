@@ -1,89 +1,36 @@
-"""Curves and special points of a phase diagram, and where the symbols of the curves stand."""
+"""Curves and special points of a phase diagram."""
 
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.lines import Line2D
-from matplotlib.text import Annotation
+from matplotlib.path import Path as CurvePath
+from matplotlib.transforms import Bbox
 from numpy.typing import NDArray
 
 from ....arrays import Array
+from ....model.parameters import NON_OPTIONAL_LINEAR_PARAMETERS
 from ....results.file.view import ResultView
 from ....results.layouts.branch import SPECIAL_KINDS
-from ...plane_curves import PlaneParameters, curve_paths, is_stability_boundary_by_curve
-from ..style import GREEN, TEX_SYMBOLS
-from .criticality_curves import draw_hopf_curves_by_criticality
+from ...plane_curves import PlaneParameters, curve_paths
+from ..style import GREEN, TEX_SYMBOLS, number_in_tex
 from .regions import DrawnPlane
 
-CHORD_ROUNDING = 1e-6
-"""Relative tolerance for the rounding error of the position of a vertex on a chord of its curve."""
-LABEL_FONTSIZE = 8
-"""Font size of a curve's symbol, in points."""
-OTHER_LABEL_POSITIONS = (0.5, 0.3, 0.7, 0.9)
-"""Fractions of the visible length at which a symbol is placed if it would overlap another symbol at its own
-position, in order of preference."""
-LABEL_BOX_FACTOR = 1.5
-"""Factor by which the boxes of two symbols are enlarged before they are compared."""
-
-
-def parts_at_lowest_force(paths: list[Array], force: int) -> list[Array]:
-    """Parts of the curves `paths`, (n, 2) each, that have the smallest F of all curves. force: index of the
-    column with F."""
-    starts = np.concatenate([path[:-1] for path in paths])
-    ends = np.concatenate([path[1:] for path in paths])
-    y0 = starts[:, 1 - force]
-    y1 = ends[:, 1 - force]
-    parts = []
-    for path in paths:
-        y = path[:, 1 - force, None]
-        edge_fraction = (y - y0) / np.where(y1 == y0, np.inf, y1 - y0)
-        crosses = (np.minimum(y0, y1) <= y) & (y <= np.maximum(y0, y1))
-        forces = starts[:, force] + edge_fraction * (ends[:, force] - starts[:, force])
-        lowest = np.where(crosses, forces, np.inf).min(axis=1, initial=np.inf)
-        parts.append(path[path[:, force] <= lowest * (1 + CHORD_ROUNDING)])
-    return parts
-
-
-def label_longest_curve(axes: Axes, paths: list[Array], name: str, length_fraction: float) -> None:
-    """Writes the symbol `name` next to the path with the greatest visible length, at the fraction
-    `length_fraction` of this length. paths: curves, (points, 2) each."""
-    lengths = []
-    seen = []
-    for path in paths:
-        places = axes.transAxes.inverted().transform(axes.transData.transform(path))
-        is_inside = ((places >= 0) & (places <= 1)).all(axis=1)
-        steps = np.linalg.norm(np.diff(places[is_inside], axis=0), axis=1)
-        seen.append(path[is_inside])
-        lengths.append(np.append(0.0, np.cumsum(steps)) if is_inside.any() else np.zeros(1))
-    longest_index = max(range(len(paths)), key=lambda i: lengths[i][-1])
-    if not lengths[longest_index][-1] > 0:
-        return
-    other_labels = [child for child in axes.get_children() if isinstance(child, Annotation)]
-    for fraction in (length_fraction, *OTHER_LABEL_POSITIONS):
-        vertex_index = int(np.searchsorted(lengths[longest_index], fraction * lengths[longest_index][-1]))
-        place: dict[str, Any] = {"xytext": (4, -2), "textcoords": "offset points"}
-        label = axes.annotate(name, seen[longest_index][vertex_index], size=LABEL_FONTSIZE, va="top", **place)
-        if not any(_do_overlap(label, other) for other in other_labels):
-            return
-        label.remove()
-    axes.annotate(name, seen[longest_index][0], size=LABEL_FONTSIZE, va="top", **place)
-
-
-def _do_overlap(label: Annotation, other: Annotation) -> bool:
-    """Whether two labels overlap, with a margin of half of their size, because panels shrink later."""
-    first_box, second_box = (
-        annotation.get_window_extent().expanded(LABEL_BOX_FACTOR, LABEL_BOX_FACTOR)
-        for annotation in (label, other)
-    )
-    return bool(first_box.overlaps(second_box))
-
-
-CURVE_LOOKS = {1: ("Hopf points", 1.4, "-"), 0: ("double eigenvalue", 1.0, "--")}
+CURVE_LOOKS = {
+    1: (rf"Hopf points (first: ${TEX_SYMBOLS['F']}_{{**}}$)", 1.4, "-"),
+    0: (rf"double eigenvalue (first: ${TEX_SYMBOLS['F']}_*$)", 1.0, "--"),
+}
 """(legend entry, width, style) of a boundary curve, by code of the kind in the file."""
-CURVE_SYMBOLS = {1: (r"$\tilde F_{**}$", 0.85), 0: (r"$\tilde F_*$", 0.12)}
-"""(symbol, position) of the symbol at the longest curve of a kind; position: fraction of the visible
-length."""
+CRITICALITY_LOOKS = {
+    -1: ("supercritical Hopf points", 1.4, "-"),
+    1: ("subcritical Hopf points", 1.4, "--"),
+    0: ("Hopf points, criticality undecided", 0.6, "-"),
+}
+"""(legend entry, width, style) of parts of a Hopf curve, by sign of Re c."""
+DOUBLE_EIGENVALUE_LOOK = ("double eigenvalue", 1.0, ":")
+"""(legend entry, width, style) of double eigenvalues in figures whose dashed curves are subcritical."""
+CYCLE_CURVE_STYLES = {"fold": ("folds of cycles", "#9B1B30"), "torus": ("torus points of cycles", GREEN)}
+"""(legend entry, colour) of curves of special points of cycles, by kind."""
 CYCLE_MARKS = {
     "fold": ("folds of cycles, on no curve", "s"),
     "torus": ("torus points of cycles, on no curve", "D"),
@@ -92,126 +39,134 @@ CYCLE_MARKS = {
 }
 """(legend entry, marker) of special points of cycles on rows that lie on no curve, by kind."""
 CURVE_TOLERANCE = 1e-3
-"""A point lies on a curve if its distance from the chords, in fractions of the axes, is at most this
-number."""
-CYCLE_CURVE_STYLES = {"fold": ("folds of cycles", "#9B1B30"), "torus": ("torus points of cycles", GREEN)}
-"""(legend entry, colour) of curves of special points of cycles, by kind."""
-DOUBLE_EIGENVALUE_LOOK = "double eigenvalue", 1.0, ":"
-"""(legend entry, width, style) of double eigenvalues in figures whose dashed curves are subcritical."""
+"""A point lies on a curve if its distances from the curve along x and y, in fractions of the axes, are at
+most this number."""
 
 
-def draw_boundary_curves(
-    axes: Axes, view: ResultView, parameters: PlaneParameters, hopf_only: bool
-) -> list[Line2D]:
-    """Draws boundary curves and folds; if `hopf_only`, only Hopf curves. Returns legend entries."""
+def draw_boundary_curves(axes: Axes, view: ResultView, parameters: PlaneParameters, hopf_only: bool) -> None:
+    """Draws boundary curves, generalised Hopf points and folds; if `hopf_only`, only Hopf curves with their
+    generalised Hopf points."""
+    looks = CURVE_LOOKS
+    if "curve_criticality" in view.variables:
+        _draw_hopf_curves_by_criticality(axes, view, parameters)
+        looks = {0: DOUBLE_EIGENVALUE_LOOK}
+    for kind, (label, width, style) in looks.items():
+        if kind == 1 or not hopf_only:
+            for path in curve_paths(view, parameters, "curve", kind).values():
+                axes.plot(*path.T, style, color="k", lw=width, label=label)
+    if not hopf_only:
+        _mark_curve_folds(axes, view, parameters)
+        _mark_partial_beam(axes, view, parameters)
+
+
+def _draw_hopf_curves_by_criticality(axes: Axes, view: ResultView, parameters: PlaneParameters) -> None:
+    """Draws Hopf curves with line styles by criticality, generalised Hopf points, and curves of these."""
     variables = view.variables
-    has_criticality = "curve_criticality" in variables
-    handles = draw_hopf_curves_by_criticality(axes, view, parameters) if has_criticality else []
-    curve_looks = {0: DOUBLE_EIGENVALUE_LOOK} if has_criticality else CURVE_LOOKS
-    for number, (word, width, style) in curve_looks.items():
-        if hopf_only and number == 0:
-            continue
-        curves = curve_paths(view, parameters, "curve", number)
-        for path in curves.values():
-            axes.plot(*path.T, style, color="k", lw=width)
-        if curves:
-            handles.append(Line2D([], [], color="k", lw=width, ls=style, label=word))
-        if curves and not has_criticality:
-            paths = labelled_curve_paths(view, number, parameters)
-            if paths and "F" in parameters:
-                paths = parts_at_lowest_force(paths, 0 if parameters.line == "F" else 1)
-            symbol, position = CURVE_SYMBOLS[number]
-            if paths:
-                label_longest_curve(axes, paths, symbol + plane_force_text(view, parameters), position)
-    return handles if hopf_only else handles + _mark_curve_folds(axes, view, parameters)
+    for curve in np.unique(variables["curve_number"][variables["curve_kind"] == 1]):
+        for criticality, points in parts_of_equal_criticality(view, int(curve), parameters):
+            label, width, style = CRITICALITY_LOOKS[criticality]
+            axes.plot(*points.T, style, color="k", lw=width, label=label)
+    line_symbol, row_symbol = (TEX_SYMBOLS[name] for name in parameters)
+    for x, y in zip(*(variables[f"bautin_{name}"] for name in parameters), strict=True):
+        label = rf"generalised Hopf point: ${line_symbol}$ = {x:.6g}, ${row_symbol}$ = {y:.6g}"
+        axes.plot(x, y, "kD", mfc="white", ls="", ms=5, label=label)
+    if "bautin_along_curve" in variables:
+        _draw_bautin_curves(axes, view, parameters)
 
 
-def labelled_curve_paths(view: ResultView, kind: int, parameters: PlaneParameters) -> list[Array]:
-    """Points, (n, 2), of the curves of the kind `kind` that are labelled with a symbol: all curves of kind 0
-    (onsets); of the Hopf curves only those that bound the region of stable straight rods (F**)."""
-    curves = curve_paths(view, parameters, "curve", kind)
-    bounds = is_stability_boundary_by_curve(view, parameters) if kind else dict.fromkeys(curves, True)
-    return [path for number, path in curves.items() if bounds[number]]
-
-
-def plane_force_text(view: ResultView, parameters: PlaneParameters) -> str:
-    """Text " = 30" if F is 30 in the whole plane; empty if F is on an axis."""
-    return "" if "F" in parameters else f" = {float(view.parameter_values['F'][0]):g}"
-
-
-def _mark_curve_folds(axes: Axes, view: ResultView, parameters: PlaneParameters) -> list[Line2D]:
-    """Marks the folds of Hopf curves, and the fold in the partial beam limit; returns legend entries."""
+def _draw_bautin_curves(axes: Axes, view: ResultView, parameters: PlaneParameters) -> None:
+    """Draws curves of generalised Hopf points over a third parameter."""
     variables = view.variables
-    handles = []
-    for i in range(len(variables["fold"])):
-        # A window of flutter closes at a fold of this kind.
-        if variables["fold_kind"][i] == 1 and variables["fold_of"][i] == 1:
-            F, row_value = (variables[f"fold_{name}"][i] for name in parameters)
-            axes.plot(F, row_value, "ko", ms=4)
-            label = (
-                rf"fold ${TEX_SYMBOLS[parameters.line]} = {F:.6g}$, "
-                rf"${TEX_SYMBOLS[parameters.row]} = {row_value:.6g}$"
-            )
-            handles.append(Line2D([], [], color="k", marker="o", ls="", ms=4, label=label))
-    if "partial_beam_k1" in variables:
-        F, row_value = float(variables["partial_beam_F"]), float(variables["partial_beam_k1"])
-        x, y = (F, row_value) if parameters.line == "F" else (row_value, F)
-        rows = view.parameter_values[parameters.row]
-        if not (
-            variables[parameters.line][0] <= x <= variables[parameters.line][-1] and rows[0] <= y <= rows[-1]
-        ):
-            return handles
-        label = rf"partial beam $2F_c = {F:.6g}$, $4F_c = {row_value:.6g}$"
-        handles += axes.plot(x, y, "+", color="k", ls="", ms=10, mew=1.2, label=label)
-    return handles
+    candidates = [name for name in NON_OPTIONAL_LINEAR_PARAMETERS if name not in parameters]
+    third = next(name for name in candidates if f"bautin_along_{name}" in variables)
+    numbers = variables["bautin_along_curve"]
+    for number in np.unique(numbers):
+        x, y, z = (variables[f"bautin_along_{name}"][numbers == number] for name in (*parameters, third))
+        low, high = (number_in_tex(float(end), 3) for end in (z.min(), z.max()))
+        label = rf"generalised Hopf points, ${TEX_SYMBOLS[third]}$ = ${low}$ to ${high}$"
+        axes.plot(x, y, "-.", color="tab:red", lw=1.2, label=label)
 
 
-def draw_cycle_curves(axes: Axes, view: ResultView, parameters: PlaneParameters) -> list[Line2D]:
-    """Draws curves of folds and torus points of cycles; returns legend entries."""
-    handles = []
-    for kind, (word, colour) in CYCLE_CURVE_STYLES.items():
-        curves = curve_paths(view, parameters, "cycle_curve", SPECIAL_KINDS.index(kind))
-        for path in curves.values():
-            axes.plot(*path.T, color=colour, lw=1.8, zorder=1.9)  # below marks and Hopf curves
-        if curves:
-            handles.append(Line2D([], [], color=colour, lw=1.8, label=word))
-    return handles
+def parts_of_equal_criticality(
+    view: ResultView, curve: int, parameters: PlaneParameters
+) -> list[tuple[int, Array]]:
+    """(sign of Re c, points, (n, 2)) of parts of a Hopf curve between generalised Hopf points."""
+    variables = view.variables
+    indices = np.flatnonzero(variables["curve_number"] == curve)
+    bautin = np.flatnonzero(variables["bautin_curve"] == curve)
+    places = np.searchsorted(indices, variables["bautin_curve_point"][bautin] - 1, side="right")
+    points = np.column_stack(
+        [
+            np.insert(variables[f"curve_{name}"][indices], places, variables[f"bautin_{name}"][bautin])
+            for name in parameters
+        ]
+    )
+    criticality = np.insert(np.nan_to_num(variables["curve_criticality"][indices]), places, 0)
+    # A segment has the sign of its ends; if the sign at one end is undecided, the sign of the other end.
+    starts, ends = criticality[:-1], criticality[1:]
+    signs = np.where(starts * ends < 0, 0, np.sign(starts + ends)).astype(int)
+    parts = np.split(np.arange(len(signs)), np.flatnonzero(np.diff(signs)) + 1)
+    return [(int(signs[part[0]]), points[part[0] : part[-1] + 2]) for part in parts if part.size]
 
 
-def mark_cycles_on_rows(axes: Axes, view: ResultView, parameters: PlaneParameters) -> list[Line2D]:
-    """Marks the special points of cycles on rows that lie on no curve; returns legend entries."""
-    handles: list[Line2D] = []
+def _mark_curve_folds(axes: Axes, view: ResultView, parameters: PlaneParameters) -> None:
+    """Marks the folds of Hopf curves at which a window of flutter closes."""
+    variables = view.variables
+    closes_window = (variables["fold_kind"] == 1) & (variables["fold_of"] == 1)
+    line_symbol, row_symbol = (TEX_SYMBOLS[name] for name in parameters)
+    for x, y in zip(*(variables[f"fold_{name}"][closes_window] for name in parameters), strict=True):
+        label = rf"fold ${line_symbol} = {x:.6g}$, ${row_symbol} = {y:.6g}$"
+        axes.plot(x, y, "ko", ms=4, label=label)
+
+
+def _mark_partial_beam(axes: Axes, view: ResultView, parameters: PlaneParameters) -> None:
+    """Marks the fold in the partial beam limit, if it lies in the plane."""
+    if "partial_beam_k1" not in view.variables:
+        return
+    place = {name: float(view.variables[f"partial_beam_{name}"]) for name in ("F", "k1")}
+    x, y = (place["F" if name == "F" else "k1"] for name in parameters)
+    line = view.variables[parameters.line]
+    rows = view.parameter_values[parameters.row]
+    if line[0] <= x <= line[-1] and rows[0] <= y <= rows[-1]:
+        label = rf"partial beam $2F_c = {place['F']:.6g}$, $4F_c = {place['k1']:.6g}$"
+        axes.plot(x, y, "+", color="k", ls="", ms=10, mew=1.2, label=label)
+
+
+def draw_cycle_curves(axes: Axes, view: ResultView, parameters: PlaneParameters) -> None:
+    """Draws curves of folds and torus points of cycles, below marks and Hopf curves."""
+    for kind, (label, colour) in CYCLE_CURVE_STYLES.items():
+        for path in curve_paths(view, parameters, "cycle_curve", SPECIAL_KINDS.index(kind)).values():
+            axes.plot(*path.T, color=colour, lw=1.8, zorder=1.9, label=label)
+
+
+def mark_cycles_on_rows(axes: Axes, view: ResultView, parameters: PlaneParameters) -> None:
+    """Marks the special points of cycles on rows that lie on no curve."""
     row_values = view.point_columns[parameters.row]
     kinds, positions = (view.by_point(f"cycle_special_{name}") for name in ("kind", parameters.line))
-    for kind, (word, marker) in CYCLE_MARKS.items():
-        rows, items = np.nonzero(kinds == SPECIAL_KINDS.index(kind))
-        x, y = positions[rows, items], row_values[rows]
-        is_free = ~_is_on_curve(view, SPECIAL_KINDS.index(kind), parameters, x, y)
-        if is_free.any():
-            handles += axes.plot(
-                x[is_free], y[is_free], marker, color="k", mfc="white", ms=3.5, mew=0.8, label=word
-            )
-    return handles
+    look: dict[str, Any] = {"color": "k", "mfc": "white", "ms": 3.5, "mew": 0.8}
+    for kind, (label, marker) in CYCLE_MARKS.items():
+        code = SPECIAL_KINDS.index(kind)
+        rows, items = np.nonzero(kinds == code)
+        points = np.column_stack([positions[rows, items], row_values[rows]])
+        points = points[~_is_on_curve(view, code, parameters, points)]
+        if len(points):
+            axes.plot(*points.T, marker, label=label, **look)
 
 
 def _is_on_curve(
-    view: ResultView, kind: int, parameters: PlaneParameters, x: Array, y: Array
+    view: ResultView, kind: int, parameters: PlaneParameters, points: Array
 ) -> NDArray[np.bool_]:
-    """Mask of the special points (x, y), (n,) each, that lie on a curve of their kind `kind`."""
-    variables = view.variables
-    is_near = np.zeros(len(x), dtype=bool)
-    if "cycle_curve_number" not in variables:
+    """Mask of the special points, (n, 2), that lie on a curve of their kind `kind`."""
+    is_near = np.zeros(len(points), dtype=bool)
+    if "cycle_curve_number" not in view.variables:
         return is_near
-    row_values = view.point_columns[parameters.row]
-    plane = DrawnPlane(variables[parameters.line], row_values[np.isfinite(row_values)])
-    points = plane.fractions_of_axes(x, y)
+    rows = view.point_columns[parameters.row]
+    plane = DrawnPlane(view.variables[parameters.line], rows[np.isfinite(rows)])
+    centres = plane.fractions_of_axes(*points.T)
+    boxes = [Bbox([centre - CURVE_TOLERANCE, centre + CURVE_TOLERANCE]) for centre in centres]
     for path in curve_paths(view, parameters, "cycle_curve", kind).values():
-        vertices = plane.fractions_of_axes(*path.T)
-        vertices = vertices[np.append(True, np.diff(vertices, axis=0).any(axis=1))]
-        for start, chord in zip(vertices[:-1], np.diff(vertices, axis=0), strict=True):
-            fractions = np.clip((points - start) @ chord / (chord @ chord), 0, 1)
-            distances = np.linalg.norm(points - start - fractions[:, None] * chord, axis=1)
-            is_near |= distances <= CURVE_TOLERANCE
+        curve = CurvePath(plane.fractions_of_axes(*path.T))
+        is_near |= [curve.intersects_bbox(box, filled=False) for box in boxes]
     return is_near
 
 

@@ -24,6 +24,8 @@ CRITICAL_FORCE_LOOKS = (
 panel has no other colours for its lines."""
 FILE_COLOURS = (*style.LINE_COLOURS[:5], "0.3")
 """Colours of the files in a figure of several files."""
+KIND_LOOK: dict[str, Any] = {"ms": 3, "lw": 1.2}
+"""Matplotlib style of all lines of thresholds."""
 LINE_STYLES = ("-", "--", ":")
 """Line styles for the values of the second parameter in one panel."""
 MAX_LINES = 6
@@ -47,20 +49,20 @@ def draw_lines_of_grid(view: ResultView, names: list[str], search: str) -> tuple
     second_name = next((name for name in names if name != x_name), None)
     figure = Figure(figsize=(5.6, 4.2), layout="constrained")
     axes = figure.subplots()
-    table = _first_force_table(view, x_name, second_name)
+    table = _first_force_table(view, x_name)
     x = _abscissa_values(view, x_name)
     style.require_content(view, np.isfinite(x).sum() > 1, f"two finite values of {x_name}")
-    shades = matplotlib.colormaps["viridis"](np.linspace(DARKEST_SHADE, LIGHTEST_SHADE, len(table)))
-    for values, shade in zip(table, shades, strict=True):
-        handles = _draw_threshold_lines(axes, x, values, {"color": shade} if second_name else {"ls": "-"})
     if second_name:
-        handles = _kind_entries(table)
-        for value, shade in zip(view.parameter_values[second_name].tolist(), shades, strict=True):
-            label = f"${style.TEX_SYMBOLS[second_name]} = {style.number_in_tex(value)}$"
-            handles.append(Line2D([], [], color=shade, lw=2, label=label))
+        shades = matplotlib.colormaps["viridis"](np.linspace(DARKEST_SHADE, LIGHTEST_SHADE, len(table)))
+        _add_kind_entries(axes, np.concatenate(table, axis=1))
+        for value, values, shade in zip(view.parameter_values[second_name], table, shades, strict=True):
+            label = f"${style.TEX_SYMBOLS[second_name]} = {style.number_in_tex(float(value))}$"
+            _draw_coloured_lines(axes, x, values, shade, label)
+    else:
+        _draw_lines_by_kind(axes, x, table[0], ls="-")
     _label_axes(axes, view, x_name, table)
     axes.set_ylabel(style.CRITICAL_FORCE_LABEL)
-    style.draw_legend_below(figure, handles, column_count=3)
+    style.draw_shared_legend(figure, column_count=3)
     set_heading(figure, view, style.constant_parameters_text(view, *names), search)
     caption = f"critical forces against {x_name}" + (f" for every {second_name}" if second_name else "")
     return figure, caption + _infinite_values_clause(view, [x_name])
@@ -71,19 +73,20 @@ def draw_lines_of_files(views: Sequence[ResultView], x_name: str, search: str) -
     colour for each file. search: clause on the searched range."""
     figure = Figure(figsize=(5.6, 4.6), layout="constrained")
     axes = figure.subplots()
-    tables = np.concatenate([_first_force_table(view, x_name, None) for view in views])
-    handles = _kind_entries(tables)
-    for view, values, shade in zip(views, tables, FILE_COLOURS, strict=False):
-        _draw_threshold_lines(axes, _abscissa_values(view, x_name), values, {"color": shade})
-        handles.append(Line2D([], [], color=shade, lw=2, label=style.file_label(view, views)))
+    tables = [_first_force_table(view, x_name)[0] for view in views]
+    forces = np.concatenate(tables, axis=1)
+    _add_kind_entries(axes, forces)
+    for view, values, colour in zip(views, tables, FILE_COLOURS, strict=False):
+        label = style.file_label(view, views)
+        _draw_coloured_lines(axes, _abscissa_values(view, x_name), values, colour, label)
     longest = max(views, key=lambda view: len(view.parameter_values[x_name]))
-    _label_axes(axes, longest, x_name, tables)
-    forces = np.sort(tables[np.isfinite(tables)])
+    _label_axes(axes, longest, x_name, forces)
+    forces = np.sort(forces[np.isfinite(forces)])
     if style.is_logarithmic(forces):
         style.scale_axis(axes, "y", forces)
         axes.set_ylim(forces[0] / FORCE_AXIS_MARGIN_FACTOR, forces[-1] * FORCE_AXIS_MARGIN_FACTOR)
     axes.set_ylabel(style.CRITICAL_FORCE_LABEL)
-    style.draw_legend_below(figure, handles, column_count=2)
+    style.draw_shared_legend(figure, column_count=2)
     figure.suptitle("\n".join(filter(None, (style.constant_parameters_text(longest, x_name), search))))
     clause = _infinite_values_clause(longest, [x_name])
     return figure, f"critical forces against {x_name} of {len(views)} files{clause}"
@@ -100,18 +103,11 @@ def draw_selected_lines(
     panels = figure.subplots(row_count, column_count, sharey=True, squeeze=False).ravel()
     texts = []
     for panel, x_name, second_name in zip(panels, names, reversed(names), strict=True):
-        count = len(view.parameter_values[second_name])
-        texts.append(
-            f"{_draw_some_lines(panel, view, x_name, second_name)} of {count} values of {second_name}"
-        )
+        line_count = _draw_some_lines(panel, view, x_name, second_name)
+        texts.append(f"{line_count} of {len(view.parameter_values[second_name])} values of {second_name}")
         if is_narrow or panel is panels[0]:
             panel.set_ylabel(style.CRITICAL_FORCE_LABEL)
-    handles = [
-        Line2D([], [], color=colour, marker=marker, ms=3, lw=1.2, label=word)
-        for name, word, colour, marker, _ in CRITICAL_FORCE_LOOKS
-        if np.isfinite(view.variables[name]).any()
-    ]
-    style.draw_legend_below(figure, handles, column_count=3)
+    style.draw_shared_legend(figure, column_count=3)
     set_heading(figure, view, style.constant_parameters_text(view, *names), search)
     lines = f"lines for {' and '.join(texts)} (--what map: all)"
     omissions_clause = _infinite_values_clause(view, names)
@@ -120,35 +116,32 @@ def draw_selected_lines(
 
 def _draw_some_lines(panel: Axes, view: ResultView, x_name: str, second_name: str) -> int:
     """Draws thresholds against the parameter `x_name` for up to three different values of the parameter
-    `second_name`, see `_first_middle_and_last_line`; returns the number of values."""
-    table = _first_force_table(view, x_name, second_name)
+    `second_name`, see `_first_middle_and_last_line`, with a legend of these values above the panel; returns
+    the number of values."""
+    table = _first_force_table(view, x_name)
     indices = _first_middle_and_last_line(table)
     groups = _groups_of_equal_lines({index: table[index] for index in indices})
-    for line, group in zip(LINE_STYLES, groups, strict=False):
-        _draw_threshold_lines(panel, _abscissa_values(view, x_name), table[group[0]], {"ls": line, "ms": 2})
-        values_of_group = view.parameter_values[second_name][group]
-        values_text = ", ".join(style.number_in_tex(float(value), 3) for value in values_of_group)
-        text = f"${style.TEX_SYMBOLS[second_name]} = {values_text}$" + (
-            " (one line)" if len(group) > 1 else ""
+    entries = []
+    for line_style, group in zip(LINE_STYLES, groups, strict=False):
+        _draw_lines_by_kind(panel, _abscissa_values(view, x_name), table[group[0]], ls=line_style, ms=2)
+        values = view.parameter_values[second_name][group]
+        text = f"${style.TEX_SYMBOLS[second_name]} = " + ", ".join(
+            style.number_in_tex(float(value), 3) for value in values
         )
-        panel.plot([], [], line, color="0.3", label=text)
+        label = f"{text}$ (one line)" if len(group) > 1 else f"{text}$"
+        entries.append(Line2D([], [], ls=line_style, color="0.3", label=label))
     _label_axes(panel, view, x_name, table[indices])
-    panel.legend(frameon=False, loc="lower left", bbox_to_anchor=(0.0, 1.0))
+    panel.legend(handles=entries, frameon=False, loc="lower left", bbox_to_anchor=(0.0, 1.0))
     return len(indices)
 
 
-def _first_force_table(view: ResultView, x_name: str, second_name: str | None) -> Array:
-    """First forces of the three threshold kinds, (values of `second_name`, 3, values of `x_name`); NaN for
-    a missing threshold. x_name, second_name: parameters; `second_name` is None without a second parameter."""
-    names = list(view.parameter_values)
-    kept_axes = [names.index(name) for name in (second_name, x_name) if name]
-    other_axes = tuple(axis for axis in range(len(names)) if axis not in kept_axes)
-    tables = []
-    for force, *_ in CRITICAL_FORCE_LOOKS:
-        values = view.variables[force].squeeze(other_axes)
-        values = values if second_name and kept_axes[0] < kept_axes[1] else values.T
-        tables.append(np.atleast_2d(values))
-    return np.stack(tables, axis=1)
+def _first_force_table(view: ResultView, x_name: str) -> Array:
+    """First forces of the three kinds of thresholds of a grid in which at most one parameter varies beside
+    `x_name`, (m, 3, n); NaN for a missing threshold. m, n: numbers of values of the other parameter and of
+    `x_name`."""
+    forces = np.stack([view.variables[variable] for variable, *_ in CRITICAL_FORCE_LOOKS])
+    forces = np.moveaxis(forces, 1 + list(view.parameter_values).index(x_name), -1)
+    return forces.reshape(len(forces), -1, forces.shape[-1]).swapaxes(0, 1)
 
 
 def _abscissa_values(view: ResultView, x_name: str) -> Array:
@@ -158,18 +151,29 @@ def _abscissa_values(view: ResultView, x_name: str) -> Array:
     return 1 / values if x_name == "gamma3" else values
 
 
-def _draw_threshold_lines(axes: Axes, x: Array, values: Array, look: dict[str, Any]) -> list[Line2D]:
-    """Draws lines of the three kinds of thresholds; returns legend entries of the kinds with a finite force.
-    x: (n,); points at an infinite x are left out. values: first forces, (3, n), with NaN at gaps. look:
-    keywords for matplotlib that replace the look in CRITICAL_FORCE_LOOKS."""
+def _draw_lines_by_kind(axes: Axes, x: Array, values: Array, **look: Any) -> None:
+    """Draws lines of the three kinds of thresholds, with legend entries of the kinds with a finite force. x:
+    (n,); points at an infinite x are left out. values: first forces, (3, n), with NaN at gaps. look: keywords
+    for matplotlib that replace the look in CRITICAL_FORCE_LOOKS."""
     is_finite = np.isfinite(x)
-    handles = []
-    for forces, (_, word, colour, marker, line) in zip(values, CRITICAL_FORCE_LOOKS, strict=True):
-        style: dict[str, Any] = {"marker": marker, "ms": 3, "lw": 1.2, "color": colour, "ls": line} | look
-        axes.plot(x[is_finite], forces[is_finite], **style)
+    for forces, (_, label, colour, marker, line_style) in zip(values, CRITICAL_FORCE_LOOKS, strict=True):
         if np.isfinite(forces).any():
-            handles.append(Line2D([], [], label=word, **style))
-    return handles
+            keywords = (
+                KIND_LOOK | {"color": colour, "marker": marker, "ls": line_style, "label": label} | look
+            )
+            axes.plot(x[is_finite], forces[is_finite], **keywords)
+
+
+def _draw_coloured_lines(axes: Axes, x: Array, values: Array, colour: Any, label: str) -> None:
+    """Draws lines of the three kinds of thresholds in one colour, with one legend entry. x, values: see
+    `_draw_lines_by_kind`."""
+    _draw_lines_by_kind(axes, x, values, color=colour, label=None)
+    axes.plot([], [], color=colour, lw=2, label=label)
+
+
+def _add_kind_entries(axes: Axes, values: Array) -> None:
+    """Adds legend entries, in grey, of the kinds of thresholds with a finite force in `values`, (3, n)."""
+    _draw_lines_by_kind(axes, np.full(values.shape[1], np.inf), values, color="0.3")
 
 
 def _label_axes(axes: Axes, view: ResultView, x_name: str, table: Array) -> None:
@@ -180,17 +184,6 @@ def _label_axes(axes: Axes, view: ResultView, x_name: str, table: Array) -> None
     axes.set_xlabel(style.INVERSE_DRAG_LABEL if x_name == "gamma3" else style.LABELS[x_name])
     drawn_top = axes.get_ylim()[1] if axes.lines else 0.0
     axes.set_ylim(0, max(float(np.nanmax(table, initial=0.0)) * FORCE_AXIS_MARGIN_FACTOR, drawn_top) or 1.0)
-
-
-def _kind_entries(table: Array) -> list[Line2D]:
-    """Legend entries for the kinds of thresholds that occur in `table`, (..., kinds, ...) as in
-    `_first_force_table`."""
-    has_force = np.isfinite(table).any(axis=(0, 2))
-    return [
-        Line2D([], [], color="0.3", marker=marker, ls=line, ms=3, lw=1.2, label=word)
-        for is_drawn, (_, word, _, marker, line) in zip(has_force, CRITICAL_FORCE_LOOKS, strict=True)
-        if is_drawn
-    ]
 
 
 def _infinite_values_clause(view: ResultView, names: list[str]) -> str:
