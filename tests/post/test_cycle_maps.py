@@ -11,8 +11,8 @@ from surveyed import few
 
 from rodsweep.errors import InputError
 from rodsweep.post.figures import draw
+from rodsweep.post.figures.cells import cell_edges, point_map
 from rodsweep.post.figures.cycle.maps import STATUS_LOOKS, draw_maps, hopf_lines
-from rodsweep.post.figures.cycle.point_map import cell_edges, point_map
 from rodsweep.post.figures.limit_cycle import chosen_figure_kind
 from rodsweep.post.figures.request import FigureRequest
 
@@ -107,7 +107,7 @@ STATUSES = {(2, 0): 2, (2, 1): 3, (2, 3): 4, (2, 4): -1, (2, 5): TORUS, (1, 0): 
 def test_every_status_without_a_cycle_fills_its_cells_and_has_its_place_in_the_legend():
     figure = draw_maps(swept(*SMALL, status=STATUSES))[0]
     words = ["straight", "missing", "not settled", "left the model", "failed", "torus"]
-    assert legend(figure) == [r"Hopf points $\tilde F_{**}$", *words, "unstable cycle"]
+    assert legend(figure) == [*words, r"Hopf points $\tilde F_{**}$", "unstable cycle"]
     looks = {(patch.get_facecolor(), patch.get_hatch()) for patch in figure.legends[0].get_patches()}
     assert len(looks) == len(words)
     hatches = {word.replace("_", " "): look[1] for word, look in STATUS_LOOKS.items()}

@@ -12,7 +12,7 @@ from faults import small
 from pages import read_page
 from surveyed import RODS, only
 
-from rodsweep.post.figures.cycle.point_map import cell_centres, cell_edges
+from rodsweep.post.figures.cells import cell_centres, cell_edges
 from rodsweep.post.report import write_report
 from rodsweep.post.report.label_text import label_text
 from rodsweep.post.summary import summary_of

@@ -7,7 +7,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ...arrays import Array
@@ -15,8 +14,14 @@ from ...results.file.view import ResultView
 from ..summary.selection import varied_parameters_at_points
 from . import style
 from .arm.quantities import set_heading
-from .cycle.maps import label_maps, map_panels
-from .cycle.point_map import PointGrid, cell_edges, point_map, varies_two_parameters_on_grid
+from .cells import (
+    PointGrid,
+    draw_coloured_cells,
+    label_maps,
+    map_panels,
+    point_map,
+    varies_two_parameters_on_grid,
+)
 from .cycle.selection import shared_and_own_of_points
 from .grid_slices import infinite_values_clause
 from .layout.fitting import MAP_ASPECT
@@ -87,27 +92,23 @@ def _curves_figure(view: ResultView, name: str) -> Figure:
     linear_limit = float(np.nanquantile(np.abs(landau_real), LINEAR_RANGE_QUANTILE))
     lower.set_yscale("symlog", linthresh=10.0 ** floor(log10(linear_limit)))
     for axes, values in ((upper, amplitude_coefficient), (lower, landau_real)):
-        handles = _draw_hopf_markers(axes, x[is_finite], values, criticality)
+        _draw_hopf_markers(axes, x[is_finite], values, criticality)
         axes.axhline(0, color="0.6", lw=0.8, zorder=0)
         style.scale_axis(axes, "x", np.sort(x[is_finite]))
     upper.set_ylabel("amplitude coefficient $a/L$")
     lower.set(ylabel=r"$\mathrm{Re}\,c$ in $1/(\tau_2 L^2)$", xlabel=style.LABELS[name])
-    style.draw_legend_below(figure, handles, column_count=3)
+    style.draw_shared_legend(figure, column_count=3)
     set_heading(figure, view, style.constant_parameters_text(view, name))
     return figure
 
 
-def _draw_hopf_markers(axes: Axes, x: Array, values: Array, criticality: Array) -> list[Line2D]:
-    """Draws Hopf points with markers by criticality; returns legend entries. x: (rods,). values: y, (rods,
-    crossings). criticality: signs of Re c, (rods, crossings)."""
-    x_of_values = np.broadcast_to(x[:, None], values.shape)
-    handles: list[Line2D] = []
-    for number, (word, colour, marker) in CRITICALITY_MARKS.items():
-        is_drawn = criticality == number
-        if is_drawn.any():
-            drawn = x_of_values[is_drawn], values[is_drawn]
-            handles += axes.plot(*drawn, marker, color=colour, ms=3.5, label=word)
-    return handles
+def _draw_hopf_markers(axes: Axes, x: Array, values: Array, criticality: Array) -> None:
+    """Draws Hopf points with markers by criticality. x: (rods,). values: y, (rods, crossings). criticality:
+    signs of Re c, (rods, crossings)."""
+    for number, (label, colour, marker) in CRITICALITY_MARKS.items():
+        rods, crossings = np.nonzero(criticality == number)
+        if rods.size:
+            axes.plot(x[rods], values[rods, crossings], marker, color=colour, ms=3.5, label=label)
 
 
 def _maps_figure(view: ResultView, points: PointGrid, is_narrow: bool) -> Figure:
@@ -119,17 +120,15 @@ def _maps_figure(view: ResultView, points: PointGrid, is_narrow: bool) -> Figure
         view, np.isfinite(amplitude_coefficient).any(), "first Hopf point with a normal form"
     )
     figure, panels = map_panels(2, is_narrow)
-    edges = cell_edges(points.x), cell_edges(points.y)
     classes = _class_indices(criticality)
     norm = BoundaryNorm(np.arange(len(CRITICALITY_CLASSES) + 1) - 0.5, len(CRITICALITY_CLASSES))
     colours = ListedColormap([colour for _, colour in CRITICALITY_CLASSES])
-    panels[0].pcolormesh(*edges, classes, cmap=colours, norm=norm, rasterized=True)
-    style.draw_coloured_cells(panels[1], edges, amplitude_coefficient, "amplitude coefficient $|a|/L$")
+    panels[0].pcolormesh(*points.edges, classes, cmap=colours, norm=norm, rasterized=True)
+    draw_coloured_cells(panels[1], points.edges, amplitude_coefficient, "amplitude coefficient $|a|/L$")
     panels[1].set_facecolor(CRITICALITY_CLASSES[0][1])
     label_maps(panels, points)
-    drawn = (look for i, look in enumerate(CRITICALITY_CLASSES) if (classes == i).any())
-    legend_entries = [Patch(facecolor=colour, label=word) for word, colour in drawn]
-    style.draw_legend_below(figure, legend_entries, column_count=3)
+    drawn = (CRITICALITY_CLASSES[int(index)] for index in np.unique(classes))
+    style.draw_shared_legend(figure, 3, [Patch(fc=colour, label=label) for label, colour in drawn])
     set_heading(figure, view, style.parameter_text(points.common_parameters))
     return figure
 
@@ -164,18 +163,19 @@ def draw_predictions(view: ResultView) -> tuple[Figure, str]:
             if np.isfinite(kind) and np.isfinite(size):
                 # For a > 0 the cycles have a larger F than the Hopf point, for a < 0 a smaller F.
                 forces = hopf_force * (1 + np.sign(size) * distance)
-                line = PREDICTED_CYCLE_LOOKS[int(kind)][0]
-                axes.plot(forces, abs(size) * np.sqrt(distance), line, color=colour, lw=1.4)
+                line_style, _ = PREDICTED_CYCLE_LOOKS[int(kind)]
+                axes.plot(forces, abs(size) * np.sqrt(distance), line_style, color=colour, lw=1.4)
                 axes.plot(hopf_force, 0, "o", color=colour, ms=4, clip_on=False, zorder=3)
     axes.axhline(0, color="0.8", lw=0.6, zorder=0)
     axes.set(xlabel=style.LABELS["F"], ylabel="predicted largest $y/L$ of the tip")
     axes.set_ylim(bottom=0)
-    drawn_looks = (look for kind, look in PREDICTED_CYCLE_LOOKS.items() if (kinds[drawn_rods] == kind).any())
-    handles = [Line2D([], [], color="0.3", ls=line_style, label=word) for line_style, word in drawn_looks]
-    handles.append(Line2D([], [], color="0.3", marker="o", ms=4, ls="", label="Hopf point"))
-    pairs = zip(style.LINE_COLOURS, rod_texts, strict=False)
-    handles += [Line2D([], [], color=colour, lw=2, label=text) for colour, text in pairs if text]
-    style.draw_legend_below(figure, handles, column_count=3)
+    for kind, (line_style, label) in PREDICTED_CYCLE_LOOKS.items():
+        if (kinds[drawn_rods] == kind).any():
+            axes.plot([], [], color="0.3", ls=line_style, label=label)
+    axes.plot([], [], "o", color="0.3", ms=4, label="Hopf point")
+    for colour, text in zip(style.LINE_COLOURS, rod_texts, strict=False):
+        axes.plot([], [], color=colour, lw=2, label=text or None)
+    style.draw_shared_legend(figure, column_count=3)
     figure.suptitle(style.heading_text(view, common_text))
     caption = f"the cycles that normal forms predict within {MAX_DRAWN_DISTANCE:.0%} of every Hopf point"
     if len(drawn_rods) < rods_with_prediction.size:

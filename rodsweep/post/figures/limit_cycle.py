@@ -6,12 +6,12 @@ import numpy as np
 from ...errors import InputError
 from ...results.file.view import ResultView
 from ..summary.selection import varied_parameters_at_points
+from .cells import point_map, varies_two_parameters_on_grid
 from .cycle.amplitudes.amplitude import SERIES_LOOKS, draw_amplitude
 from .cycle.amplitudes.amplitude_series import abscissa_parameter
 from .cycle.animation import FILM_SUFFIXES, write_animation
 from .cycle.energy import draw_energy
 from .cycle.maps import draw_maps
-from .cycle.point_map import point_map, varies_two_parameters_on_grid
 from .cycle.portrait import draw_portrait
 from .cycle.selection import (
     ENERGY_BUDGET_VARIABLE_NAMES,

@@ -8,7 +8,6 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
-from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
@@ -38,9 +37,6 @@ PURPLE = "#CC79A7"
 LINE_COLOURS = (BLUE, VERMILION, GREEN, PURPLE, "#56B4E9", "#000000")
 """Colours of lines for rods, files or branches, in order: Okabe and Ito's palette, with its sky blue and
 black."""
-LOGARITHMIC_COLOUR_RATIO = 10
-"""The colours of a map are logarithmic if the ratio of the largest to the smallest value exceeds this
-number."""
 FEW_DECADES_RATIO = 50
 """If the ratio of the ends of a logarithmic axis is below this number, 1, 2 and 5 of each decade have tick
 labels."""
@@ -219,28 +215,3 @@ def label_outer(axes: Axes, xlabel: str, ylabel: str) -> None:
         axes.set_xlabel(xlabel)
     if grid_cell is None or grid_cell.is_first_col():
         axes.set_ylabel(ylabel)
-
-
-def draw_coloured_cells(
-    axes: Axes,
-    edges: tuple[np.ndarray, np.ndarray],
-    values: np.ndarray,
-    label: str,
-    colours: str = "viridis",
-    ratios: bool = True,
-) -> None:
-    """Draws coloured cells with a colour bar. values: (ny, nx); a cell with NaN has no colour.
-
-    ratios: whether the colours are logarithmic if the values span more than a decade.
-    """
-    low = float(np.nanmin(values))
-    high = float(np.nanmax(values))
-    if ratios and high > LOGARITHMIC_COLOUR_RATIO * low > 0:
-        norm: Normalize = LogNorm(low, high)
-    else:
-        # Equal zeros would give a scale below zero.
-        norm = Normalize(low, high if high != low or low else 1.0)
-    mesh = axes.pcolormesh(*edges, np.ma.masked_invalid(values), norm=norm, cmap=colours, rasterized=True)
-    colorbar = axes.figure.colorbar(mesh, ax=axes, label=label)
-    if isinstance(norm, LogNorm):
-        label_few_decades(colorbar.ax.yaxis, low, high)

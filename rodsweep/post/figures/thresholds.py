@@ -9,8 +9,7 @@ from ...errors import InputError
 from ...results.file.view import ResultView
 from . import style
 from .arm.quantities import set_heading
-from .cycle.maps import label_maps, map_panels
-from .cycle.point_map import cell_edges, point_map
+from .cells import draw_coloured_cells, label_maps, map_panels, point_map
 from .layout.fitting import MAP_ASPECT, MIN_ASPECT
 from .point_lists import as_grid_if_possible
 from .request import FigureRequest
@@ -105,12 +104,11 @@ def _threshold_maps(view: ResultView, names: list[str], is_narrow: bool) -> tupl
     points = point_map(view)
     figure, panels = map_panels(len(names), is_narrow)
     lacking = False
-    edges = cell_edges(points.x), cell_edges(points.y)
     forces = [force for force in CRITICAL_FORCE_LOOKS if force[0] in names]
     for axes, (name, word, *_) in zip(panels, forces, strict=True):
         values = view.variables[name].ravel()[points.point_indices]
         style.require_content(view, np.isfinite(values).any(), f"{name} of rods with finite parameters")
-        style.draw_coloured_cells(axes, edges, values, f"{word} in $k_3/L^2$")
+        draw_coloured_cells(axes, points.edges, values, f"{word} in $k_3/L^2$")
         axes.set_facecolor(NO_THRESHOLD_COLOUR)
         lacking |= bool(np.isnan(values).any())
     label_maps(panels, points)

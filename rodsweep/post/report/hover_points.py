@@ -20,7 +20,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ...arrays import Array
-from ..figures.cycle.point_map import cell_centres
+from ..figures.cells import cell_centres
 from .label_text import label_text
 
 MAX_POINTS = 2500

@@ -5,16 +5,12 @@ Each point of the file is the centre of a cell of a map. Cells are hatched where
 grey where the rod model does not apply.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 
 from ....arrays import Array
 from ....config.arm.status import CRUSHED, FLUTTER_UNKNOWN, NO_FLUTTER, NO_WALL, NOT_SLENDER
@@ -23,7 +19,7 @@ from ....model.arm.neglected import Validity
 from ....results.file.view import ResultView
 from ...summary.arm.arm import quantity_words
 from .. import style
-from ..cycle.point_map import cell_edges
+from ..cells import cell_edges, draw_coloured_cells, fill_cells, map_panels
 from ..request import FigureRequest
 from .panels import PANEL_MAKERS, Panel
 from .quantities import NO_BREAK_SPACE, constant_quantities_text, in_typed_unit, quantity_text
@@ -49,6 +45,8 @@ BAND_OPACITY = 0.25
 EMPTY_CELL_LOOK: dict[str, Any] = {"fc": "#E8EDF2"}
 """Matplotlib style of cells whose arm corresponds to a rod but has no result, such as a rod without
 flutter."""
+LINE_COLOURS = (style.VERMILION, style.BLUE, style.GREEN)
+"""Colours of the lines of a panel."""
 MAP_HATCH_COLOUR = "0.35"
 """Grey of hatches, and of the edges of covered cells."""
 
@@ -58,39 +56,45 @@ def draw_arm_map(request: FigureRequest) -> str:
     for each result; returns a sentence. Raises InputError for options that the task does not have, and if
     nothing can be drawn."""
     view = replace(request, what=None).only_view()
-    varied_axis_names = [name for name in view.arm_axes if len(view.variables[name]) > 1]
-    if DRAG_AXIS in varied_axis_names and varied_axis_names[1:]:  # drawn as a band, or for the likeliest drag
-        varied_axis_names.remove(DRAG_AXIS)
-    axes = sorted(varied_axis_names, key=lambda name: -len(view.variables[name]))[:2]
-    x_name = next(name for name in view.arm_axes if name in axes)
-    y_name = next((name for name in view.arm_axes if name in axes and name != x_name), "")
-    indices = {name: 0 for name in view.arm_axes if name not in axes}
-    if DRAG_AXIS in indices:  # the likeliest drag has the smallest number
-        indices[DRAG_AXIS] = int(np.argmin(view.variables[DRAG_AXIS]))
+    names = _drawn_axes(view)
+    indices = {
+        # The likeliest drag has the smallest number.
+        name: int(np.argmin(view.variables[name])) if name == DRAG_AXIS else 0
+        for name in view.arm_axes
+        if name not in names
+    }
     index = tuple(indices.get(name, slice(None)) for name in view.arm_axes)
     panels = PANEL_MAKERS[view.task](view)
     style.require_content(view, any(np.isfinite(panel.values[index]).any() for panel in panels), "number")
-    figure, plots = _new_panels(len(panels), request.look.is_narrow, bool(y_name))
-    handles: list[Artist] = []
-    covers = []
-    for subplot, panel in zip(plots, panels, strict=True):
-        if y_name:
-            handles += _draw_map(subplot, panel, view, (x_name, y_name), index)
-        else:
-            handles += _draw_curves(subplot, panel, view, x_name, index)
-        covers.append(_cover_invalid_cells(subplot, view, panel, (x_name, y_name), index))
-    handle_by_label = {
-        str(handle.get_label()): handle for handle in reversed(handles)
-    }  # first of equal entries
-    style.draw_legend_below(figure, [*reversed(handle_by_label.values()), *covers[0]], column_count=3)
-    band_axes = (
-        [DRAG_AXIS] if not y_name and DRAG_AXIS in indices and len(view.variables[DRAG_AXIS]) > 1 else []
-    )
-    figure.suptitle(style.heading_text(view, constant_quantities_text(view, axes + band_axes)))
+    is_map = len(names) > 1
+    is_stacked = request.look.is_narrow or not is_map
+    figure, plots = map_panels(len(panels), is_stacked, shares_y=is_map)
+    draw_panel = _draw_map if is_map else _draw_curves
+    for axes, panel in zip(plots, panels, strict=True):
+        draw_panel(axes, panel, view, names, index)
+        _cover_invalid_cells(axes, view, panel, names, index)
+    style.draw_shared_legend(figure, column_count=3)
+    shown_names = [*names, DRAG_AXIS] if _has_drag_band(view, names) else names
+    figure.suptitle(style.heading_text(view, constant_quantities_text(view, shown_names)))
     labels = " and ".join(panel.label for panel in panels)
-    constants = {name: place for name, place in indices.items() if name not in band_axes}
-    constants_text = _section_text(view, constants)
-    return request.write(figure, f"{labels} over {' and '.join(map(quantity_words, axes))}{constants_text}")
+    constants = {name: place for name, place in indices.items() if name not in shown_names}
+    axes_text = " and ".join(map(quantity_words, names))
+    return request.write(figure, f"{labels} over {axes_text}{_section_text(view, constants)}")
+
+
+def _drawn_axes(view: ResultView) -> list[str]:
+    """Names of the one or two quantities on the axes, x first: those with the most values. Beside another
+    quantity, the drag is drawn as a band, or for the likeliest drag."""
+    varied = [name for name in view.arm_axes if len(view.variables[name]) > 1]
+    candidates = [name for name in varied if name != DRAG_AXIS] or varied
+    longest = sorted(candidates, key=lambda name: -len(view.variables[name]))[:2]
+    return [name for name in view.arm_axes if name in longest]
+
+
+def _has_drag_band(view: ResultView, names: Sequence[str]) -> bool:
+    """Whether the figure over the quantities `names` shows the range of a result over the drags as a band."""
+    has_drags = DRAG_AXIS in view.arm_axes and len(view.variables[DRAG_AXIS]) > 1
+    return has_drags and len(names) == 1 and DRAG_AXIS not in names
 
 
 def _section_text(view: ResultView, indices: dict[str, int]) -> str:
@@ -122,96 +126,64 @@ def _typed_axis_values_and_label(view: ResultView, name: str) -> tuple[Array, st
     return values, quantity_words(name) + (f" ({unit})" if unit else "")
 
 
-def _new_panels(panel_count: int, is_narrow: bool, maps: bool) -> tuple[Figure, list[Axes]]:
-    """Returns (figure, panels) with `panel_count` panels: side by side if `maps` and not `is_narrow`, else
-    stacked."""
-    is_one_row = maps and not is_narrow
-    figure_size = (4.8 * panel_count, 4.4) if is_one_row else (4.6, 2.9 * panel_count)
-    layout = ConstrainedLayoutEngine(wspace=0.06 if is_one_row else 0.0)  # room for the label of a colour bar
-    figure = Figure(figsize=figure_size, layout=layout)
-    grid_shape = (1, panel_count) if is_one_row else (panel_count, 1)
-    return figure, list(figure.subplots(*grid_shape, sharex=True, sharey=maps, squeeze=False).ravel())
-
-
-def _draw_map(axes: Axes, panel: Panel, view: ResultView, names: tuple[str, str], index: Any) -> list[Artist]:
-    """Draws a panel as a map over two quantities; returns legend entries. names: quantities on x and y."""
-    (x_values, x_label), (y_values, y_label) = (_typed_axis_values_and_label(view, name) for name in names)
-    values = np.ma.masked_invalid(panel.values[index].T)
-    style.draw_coloured_cells(
-        axes, (cell_edges(x_values), cell_edges(y_values)), panel.values[index].T, panel.label
-    )
-    handles: list[Artist] = []
-    if panel.zero_contour_label and values.min() < 0 < values.max():
-        axes.contour(x_values, y_values, values, [0.0], colors="k", linewidths=1.4)
-        handles.append(Line2D([], [], color="k", lw=1.4, label=panel.zero_contour_label))
-    style.scale_axis(axes, "x", x_values)
-    style.scale_axis(axes, "y", y_values)
+def _draw_map(axes: Axes, panel: Panel, view: ResultView, names: Sequence[str], index: Any) -> None:
+    """Draws a panel as a map over the two quantities `names`."""
+    (x, x_label), (y, y_label) = (_typed_axis_values_and_label(view, name) for name in names)
+    values = panel.values[index].T
+    draw_coloured_cells(axes, (cell_edges(x), cell_edges(y)), values, panel.label)
+    if panel.zero_contour_label and np.nanmin(values) < 0 < np.nanmax(values):
+        axes.contour(x, y, np.ma.masked_invalid(values), [0.0], colors="k", linewidths=1.4)
+        axes.plot([], [], color="k", lw=1.4, label=panel.zero_contour_label)
+    style.scale_axis(axes, "x", x)
+    style.scale_axis(axes, "y", y)
     style.label_outer(axes, x_label, y_label)
-    return handles
 
 
-def _draw_curves(axes: Axes, panel: Panel, view: ResultView, name: str, index: Any) -> list[Artist]:
-    """Draws a panel as curves against the quantity `name`; returns legend entries."""
-    x_values, label = _typed_axis_values_and_label(view, name)
-    colours = (style.VERMILION, style.BLUE, style.GREEN)
-    handles: list[Artist] = []
-    lines = panel.threshold_lines or {"": panel.values}
-    for colour, (line, values) in zip(colours, lines.items(), strict=False):
+def _draw_curves(axes: Axes, panel: Panel, view: ResultView, names: Sequence[str], index: Any) -> None:
+    """Draws a panel as curves against the quantity `names[0]`, with bands of the range over the drags."""
+    (name,) = names
+    x, x_label = _typed_axis_values_and_label(view, name)
+    lines = {
+        label: values for label, values in panel.threshold_lines.items() if np.isfinite(values[index]).any()
+    }
+    for colour, (label, values) in zip(LINE_COLOURS, (lines or {"": panel.values}).items(), strict=False):
         line_format = "o" if name == DRAG_AXIS else "-o"
-        axes.plot(x_values, values[index], line_format, ms=2.5, lw=1.2, color=colour)
-        handles += _draw_drag_band(axes, view, name, values, index, colour)
-        if line and np.isfinite(values[index]).any():
-            handles.append(Line2D([], [], color=colour, marker="o", ms=2.5, lw=1.2, label=line))
-    style.scale_axis(axes, "x", x_values)
+        axes.plot(x, values[index], line_format, ms=2.5, lw=1.2, color=colour, label=label)
+        if _has_drag_band(view, names):
+            _draw_drag_band(axes, view, x, values, colour, index)
+    style.scale_axis(axes, "x", x)
     if name == DRAG_AXIS:
-        axes.set_xticks(
-            x_values, [DRAG_ESTIMATE_NAMES[int(drag)].replace("_", "\n") for drag in x_values], rotation=90
-        )
-    has_several_lines = sum(isinstance(artist, Line2D) for artist in handles) > 1
-    style.label_outer(axes, label, panel.lines_label if has_several_lines else panel.label)
-    return handles
+        words = [DRAG_ESTIMATE_NAMES[int(drag)].replace("_", "\n") for drag in x]
+        axes.set_xticks(x, words, rotation=90)
+    style.label_outer(axes, x_label, panel.lines_label if len(lines) > 1 else panel.label)
 
 
-def _draw_drag_band(
-    axes: Axes, view: ResultView, x_name: str, values: Array, index: Any, colour: str
-) -> list[Artist]:
-    """Draws the range of a result over the drags as a band of the colour `colour`; returns the legend entry
-    as a list. x_name: name of the quantity on the horizontal axis. The list is empty if the drag does not
-    vary, or is the quantity on the horizontal axis."""
-    if DRAG_AXIS not in view.arm_axes or x_name == DRAG_AXIS or len(view.variables[DRAG_AXIS]) < 2:
-        return []
+def _draw_drag_band(axes: Axes, view: ResultView, x: Array, values: Array, colour: str, index: Any) -> None:
+    """Draws the range of a result over the drags as a band. x: values on the horizontal axis, (n,)."""
     drag = view.arm_axes.index(DRAG_AXIS)
     values_by_drag = np.moveaxis(values, drag, -1)[(*index[:drag], *index[drag + 1 :])]
     bounds = (bound.reduce(values_by_drag, axis=-1) for bound in (np.fmin, np.fmax))
-    x_values, _ = _typed_axis_values_and_label(view, x_name)
-    axes.fill_between(x_values, *bounds, color=colour, alpha=BAND_OPACITY, lw=0, zorder=1)
     line_name = DRAG_ESTIMATE_NAMES[int(view.variables[DRAG_AXIS].min())].replace("_", " ")
-    return [Patch(color="0.3", alpha=BAND_OPACITY, lw=0, label=f"range of drag (line: {line_name})")]
+    look: dict[str, Any] = {"color": colour, "alpha": BAND_OPACITY, "lw": 0, "zorder": 1}
+    axes.fill_between(x, *bounds, label=f"range of drag (line: {line_name})", **look)
 
 
 def _cover_invalid_cells(
-    axes: Axes, view: ResultView, panel: Panel, names: tuple[str, str], index: Any
-) -> list[Artist]:
-    """Hatches the cells where the model does not apply, and fills the cells outside the rod model or without
-    a value; returns legend entries. names: quantities on x and y."""
-    x_name, y_name = names
+    axes: Axes, view: ResultView, panel: Panel, names: Sequence[str], index: Any
+) -> None:
+    """Hatches the cells where the model does not apply, and fills the cells outside the rod model, and in a
+    map the cells without a value."""
+    is_map = len(names) > 1
+    edges = [cell_edges(_typed_axis_values_and_label(view, name)[0]) for name in names]
+    y_limits = axes.get_ylim()
+    x_edges, y_edges = edges if is_map else (edges[0], np.array(y_limits))
     rods = view.variables["status"][index] < NOT_SLENDER
-    empty = [(rods & np.isnan(panel.values[index]), panel.no_value_label, EMPTY_CELL_LOOK)] if y_name else []
-    x_edges = cell_edges(_typed_axis_values_and_label(view, x_name)[0])
-    limits = axes.get_ylim()
-    y_edges = cell_edges(_typed_axis_values_and_label(view, y_name)[0]) if y_name else np.array(limits)
-    handles: list[Artist] = []
+    covers = [(rods & np.isnan(panel.values[index]), panel.no_value_label, EMPTY_CELL_LOOK)] if is_map else []
     for variable, value, label, look in COVERED_CELL_LOOKS:
         is_covered = view.variables[variable][index] == value
-        empty.append((is_covered if variable == "status" else is_covered & rods, label, look))
-    for is_covered, label, look in empty:
-        for i, j in np.argwhere(is_covered if y_name else is_covered[:, None]):
-            corner = x_edges[[i, i + 1]], y_edges[[j, j + 1]]
-            axes.fill_between(
-                corner[0], *corner[1], ec=MAP_HATCH_COLOUR, lw=0, zorder=3 if y_name else 0, **look
-            )
-        if is_covered.any():
-            handles.append(Patch(label=label, ec=MAP_HATCH_COLOUR, lw=0.5, **look))
+        covers.append((is_covered if variable == "status" else is_covered & rods, label, look))
+    for is_covered, label, look in covers:
+        look_of_all = {"ec": MAP_HATCH_COLOUR, "zorder": 3 if is_map else 0, "label": label}
+        fill_cells(axes, (x_edges, y_edges), np.atleast_2d(is_covered.T), **look_of_all, **look)
     axes.set_xlim(x_edges[0], x_edges[-1])
-    axes.set_ylim(y_edges[0], y_edges[-1]) if y_name else axes.set_ylim(limits)
-    return handles
+    axes.set_ylim(y_edges[0], y_edges[-1])

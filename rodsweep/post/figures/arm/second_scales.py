@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import EngFormatter, MaxNLocator, NullLocator
+from matplotlib.ticker import MaxNLocator, NullLocator
 
 from ....model.arm.quantities import SCALE_NAMES, UNITS
+from ....model.units import with_si_prefix
 from ....results.file.view import ResultView
 from ..style import CRITICAL_FORCE_LABEL, LABELS
 from .quantities import shear_stiffness
@@ -32,85 +33,73 @@ LOAD_WORDS = {"pressure": "pressure on the tip", "force": "force at the tip"}
 def add_arm_scales(figure: Figure, views: Sequence[ResultView]) -> None:
     """Adds a scale in SI units to every axis of the follower force, if all files belong to one arm, and a
     scale of Poisson's ratio to every axis of k2, if the ratio varies in a single file."""
-    if len(views) == 1:
-        _add_poisson_scales(figure, views[0])
-    _add_si_scales(figure, views)
-
-
-def _add_si_scales(figure: Figure, views: Sequence[ResultView]) -> None:
-    """Adds a scale in SI units to every axis of the follower force, if all files belong to one arm."""
-    load_word = "force" if all(view.load_kind == "force" for view in views) else "pressure"
-    factors = [view.quantities.get(SCALE_NAMES[load_word]) for view in views]
-    units = {float(unit) for values in factors if values is not None for unit in np.ravel(values)}
-    if len(units) != 1 or any(values is None for values in factors):
-        return
-    (unit,) = units
+    load_kind = "force" if all(view.load_kind == "force" for view in views) else "pressure"
+    scales = [np.ravel(view.quantities.get(SCALE_NAMES[load_kind], np.nan)) for view in views]
+    load_scales = np.unique(np.concatenate(scales))
     for axes in list(figure.axes):
         for letter in ("x", "y"):
             label, scale = (getattr(axes, f"get_{letter}{what}")() for what in ("label", "scale"))
-            if label in (LABELS["F"], CRITICAL_FORCE_LABEL) and scale in SUPPORTED_AXIS_SCALES:
-                _add_second_scale(_outermost_panel(axes, letter), letter, unit, load_word)
-
-
-def _add_poisson_scales(figure: Figure, view: ResultView) -> None:
-    """Adds a scale of Poisson's ratio to every axis of k2, if k2 varies in the file with the ratio only."""
-    ratios = np.ravel(view.quantities.get("poisson", ()))
-    stiffnesses = np.ravel(view.parameter_values.get("k2", ()))
-    if not view.is_grid or len(ratios) < 2 or len(ratios) != len(stiffnesses):
-        return
-    for axes in list(figure.axes):
-        for letter in ("x", "y"):
-            if getattr(axes, f"get_{letter}label")() != LABELS["k2"]:
-                continue
+            is_force = label in (LABELS["F"], CRITICAL_FORCE_LABEL) and scale in SUPPORTED_AXIS_SCALES
             panel = _outermost_panel(axes, letter)
-            limits = sorted(getattr(panel, f"get_{letter}lim")())
-            ticks = MaxNLocator(MAX_TICK_INTERVALS).tick_values(ratios.min(), ratios.max())
-            ticks = ticks[(ticks >= ratios.min()) & (ticks <= ratios.max())]
-            positions = np.array([shear_stiffness(view, float(ratio)) for ratio in ticks])
-            # The ends of the range are drawn, whatever the rounding error.
-            is_visible = (positions >= limits[0] * (1 - TICK_ROUNDING_TOLERANCE)) & (
-                positions <= limits[1] * (1 + TICK_ROUNDING_TOLERANCE)
-            )
-            poisson_axis = _opposite_axis(panel, letter)
-            poisson_axis.set(**{f"{letter}label": "Poisson's ratio"})
-            texts = [f"{ratio:.4g}" for ratio in ticks[is_visible]]
-            getattr(poisson_axis, f"set_{letter}ticks")(positions[is_visible], texts)
-            getattr(poisson_axis, f"{letter}axis").set_minor_locator(NullLocator())
+            if is_force and load_scales.size == 1 and np.isfinite(load_scales[0]):
+                _add_load_scale(panel, letter, float(load_scales[0]), load_kind)
+            if label == LABELS["k2"] and len(views) == 1 and _varies_with_ratio(views[0]):
+                _add_poisson_scale(panel, letter, views[0])
+
+
+def _varies_with_ratio(view: ResultView) -> bool:
+    """Whether k2 varies in a grid with Poisson's ratio only."""
+    ratio_count = np.size(view.quantities.get("poisson", ()))
+    return view.is_grid and ratio_count > 1 and ratio_count == np.size(view.parameter_values.get("k2", ()))
+
+
+def _add_poisson_scale(panel: Axes, letter: str, view: ResultView) -> None:
+    """Adds a scale of Poisson's ratio to a panel, opposite to the axis `letter` of k2."""
+    ratios = np.ravel(view.quantities["poisson"])
+    ticks = MaxNLocator(MAX_TICK_INTERVALS).tick_values(ratios.min(), ratios.max())
+    ticks = ticks[(ticks >= ratios.min()) & (ticks <= ratios.max())]
+    positions = np.array([shear_stiffness(view, float(ratio)) for ratio in ticks])
+    # Ticks beyond the drawn range would widen the axis; rounding moves ticks at the ends of the range.
+    low, high = sorted(getattr(panel, f"get_{letter}lim")())
+    margin = TICK_ROUNDING_TOLERANCE * abs(positions)
+    is_visible = (positions >= low - margin) & (positions <= high + margin)
+    axis = _opposite_axis(panel, letter, "Poisson's ratio")
+    axis.set_ticks(positions[is_visible], [f"{ratio:.4g}" for ratio in ticks[is_visible]])
+    axis.set_minor_locator(NullLocator())
 
 
 def _outermost_panel(axes: Axes, letter: str) -> Axes:
     """The top panel of the column (letter = "x") or the rightmost panel of the row (letter = "y") of `axes`,
-    among the panels that share this axis with `axes`; `axes` itself if it is in no grid of panels."""
-    shared_axes = axes.get_shared_x_axes() if letter == "x" else axes.get_shared_y_axes()
-    grid_cell = axes.get_subplotspec()
-    panels = [panel for panel in shared_axes.get_siblings(axes) if panel.get_subplotspec() is not None]
-    if grid_cell is None or not panels:
-        return axes
+    among the panels that share this axis with `axes`."""
+    sharing = axes.get_shared_x_axes() if letter == "x" else axes.get_shared_y_axes()
+    own_place = axes.get_position(original=True)
+    places = {panel: panel.get_position(original=True) for panel in sharing.get_siblings(axes)}
     if letter == "x":
-        column = [panel for panel in panels if panel.get_subplotspec().colspan == grid_cell.colspan]
-        return min(column, key=lambda panel: panel.get_subplotspec().rowspan.start)
-    row = [panel for panel in panels if panel.get_subplotspec().rowspan == grid_cell.rowspan]
-    return max(row, key=lambda panel: panel.get_subplotspec().colspan.start)
+        return max(
+            (panel for panel in places if places[panel].x0 == own_place.x0), key=lambda p: places[p].y0
+        )
+    return max((panel for panel in places if places[panel].y0 == own_place.y0), key=lambda p: places[p].x0)
 
 
-def _add_second_scale(axes: Axes, letter: str, unit: float, load_kind: str) -> None:
-    """Adds a second scale to a panel, opposite to the axis `letter` ("x" or "y"). unit: load at F = 1, in SI
-    units."""
-    symbol = UNITS[load_kind][0]
-    word = LOAD_WORDS[load_kind]
-    largest_value = unit * max(map(abs, getattr(axes, f"get_{letter}lim")()))
-    power = 3 * int(np.floor(np.log10(largest_value) / 3)) if largest_value > 0 else 0
-    power = int(np.clip(power, min(EngFormatter.ENG_PREFIXES), max(EngFormatter.ENG_PREFIXES)))
-    unit *= 10.0**-power
-    symbol = EngFormatter.ENG_PREFIXES[power] + symbol
-    functions = partial(np.multiply, unit), partial(np.multiply, 1 / unit)
-    si_axis = _opposite_axis(axes, letter, functions=functions)
-    si_axis.set(**{f"{letter}label": f"{word} ({symbol})"})
-    getattr(si_axis, f"{letter}axis").set_major_locator(MaxNLocator(MAX_TICK_INTERVALS))
+def _add_load_scale(panel: Axes, letter: str, unit: float, load_kind: str) -> None:
+    """Adds a scale of the load to a panel, opposite to the axis `letter` of the follower force. unit: load at
+    F = 1, in SI units."""
+    largest_load = unit * max(map(abs, getattr(panel, f"get_{letter}lim")()))
+    factor, symbol = with_si_prefix(largest_load, UNITS[load_kind][0])
+    functions = partial(np.multiply, unit * factor), partial(np.multiply, 1 / (unit * factor))
+    axis = _opposite_axis(panel, letter, f"{LOAD_WORDS[load_kind]} ({symbol})", functions)
+    axis.set_major_locator(MaxNLocator(MAX_TICK_INTERVALS))
 
 
-def _opposite_axis(panel: Axes, letter: str, **keywords: Any) -> Any:
-    """New axis of a panel, opposite to the axis `letter`. keywords: keywords for matplotlib."""
-    if letter == "x":
-        return panel.secondary_xaxis("top", **keywords)
-    return panel.secondary_yaxis("right", **keywords)
+def _opposite_axis(panel: Axes, letter: str, label: str, functions: Any = None) -> Any:
+    """New axis of a panel, opposite to the axis `letter`. functions: from the values on the axis `letter` to
+    the values on the new axis, and back; None if both are equal."""
+    is_x = letter == "x"
+    new_axes: Any = (
+        panel.secondary_xaxis("top", functions=functions)
+        if is_x
+        else panel.secondary_yaxis("right", functions=functions)
+    )
+    axis = new_axes.xaxis if is_x else new_axes.yaxis
+    axis.set_label_text(label)
+    return axis

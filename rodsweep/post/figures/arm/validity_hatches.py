@@ -12,14 +12,14 @@ from matplotlib.patches import Patch
 from ....arrays import Array
 from ....model.arm.neglected import COMPRESSION_LIMIT, Validity
 from ....results.file.view import ResultView
-from ..cycle.point_map import cell_edges
+from ..cells import cell_edges, fill_cells
 from ..style import LABELS
 
 VALIDITY_HATCHES = {Validity.does_not_apply: "////", Validity.doubtful: "..."}
 """Hatches of points by validity of the model; other points have none."""
 COMPRESSION_HATCH = r"\\\\"
 """Hatch of loads along the rows of a phase diagram that compress an arm beyond the limit of the model."""
-HATCH_LOOK: dict[str, Any] = {"fc": "none", "ec": "0.6", "lw": 0}
+HATCH_LOOK: dict[str, Any] = {"fc": "none", "ec": "0.6"}
 """Matplotlib style of all hatches."""
 VALIDITY_NOTES = {
     Validity.does_not_apply: ("hatched", "the model does not apply"),
@@ -61,19 +61,22 @@ def _hatch_points(
 ) -> bool:
     """Hatches the cells of points in the mask `outside`, in all panels whose axes are the one or two
     parameters `names`; returns whether any panel has these axes."""
-    keywords = HATCH_LOOK | {"hatch": hatch}
-    cells = np.squeeze(outside)
+    labels = [LABELS[name] for name in names]
     edges = [cell_edges(view.parameter_values[name]) for name in names]
+    cells = np.squeeze(outside)
     is_hatched = False
     for axes in list(figure.axes):
-        labels = [_axis_label(axes, letter) for letter in "xy"]
-        for letter, label in zip("xy", labels, strict=True):
-            if len(names) == 1 and label == LABELS[names[0]]:
-                _hatch_intervals(axes, letter, edges[0], cells, keywords)
-                is_hatched = True
-        if len(names) == 2 and labels == [LABELS[name] for name in names]:
-            _hatch_map_cells(axes, edges, cells, keywords)
-            is_hatched = True
+        x_label, y_label = (_axis_label(axes, letter) for letter in "xy")
+        look = HATCH_LOOK | {"hatch": hatch}
+        if labels == [x_label, y_label]:
+            fill_cells(axes, (edges[0], edges[1]), cells.T, zorder=3, **look)
+        elif labels == [x_label]:
+            fill_cells(axes, (edges[0], np.array(axes.get_ylim())), cells[None], zorder=0, **look)
+        elif labels == [y_label]:
+            fill_cells(axes, (np.array(axes.get_xlim()), edges[0]), cells[:, None], zorder=3, **look)
+        else:
+            continue
+        is_hatched = True
     return is_hatched
 
 
@@ -90,7 +93,7 @@ def hatch_compressed(axes: Axes, view: ResultView, ratio: Array, x: Array, y: Ar
     hatched = axes.contourf(x, y, ratio, levels=levels, colors="none", hatches=[COMPRESSION_HATCH])
     hatched.set(edgecolor=HATCH_LOOK["ec"], linewidth=0)
     keywords = HATCH_LOOK | {"hatch": COMPRESSION_HATCH}
-    return [Patch(label="compression beyond its limit", **keywords)]
+    return [Patch(label="compression beyond its limit", lw=0, **keywords)]
 
 
 def _axis_label(axes: Axes, letter: str) -> str:
@@ -98,24 +101,3 @@ def _axis_label(axes: Axes, letter: str) -> str:
     shared_axes = axes.get_shared_x_axes() if letter == "x" else axes.get_shared_y_axes()
     labels = [getattr(panel, f"get_{letter}label")() for panel in (axes, *shared_axes.get_siblings(axes))]
     return next(filter(None, labels), "")
-
-
-def _hatch_intervals(
-    axes: Axes, letter: str, edges: Array, mask: np.ndarray, keywords: dict[str, Any]
-) -> None:
-    """Hatches intervals of the axis `letter` over the whole panel."""
-    limits = axes.get_xlim() if letter == "x" else axes.get_ylim()
-    hatch = axes.axvspan if letter == "x" else axes.axhspan
-    low, high = sorted(limits)
-    for i in np.flatnonzero(mask):
-        left, right = np.clip(edges[[i, i + 1]], low, high)
-        hatch(left, right, zorder=0 if letter == "x" else 3, **keywords)
-    axes.set(**{f"{letter}lim": limits})
-
-
-def _hatch_map_cells(axes: Axes, edges: list[Array], mask: np.ndarray, keywords: dict[str, Any]) -> None:
-    """Hatches cells of a map. mask: mask of the hatched cells, (nx, ny)."""
-    limits = axes.get_xlim(), axes.get_ylim()
-    for i, j in np.argwhere(mask):
-        axes.fill_between(edges[0][[i, i + 1]], *edges[1][[j, j + 1]], zorder=3, **keywords)
-    axes.set(xlim=limits[0], ylim=limits[1])

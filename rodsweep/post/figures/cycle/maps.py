@@ -4,16 +4,12 @@ Each point of the file is the centre of a cell. Only the lines of Hopf points ar
 """
 
 from collections.abc import Iterator, Sequence
-from itertools import cycle, pairwise
+from itertools import cycle
 from typing import Any
 
 import numpy as np
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 
@@ -24,8 +20,16 @@ from ....results.layouts.limit_cycle import CYCLE_STATUSES
 from ....sweep.points.points import ParameterLine
 from ...located_thresholds import LocatedThreshold, StoredThresholds
 from .. import style
+from ..cells import (
+    PointGrid,
+    axis_coordinates_and_inverse,
+    draw_coloured_cells,
+    fill_cells,
+    label_maps,
+    map_panels,
+    point_map,
+)
 from .amplitudes.square_root import HOPF_SYMBOL
-from .point_map import PointGrid, axis_coordinates_and_inverse, cell_edges, point_map
 from .selection import shared_and_own_of_arms
 from .units_and_labels import units_of_files
 
@@ -70,15 +74,12 @@ def draw_maps(view: ResultView, is_narrow: bool = False) -> tuple[Figure, str]:
     for axes, label, (name, colours, ratios) in zip(panels, (period, largest_y), MAP_QUANTITIES, strict=True):
         converted = units.converted({name: view.variables[name].ravel()[points.point_indices.ravel()]})[name]
         values = np.where(cycles, converted.reshape(points.point_indices.shape), np.nan)
-        edges = cell_edges(points.x), cell_edges(points.y)
-        style.draw_coloured_cells(axes, edges, values, label, colours, ratios)
-        handles = _draw_hopf_lines(axes, points, lines)
-        handles += _draw_statuses(axes, points, statuses)
-        handles += _mark_unstable(axes, points, statuses == "unstable")
+        draw_coloured_cells(axes, points.edges, values, label, colours, ratios)
+        _draw_statuses(axes, points, statuses)
+        _draw_hopf_lines(axes, points, lines)
+        _mark_unstable(axes, points, statuses == "unstable")
     label_maps(panels, points)
-    if handles:
-        legend_row_count = -(-len(handles) // MAX_LEGEND_ROW_ENTRIES)
-        style.draw_legend_below(figure, handles, column_count=-(-len(handles) // legend_row_count))
+    style.draw_shared_legend(figure, column_count=MAX_LEGEND_ROW_ENTRIES)
     figure.suptitle(style.heading_text(view, _common_parameters_text(view, points, units.in_si)))
     return figure, f"period and amplitude over {' and '.join(points.names)}{points.omissions}"
 
@@ -93,76 +94,34 @@ def _common_parameters_text(view: ResultView, points: PointGrid, is_in_si: bool)
     return shared_and_own_of_arms(view, numbers, {*points.names, *varied})[0]
 
 
-def map_panels(panel_count: int, is_narrow: bool) -> tuple[Figure, list[Axes]]:
-    """Returns (figure, panels) with `panel_count` panels that share axes, stacked if `is_narrow`, else side
-    by side."""
-    # Side by side, the first colour bar's label needs room.
-    layout = ConstrainedLayoutEngine(wspace=0.0 if is_narrow else 0.06)
-    figure = Figure(
-        figsize=(4.2, 3.2 * panel_count) if is_narrow else (4.8 * panel_count, 4.5), layout=layout
-    )
-    grid_shape = (panel_count, 1) if is_narrow else (1, panel_count)
-    return figure, list(figure.subplots(*grid_shape, sharex=True, sharey=True, squeeze=False).ravel())
-
-
-def label_maps(panels: Sequence[Axes], points: PointGrid) -> None:
-    """Sets scales and labels of panels that share axes. Only panels at the left and at the bottom have
-    labels."""
-    for axes in panels:
-        style.scale_axis(axes, "x", points.x)
-        style.scale_axis(axes, "y", points.y)
-        style.label_outer(axes, *(style.LABELS[name] for name in points.names))
-
-
-def _draw_statuses(axes: Axes, points: PointGrid, statuses: NDArray[np.str_]) -> list[Artist]:
-    """Fills the cells without a cycle with colours and hatches by status; returns legend entries. statuses:
-    status of each cell, (ny, nx)."""
+def _draw_statuses(axes: Axes, points: PointGrid, statuses: NDArray[np.str_]) -> None:
+    """Fills the cells without a cycle with colours and hatches by status. statuses: status of each cell, (ny,
+    nx)."""
     unlisted_looks = cycle(UNLISTED_STATUS_LOOKS)
-    handles: list[Artist] = []
     for word in dict.fromkeys([*STATUS_LOOKS, *np.unique(statuses).tolist()]):
-        cells = statuses == word
-        if word in CYCLE_STATUSES or not cells.any():
-            continue
-        colour, hatch = STATUS_LOOKS.get(word) or next(unlisted_looks)
-        keywords: dict[str, Any] = {"facecolor": colour, "hatch": hatch, "edgecolor": CYCLE_MAP_GREY}
-        for row, (bottom, top) in zip(cells, pairwise(cell_edges(points.y).tolist()), strict=True):
-            runs = _run_edges_and_widths(row, cell_edges(points.x))
-            axes.broken_barh(runs, (bottom, top - bottom), lw=0, **keywords)
-        handles.append(Patch(label=word.replace("_", " "), lw=0.5, **keywords))
-    return handles
+        if word not in CYCLE_STATUSES and word in statuses:
+            colour, hatch = STATUS_LOOKS.get(word) or next(unlisted_looks)
+            look = {"fc": colour, "hatch": hatch, "ec": CYCLE_MAP_GREY, "label": word.replace("_", " ")}
+            fill_cells(axes, points.edges, statuses == word, **look)
 
 
-def _mark_unstable(axes: Axes, points: PointGrid, unstable: NDArray[np.bool_]) -> list[Artist]:
-    """Draws an open marker in each cell of the mask `unstable`, (ny, nx); returns a list with the legend
-    entry. The list is empty if no cell is marked."""
-    if not unstable.any():
-        return []
-    look: dict[str, Any] = {"marker": "o", "mfc": "white", "mec": CYCLE_MAP_GREY, "ls": "", "mew": 0.6}
-    row, column = np.nonzero(unstable)
-    marker_size = float(np.clip(PANEL_WIDTH_POINTS / max(unstable.shape) / 2, *MARKER_SIZE_LIMITS))
-    axes.plot(points.x[column], points.y[row], ms=marker_size, **look)
-    return [Line2D([], [], label="unstable cycle", ms=MARKER_SIZE_LIMITS[1], **look)]
+def _mark_unstable(axes: Axes, points: PointGrid, unstable: NDArray[np.bool_]) -> None:
+    """Draws an open marker in each cell of the mask `unstable`, (ny, nx)."""
+    if unstable.any():
+        look: dict[str, Any] = {"marker": "o", "mfc": "white", "mec": CYCLE_MAP_GREY, "ls": "", "mew": 0.6}
+        row, column = np.nonzero(unstable)
+        size = float(np.clip(PANEL_WIDTH_POINTS / max(unstable.shape) / 2, *MARKER_SIZE_LIMITS))
+        axes.plot(points.x[column], points.y[row], ms=size, label="unstable cycle", **look)
 
 
-def _run_edges_and_widths(mask: NDArray[np.bool_], edges: Array) -> list[tuple[float, float]]:
-    """(left edge, width) of each run of neighbouring chosen cells in a row. mask: mask of the cells, (n,).
-    edges: edges of the cells, (n + 1,)."""
-    steps = np.diff(np.concatenate(([0], mask.astype(int), [0])))
-    starts = edges[np.flatnonzero(steps > 0)]
-    ends = edges[np.flatnonzero(steps < 0)]
-    return list(zip(starts.tolist(), (ends - starts).tolist(), strict=True))
-
-
-def _draw_hopf_lines(axes: Axes, points: PointGrid, lines: Sequence[Array]) -> list[Artist]:
-    """Draws lines of Hopf points; returns a list with the legend entry. lines: (x, y) of each line, (2, n).
-    On these lines the leading growth rate is zero. Every zero is a Hopf point: no eigenvalue can pass through
-    0, because the characteristic determinant is D(0) = 1."""
-    keywords: dict[str, Any] = {"color": "k", "lw": 1.4}
+def _draw_hopf_lines(axes: Axes, points: PointGrid, lines: Sequence[Array]) -> None:
+    """Draws lines of Hopf points. lines: (x, y) of each line, (2, n). On these lines the leading growth rate
+    is zero. Every zero is a Hopf point: no eigenvalue can pass through 0, because the characteristic
+    determinant is D(0) = 1."""
+    label = f"Hopf points ${HOPF_SYMBOL}$" if "F" in points.names else "Hopf points"
     path_effects = [withStroke(linewidth=3.0, foreground="white")]
     for line in lines:
-        axes.plot(*line, path_effects=path_effects, **keywords)
-    symbol = f" ${HOPF_SYMBOL}$" if "F" in points.names else ""
-    return [Line2D([], [], label=f"Hopf points{symbol}", **keywords)] if lines else []
+        axes.plot(*line, color="k", lw=1.4, path_effects=path_effects, label=label)
 
 
 def hopf_lines(points: PointGrid, view: ResultView) -> list[Array]:

@@ -1,18 +1,27 @@
-"""Points of a file as a map over two parameters: values on the axes, edges of cells, and the index of the
-point in each cell."""
+"""Maps over two parameters: each point of a file is the centre of a cell, which has a colour or a hatch."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.colors import LogNorm, Normalize
+from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from numpy.typing import NDArray
 
-from ....arrays import Array
-from ....errors import InputError
-from ....results.file.view import ResultView
-from ...summary.selection import varied_parameters_at_points
-from ..grid_slices import infinite_values_clause
-from ..style import is_logarithmic
+from ...arrays import Array
+from ...errors import InputError
+from ...results.file.view import ResultView
+from ..summary.selection import varied_parameters_at_points
+from .grid_slices import infinite_values_clause
+from .style import LABELS, is_logarithmic, label_few_decades, label_outer, scale_axis
+
+LOGARITHMIC_COLOUR_RATIO = 10
+"""The colours of a map are logarithmic if the ratio of the largest to the smallest value exceeds this
+number."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +40,11 @@ class PointGrid:
     """Parameters that are equal at all points, by name."""
     omissions: str
     """Clause on infinite values, which an axis cannot show; empty if all values are finite."""
+
+    @property
+    def edges(self) -> tuple[Array, Array]:
+        """Edges of the cells along x, (nx + 1,), and along y, (ny + 1,)."""
+        return cell_edges(self.x), cell_edges(self.y)
 
 
 def point_map(view: ResultView) -> PointGrid:
@@ -102,3 +116,62 @@ def cell_centres(edges: Array) -> Array:
     for i in range(1, len(centres)):
         centres[i] = 2 * edges[i] - centres[i - 1]
     return centres
+
+
+def draw_coloured_cells(
+    axes: Axes,
+    edges: tuple[np.ndarray, np.ndarray],
+    values: np.ndarray,
+    label: str,
+    colours: str = "viridis",
+    ratios: bool = True,
+) -> None:
+    """Draws coloured cells with a colour bar. values: (ny, nx); a cell with NaN has no colour.
+
+    ratios: whether the colours are logarithmic if the values span more than a decade.
+    """
+    low = float(np.nanmin(values))
+    high = float(np.nanmax(values))
+    if ratios and high > LOGARITHMIC_COLOUR_RATIO * low > 0:
+        norm: Normalize = LogNorm(low, high)
+    else:
+        # Equal zeros would give a scale below zero.
+        norm = Normalize(low, high if high != low or low else 1.0)
+    mesh = axes.pcolormesh(*edges, np.ma.masked_invalid(values), norm=norm, cmap=colours, rasterized=True)
+    colorbar = axes.figure.colorbar(mesh, ax=axes, label=label)
+    if isinstance(norm, LogNorm):
+        label_few_decades(colorbar.ax.yaxis, low, high)
+
+
+def fill_cells(axes: Axes, edges: tuple[Array, Array], is_filled: NDArray[np.bool_], **look: Any) -> None:
+    """Fills or hatches the cells of the mask `is_filled`, (ny, nx), without a change of the limits of the
+    axes. edges: edges of the cells, (nx + 1,) and (ny + 1,). look: keywords of matplotlib's PolyCollection; a
+    label is a legend entry."""
+    x, y = edges
+    rows, columns = np.nonzero(is_filled)
+    corners = ((0, 0), (0, 1), (1, 1), (1, 0))
+    cells = np.stack(
+        [np.column_stack([x[columns + right], y[rows + upper]]) for upper, right in corners], axis=1
+    )
+    if len(cells):
+        axes.add_collection(PolyCollection(list(cells), lw=0, **look), autolim=False)
+
+
+def map_panels(panel_count: int, is_stacked: bool, shares_y: bool = True) -> tuple[Figure, list[Axes]]:
+    """Returns (figure, panels) with `panel_count` panels that share axes, stacked or side by side. shares_y:
+    whether the panels share the vertical axis, too."""
+    # Side by side, the label of the first colour bar needs room.
+    layout = ConstrainedLayoutEngine(wspace=0.0 if is_stacked else 0.06)
+    size = (4.4, 3.1 * panel_count) if is_stacked else (4.8 * panel_count, 4.5)
+    figure = Figure(figsize=size, layout=layout)
+    shape = (panel_count, 1) if is_stacked else (1, panel_count)
+    return figure, list(figure.subplots(*shape, sharex=True, sharey=shares_y, squeeze=False).ravel())
+
+
+def label_maps(panels: Sequence[Axes], points: PointGrid) -> None:
+    """Sets scales and labels of panels that share axes. Only panels at the left and at the bottom have
+    labels."""
+    for axes in panels:
+        scale_axis(axes, "x", points.x)
+        scale_axis(axes, "y", points.y)
+        label_outer(axes, *(LABELS[name] for name in points.names))
