@@ -103,8 +103,8 @@ def _amplitudes(d, view, fine):
         )
         lost = d.take(axes, Line2D, lambda one: one.get_marker() == "x")
         gone = columns[x][~np.isin(words, ("cycle", "unstable", "straight", "missing"))]
-        right = sorted(float(one.get_xdata()[0]) for one in lost) == sorted(gone.tolist())
-        found.append((label, "" if right else f"{len(lost)} marks at the top for {len(gone)} points"))
+        right = sorted(float(x) for one in lost for x in one.get_xdata()) == sorted(gone.tolist())
+        found.append((label, "" if right else f"marks at the top are not the {len(gone)} points"))
         open_ = d.lines(
             axes, lambda one: to_hex(one.get_markerfacecolor()) == "#ffffff" and one.get_marker() != "None"
         )

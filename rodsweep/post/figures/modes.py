@@ -4,12 +4,11 @@ Figs. 7 to 9."""
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from ...results.file.view import ResultView
 from .arm.quantities import set_heading
 from .request import FigureRequest
-from .style import BLUE, VERMILION, draw_legend_below, number_in_tex, parameter_text, require_content
+from .style import BLUE, VERMILION, draw_shared_legend, number_in_tex, parameter_text, require_content
 
 MAX_RODS = 4
 """Largest number of points in one figure; a narrow figure shows one point."""
@@ -50,10 +49,7 @@ def draw_modes(request: FigureRequest) -> str:
         panel.set_xlabel("material coordinate $u/L$")
     texts = _parameters_and_eigenvalue_texts(view, int(drawn_points[0])) if point_count == 1 else ()
     set_heading(figure, view, *texts)
-    oscillates = bool(view.by_point("frequency")[drawn_points, 0].any())
-    parts = (("real part", "-"), ("imaginary part", ":"))[: 1 + oscillates]
-    handles = [Line2D([], [], color="0.3", lw=1.5, ls=style, label=word) for word, style in parts]
-    draw_legend_below(figure, handles, column_count=2)
+    draw_shared_legend(figure, column_count=2)
     omission_clause = ""
     if point_indices.size > point_count:
         first_words = f"first {point_count}" if point_count > 1 else "first"
@@ -71,8 +67,10 @@ def _draw_mode_fields(panel: Axes, view: ResultView, point: int, fields: tuple[t
         shape = (-1, *view.variables[f"{name}_real"].shape[-2:])
         real, imag = (view.variables[f"{name}_{part}"].reshape(shape)[point, 0] for part in ("real", "imag"))
         axes.plot(u, real, color=colour, lw=1.5)
+        panel.plot([], [], "-", color="0.3", lw=1.5, label="real part")
         if np.abs(imag).max() > 0:
             axes.plot(u, imag, ":", color=colour, lw=1.5)
+            panel.plot([], [], ":", color="0.3", lw=1.5, label="imaginary part")
         axes.tick_params(axis="y", colors=colour)
         axes.set_ylabel(label, color=colour)
         limits.append((min(real.min(), imag.min(), 0.0), max(real.max(), imag.max(), 0.0)))

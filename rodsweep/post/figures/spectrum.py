@@ -6,9 +6,7 @@ from string import ascii_lowercase
 import matplotlib.cm
 import matplotlib.colors
 import numpy as np
-from matplotlib.artist import Artist
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from ...errors import InputError
 from ...results.file.view import ResultView
@@ -21,8 +19,6 @@ from .request import FigureRequest
 from .spectra.eigenvalues import draw_eigenvalues, draw_list_of_spectra
 from .spectra.line import (
     ROOT_CHOICE_TEXTS,
-    THRESHOLD_LINE_STYLE,
-    THRESHOLD_LOOKS,
     draw_line,
     draw_roots_against_parameter,
     mark_thresholds,
@@ -36,12 +32,6 @@ PANEL_HEIGHT_BY_COLUMN_COUNT = {1: 2.1, 2: 2.6}
 """Height of a panel, in inches, by number of columns."""
 FIGURE_WIDTH_BY_COLUMN_COUNT = {1: 3.375, 2: 7.0}
 """Width of the figure, in inches, by number of columns."""
-THRESHOLD_WORDS = {
-    "onset": "onset of oscillation",
-    "hopf": "change of stability",
-    "restabilization": "change of stability",
-}
-"""Legend entry of the lines at thresholds, by kind. Symbols and forces are in the titles of the panels."""
 MAP_COLOURS = "PuOr_r"
 """Colour map of growth rates, with different colours for negative and positive rates."""
 SHADES_PER_SIGN = 40
@@ -193,23 +183,15 @@ def draw_panels(views: Sequence[ResultView], roots: str, is_narrow: bool) -> Fig
     )
     figure = Figure(figsize=figure_size, layout="constrained")
     panels = figure.subplots(row_count, column_count, squeeze=False).ravel()
-    handles: dict[str, Artist] = {}
     for letter, panel, view in zip(ascii_lowercase, panels, views, strict=False):
         (name,) = style.varied_axes(view)
         draw_roots_against_parameter(panel, view, name, roots)
-        thresholds = mark_thresholds(panel, view, name)
-        for handle, label in zip(*panel.get_legend_handles_labels(), strict=True):
-            handles.setdefault(label, handle)
-        for threshold in thresholds:
-            handles.pop(threshold_text(threshold), None)
-            word = THRESHOLD_WORDS[threshold.kind]
-            _, dashes = THRESHOLD_LOOKS[threshold.kind]
-            handles[word] = Line2D([], [], ls=dashes, label=word, **THRESHOLD_LINE_STYLE)
+        thresholds = mark_thresholds(panel, view, name, has_own_legend=False)
         threshold_texts = ", ".join(map(threshold_text, thresholds))
         text = style.heading_text(view, style.constant_parameters_text(view, name), threshold_texts)
         panel.set_title(f"({letter})  {text}", loc="left")
     for panel in panels[len(views) :]:
         panel.remove()
-    style.draw_legend_below(figure, list(handles.values()), 2 if is_narrow else 3)
+    style.draw_shared_legend(figure, 2 if is_narrow else 3)
     figure.suptitle(ROOT_CHOICE_TEXTS[roots])
     return figure

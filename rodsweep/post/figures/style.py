@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from math import isinf
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -165,11 +165,6 @@ def draw_shared_legend(figure: Figure, column_count: int, areas: Sequence[Artist
     if labels:
         look = {"loc": "outside lower center", "ncols": column_count, "frameon": False}
         figure.legend([entries[label] for label in labels], labels, **look)
-
-
-def draw_legend_below(figure: Figure, handles: list[Any], column_count: int) -> None:
-    """Draws one legend, with up to `column_count` columns, below the panels of the figure."""
-    figure.legend(handles=handles, loc="outside lower center", ncols=column_count, frameon=False)
 
 
 def is_logarithmic(values: np.ndarray) -> bool:

@@ -11,7 +11,7 @@ from ....results.file.view import ResultView
 from ...summary.errors import relative_power_error
 from ...summary.number_texts import rounded_text
 from ..arm.quantities import NO_BREAK_SPACE
-from ..style import BLUE, GREEN, VERMILION, draw_legend_below
+from ..style import BLUE, GREEN, VERMILION, draw_shared_legend
 from .selection import ENERGY_BUDGET_VARIABLE_NAMES, StoredCycle, chosen_cycles, rounded_number_in_tex
 
 ENERGY_RATE_MARK_COUNT = 24
@@ -38,8 +38,7 @@ def draw_energy(view: ResultView, points: Sequence[int], is_narrow: bool = False
     panel_rows[1, 0].set_ylim(bottom=min(0.0, panel_rows[1, 0].get_ylim()[0]))
     for axes, label in zip(panel_rows[:, 0], cycles[0].units.energy_and_power_labels, strict=True):
         axes.set_ylabel(label)
-    handles = [handle for axes in panel_rows[1:, 0] for handle in axes.get_legend_handles_labels()[0]]
-    draw_legend_below(figure, handles, column_count=2 if is_narrow else min(3, 1 + len(cycles)))
+    draw_shared_legend(figure, column_count=2 if is_narrow else min(3, 1 + len(cycles)))
     figure.align_ylabels(panel_rows[:, 0])
     figure.suptitle(selection.title)
     return figure, "energy, injection and dissipation over a cycle" + selection.omissions

@@ -4,7 +4,7 @@ Samples and shapes of a cycle are at the times k T/n, k = 0 ... n - 1, of a peri
 would equal the first sample.
 """
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -116,15 +116,8 @@ def chosen_cycles(view: ResultView, points: Sequence[int], variable_names: Seque
     empty. Raises InputError if a point, a cycle or a variable is missing, or for more than MAX_CYCLES
     points."""
     _refuse_missing(view, variable_names)
-    statuses = view.status_names
-    _refuse_bad_points(view, points)
-    for number in points:
-        if statuses[number - 1] != "cycle":
-            word = statuses[number - 1].replace("_", " ")
-            raise InputError(
-                f"--point {number}: the point has no cycle to draw; its status is {word}; choose another"
-            )
-    return _selected_cycles(view, points, statuses == "cycle", "cycle")
+    complaint = "the point has no cycle to draw; its status is {status}; choose another"
+    return _selected_cycles(view, points, view.status_names == "cycle", "cycle", complaint)
 
 
 def chosen_transients(view: ResultView, points: Sequence[int]) -> CycleSelection:
@@ -132,15 +125,12 @@ def chosen_transients(view: ResultView, points: Sequence[int]) -> CycleSelection
     most MAX_CYCLES, if `points` is empty. Raises InputError if a chosen motion, every motion or a variable is
     missing, if a point does not exist, or if more than MAX_CYCLES points are chosen."""
     _refuse_missing(view, TRANSIENT_VARIABLE_NAMES)
-    _refuse_bad_points(view, points)
     is_stored = np.isfinite(view.variables[TRANSIENT_VARIABLE_NAMES[0]][..., -1].ravel())
-    for number in points:
-        if not is_stored[number - 1]:
-            raise InputError(
-                f"--point {number}: the motion of this point from its initial state is not stored; choose a "
-                "point that was integrated from its initial state"
-            )
-    return _selected_cycles(view, points, is_stored, "transient")
+    complaint = (
+        "the motion of this point from its initial state is not stored; choose a point that was integrated "
+        "from its initial state"
+    )
+    return _selected_cycles(view, points, is_stored, "transient", complaint)
 
 
 def _refuse_missing(view: ResultView, variable_names: Sequence[str]) -> None:
@@ -153,59 +143,54 @@ def _refuse_missing(view: ResultView, variable_names: Sequence[str]) -> None:
 
 
 def _selected_cycles(
-    view: ResultView, points: Sequence[int], drawable: NDArray[np.bool_], noun: str
+    view: ResultView, points: Sequence[int], is_drawable: NDArray[np.bool_], noun: str, complaint: str
 ) -> CycleSelection:
     """Selection of the points with the numbers `points`, or of the first drawable points if `points` is
-    empty. drawable: mask, (points,). Raises InputError if no point is drawable."""
-    available = np.flatnonzero(drawable)
+    empty. is_drawable: mask, (points,). complaint: message on a chosen point that is not drawable, with
+    `{status}`. Raises InputError if no point, or a chosen point, is not drawable."""
     statuses = view.status_names
+    status_words = [word.replace("_", " ") for word in statuses.tolist()]
+    if len(points) > MAX_CYCLES:
+        limit_sentence = f"one figure shows at most {MAX_CYCLES} points"
+        raise InputError(f"--point is given {len(points)} times; {limit_sentence}")
+    for number in points:
+        if not 1 <= number <= statuses.size:
+            raise InputError(f"--point {number}: {view.path} has the points 1 to {statuses.size}")
+        if not is_drawable[number - 1]:
+            raise InputError(f"--point {number}: {complaint.format(status=status_words[number - 1])}")
+    available = np.flatnonzero(is_drawable) + 1
     if not available.size:
-        statuses_text = ", ".join(sorted({word.replace("_", " ") for word in statuses.tolist()}))
-        reason = f"the statuses of its points are: {statuses_text}"
+        reason = f"the statuses of its points are: {', '.join(sorted(set(status_words)))}"
         raise InputError(f"{view.path} holds no {noun} that could be drawn; {reason}")
-    numbers = list(points) or [int(index) + 1 for index in available[:MAX_CYCLES]]
+    numbers = list(points) or available[:MAX_CYCLES].tolist()
     columns = view.point_columns
-    parameters = [{name: float(columns[name][n - 1]) for name in columns} for n in numbers]
-    units = units_at_points(view, numbers)
     common_text, labels = shared_and_own_of_points(view, numbers)
     cycles = []
-    for number, label, at_point, scales in zip(numbers, labels, parameters, units, strict=True):
-        of_point = view.point_values(number - 1).items()
-        values = scales.converted({n: v for n, v in of_point if n not in (*view.parameters, "point")})
-        period = float(values["period"])
+    for number, label, units in zip(numbers, labels, units_at_points(view, numbers), strict=True):
+        parameters = {name: float(column[number - 1]) for name, column in columns.items()}
+        stored = view.point_values(number - 1).items()
+        values = units.converted({n: v for n, v in stored if n not in (*view.parameters, "point")})
         word = str(statuses[number - 1])
-        cycles.append(StoredCycle(number, label, at_point, period, values, word, scales))
+        cycles.append(StoredCycle(number, label, parameters, float(values["period"]), values, word, units))
     omissions_clause = ""
     if not points and available.size > len(cycles):
         omissions_clause = f", the first {len(cycles)} of {available.size} {noun}s (--point chooses others)"
     return CycleSelection(cycles, heading_text(view, common_text), omissions_clause)
 
 
-def _refuse_bad_points(view: ResultView, points: Sequence[int]) -> None:
-    """Raises InputError if `points` has more than MAX_CYCLES numbers, or the number of a point that does not
-    exist."""
-    point_count = view.variables["status"].size
-    if len(points) > MAX_CYCLES:
-        limit_sentence = f"one figure shows at most {MAX_CYCLES} points"
-        raise InputError(f"--point is given {len(points)} times; {limit_sentence}")
-    for number in points:
-        if not 1 <= number <= point_count:
-            raise InputError(f"--point {number}: {view.path} has the points 1 to {point_count}")
+def _without_shared_texts(texts: Sequence[Mapping[str, str]]) -> tuple[str, list[str]]:
+    """Returns (shared, own): the texts that all mappings share, and the other texts of each mapping."""
+    shared = {name: text for name, text in texts[0].items() if all(each[name] == text for each in texts)}
+    own = [", ".join(text for name, text in each.items() if name not in shared) for each in texts]
+    return ", ".join(shared.values()), own
 
 
 def shared_and_own_texts(parameters: Sequence[dict[str, float]]) -> tuple[str, list[str]]:
     """Returns (shared, own): text of the parameters with equal values in all mappings, and text of the other
     parameters of each mapping."""
-    common = {
-        name: value
-        for name, value in parameters[0].items()
-        if all(values[name] == value for values in parameters)
-    }
-    labels = [
-        parameter_text({name: value for name, value in each.items() if name not in common})
-        for each in parameters
-    ]
-    return parameter_text(common), labels
+    return _without_shared_texts(
+        [{name: parameter_text({name: value}) for name, value in each.items()} for each in parameters]
+    )
 
 
 def shared_and_own_of_points(view: ResultView, numbers: Sequence[int]) -> tuple[str, list[str]]:
@@ -234,12 +219,4 @@ def shared_and_own_of_arms(
         entry = {n: quantity_text(view, n, quantity_at_point(view, n, number)) for n in names}
         entry |= {n: parameter_text({n: value}) for n, value in replaced_parameters(view, number).items()}
         texts_by_quantity.append({name: text for name, text in entry.items() if name not in omitted})
-    common = {
-        name: text
-        for name, text in texts_by_quantity[0].items()
-        if all(entry[name] == text for entry in texts_by_quantity)
-    }
-    labels = [
-        ", ".join(text for name, text in entry.items() if name not in common) for entry in texts_by_quantity
-    ]
-    return ", ".join(common.values()), labels
+    return _without_shared_texts(texts_by_quantity)

@@ -1,6 +1,7 @@
 """Smooth path of the tip through the shapes of an animation."""
 
 import numpy as np
+import scipy  # loads a subpackage at its first use
 
 from ....arrays import Array
 
@@ -14,27 +15,18 @@ def smooth_tip_path(tips: Array, is_closed: bool) -> Array:
     between two tips, (vertices, 2).
 
     Each coordinate is a cubic polynomial between two shapes, and its rate at a shape is the central
-    difference of the neighbouring shapes. is_closed: whether the last shape is followed by the first; the
-    path then ends where it begins. Otherwise the second difference at an end equals the second difference at
-    the next shape. Fewer than three tips are returned unchanged.
+    difference of the neighbouring shapes, as on the page of `rodsweep explore`. is_closed: whether the last
+    shape is followed by the first; the path then ends where it begins. Fewer than three tips are returned
+    unchanged.
     """
     if len(tips) < 3:
         return tips
     if is_closed:
-        padded_tips = np.concatenate([tips[-1:], tips, tips[:2]])
+        knots = np.concatenate([tips, tips[:1]])
+        slopes = np.gradient(np.concatenate([tips[-1:], knots, tips[1:2]]), axis=0)[1:-1]
     else:
-        tip_before = 3 * (tips[0] - tips[1]) + tips[2]
-        tip_after = 3 * (tips[-1] - tips[-2]) + tips[-3]
-        padded_tips = np.concatenate([[tip_before], tips, [tip_after]])
-    fraction = np.arange(SEGMENTS_BETWEEN_SHAPES)[:, None] / SEGMENTS_BETWEEN_SHAPES
-    slopes = (padded_tips[2:] - padded_tips[:-2]) / 2
-    start, end = padded_tips[1:-2, None], padded_tips[2:-1, None]
-    start_slope, end_slope = slopes[:-1, None], slopes[1:, None]
-    remainder = 1 - fraction
-    points = (
-        remainder**2 * (1 + 2 * fraction) * start
-        + fraction**2 * (1 + 2 * remainder) * end
-        + fraction * remainder * (remainder * start_slope - fraction * end_slope)
-    )
-    path: Array = np.concatenate([points.reshape(-1, 2), padded_tips[-2:-1]])
-    return path
+        knots = tips
+        slopes = np.gradient(tips, axis=0, edge_order=2)
+    last = len(knots) - 1
+    spline = scipy.interpolate.CubicHermiteSpline(np.arange(last + 1), knots, slopes)
+    return np.asarray(spline(np.linspace(0, last, last * SEGMENTS_BETWEEN_SHAPES + 1)))

@@ -121,24 +121,28 @@ def units_of_files(views: Sequence[ResultView], indices: Sequence[NDArray[np.int
     indices: indices of the points of each file, (n,)."""
     if not all(name in view.quantities for view in views for name in REQUIRED_QUANTITIES):
         return [DIMENSIONLESS_UNITS] * len(views)
-    lengths, times, forces = (
-        [quantities_of_view(view)[name][chosen] for view, chosen in zip(views, indices, strict=True)]
-        for name in REQUIRED_QUANTITIES
+    scales = []
+    for view, chosen in zip(views, indices, strict=True):
+        L, tau2, force = (quantities_of_view(view)[name][chosen] for name in REQUIRED_QUANTITIES)
+        scales.append((L, tau2, force * L, force * L / tau2))
+    of_files = list(zip(views, indices, scales, strict=True))
+    period = max(_largest_in_units(view, "period", chosen, scale[1]) for view, chosen, scale in of_files)
+    mean_power = max(
+        _largest_in_units(view, "injection_mean", chosen, scale[3]) for view, chosen, scale in of_files
     )
-    power_units = [force * length / time for force, length, time in zip(forces, lengths, times, strict=True)]
-    energies = [force * length for force, length in zip(forces, lengths, strict=True)]
-    cycles = list(zip(views, indices, times, power_units, strict=True))
-    period = max(_largest_in_units(view, "period", chosen, time) for view, chosen, time, _ in cycles)
-    mean_power = max(_largest_in_units(view, "injection_mean", chosen, p) for view, chosen, _, p in cycles)
-    length = views[0].typed_units.get("length", "m")
-    time_unit = with_si_prefix(period, "s")[1] if 0 < period < PREFIXED_BELOW_SECONDS else "s"
-    joule = with_si_prefix(max(float(np.nanmax(energy)) for energy in energies), "J")[1]
-    watt = with_si_prefix(mean_power, "W")[1]
-    names = (length, time_unit, joule, watt)
-    scales = [value_in_unit(1.0, unit, si) for unit, si in zip(names, SI_UNITS_OF_SCALES, strict=True)]
-    columns = zip(lengths, times, energies, power_units, strict=True)
-    scaled = ([scale * column for scale, column in zip(scales, factors, strict=True)] for factors in columns)
-    return [CycleUnits(a, t, e, p, in_si=True, names=names) for a, t, e, p in scaled]
+    largest_energy = max(float(np.nanmax(scale[2])) for scale in scales)
+    names = (
+        views[0].typed_units.get("length", "m"),
+        with_si_prefix(period, "s")[1] if 0 < period < PREFIXED_BELOW_SECONDS else "s",
+        with_si_prefix(largest_energy, "J")[1],
+        with_si_prefix(mean_power, "W")[1],
+    )
+    factors = [value_in_unit(1.0, unit, si) for unit, si in zip(names, SI_UNITS_OF_SCALES, strict=True)]
+    units = []
+    for scale in scales:
+        length, time, energy, power = (unit * si for unit, si in zip(factors, scale, strict=True))
+        units.append(CycleUnits(length, time, energy, power, in_si=True, names=names))
+    return units
 
 
 def _largest_in_units(view: ResultView, name: str, indices: NDArray[np.int64], factors: Array) -> float:

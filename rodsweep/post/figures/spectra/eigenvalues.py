@@ -4,12 +4,11 @@ points."""
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from ....results.file.view import ResultView
 from ..arm.quantities import set_heading
 from ..point_lists import label_point_numbers, shared_parameters
-from ..style import BLUE, VERMILION, draw_legend_below, parameter_text, require_content
+from ..style import BLUE, VERMILION, draw_shared_legend, parameter_text, require_content
 
 SPREAD_RATIO = 100.0
 """An axis is symmetric logarithmic if the ratio of the largest to the smallest nonzero modulus exceeds
@@ -32,7 +31,7 @@ def draw_eigenvalues(view: ResultView) -> Figure:
     require_content(view, np.isfinite(growth).any(), "computed point")
     figure = Figure(figsize=(5.2, 4.0), layout="constrained")
     axes = figure.subplots()
-    handles = _draw_markers(axes, growth, frequency, growth > 0)
+    _draw_markers(axes, growth, frequency, growth > 0)
     scale_if_spread(axes, growth, frequency)
     for mode in range(min(mode_count, MAX_NUMBERED_MODES)):
         if np.isfinite(growth[mode]):
@@ -42,7 +41,7 @@ def draw_eigenvalues(view: ResultView) -> Figure:
     axes.axhline(0, color="0.8", lw=0.6, zorder=0)
     axes.margins(0.12)
     axes.set(xlabel=r"$\mathrm{Re}\,\omega\,\tau_2$", ylabel=r"$\mathrm{Im}\,\omega\,\tau_2$")
-    draw_legend_below(figure, handles, column_count=2)
+    draw_shared_legend(figure, column_count=2)
     set_heading(figure, view, parameter_text(shared_parameters(view)))
     return figure
 
@@ -55,26 +54,23 @@ def draw_list_of_spectra(view: ResultView) -> Figure:
     panels = figure.subplots(2, 1, sharex=True)
     number = np.broadcast_to(np.arange(1, len(growth) + 1)[:, None], growth.shape)
     for axes, values, part_name in zip(panels, (growth, frequency), ("Re", "Im"), strict=True):
-        handles = _draw_markers(axes, number, values, growth > 0)
+        _draw_markers(axes, number, values, growth > 0)
         scale_if_spread(axes, None, values)
         axes.axhline(0, color="0.5", lw=0.6, zorder=0)
         axes.set_ylabel(rf"$\mathrm{{{part_name}}}\,\omega\,\tau_2$")
     label_point_numbers(panels[1], view, len(growth))
-    draw_legend_below(figure, handles, column_count=2)
+    draw_shared_legend(figure, column_count=2)
     set_heading(figure, view, parameter_text(shared_parameters(view)))
     return figure
 
 
-def _draw_markers(axes: Axes, x: np.ndarray, y: np.ndarray, is_growing: np.ndarray) -> list[Line2D]:
-    """Draws markers at the points (x, y); returns legend entries. x, y: arrays of equal shape. is_growing:
-    mask of growing modes, of the same shape."""
-    handles = []
-    for kind, (colour, marker, word) in MODE_LOOKS.items():
+def _draw_markers(axes: Axes, x: np.ndarray, y: np.ndarray, is_growing: np.ndarray) -> None:
+    """Draws markers of decaying and growing modes at the points (x, y). x, y: arrays of equal shape.
+    is_growing: mask of growing modes, of the same shape."""
+    for kind, (colour, marker, label) in MODE_LOOKS.items():
         is_drawn = (is_growing == kind) & np.isfinite(y)
         if is_drawn.any():
-            drawn = x[is_drawn], y[is_drawn]
-            handles += axes.plot(*drawn, marker, color=colour, mfc="none", ms=4.5, label=word)
-    return handles
+            axes.plot(x[is_drawn], y[is_drawn], marker, color=colour, mfc="none", ms=4.5, label=label)
 
 
 def scale_if_spread(axes: Axes, x: np.ndarray | None, y: np.ndarray) -> None:

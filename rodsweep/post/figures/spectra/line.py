@@ -36,6 +36,13 @@ THRESHOLD_LOOKS = {
     "restabilization": ("restabilization", "--"),
 }
 """(symbol or word, line style) of each kind of threshold."""
+THRESHOLD_WORDS = {
+    "onset": "onset of oscillation",
+    "hopf": "change of stability",
+    "restabilization": "change of stability",
+}
+"""Legend entry of the lines at thresholds, by kind, in figures with several panels, whose titles have the
+forces."""
 THRESHOLD_LINE_STYLE: dict[str, Any] = {"color": "0.3", "lw": 0.9}
 """Colour and width of lines at thresholds."""
 SHADE_LOOK: dict[str, Any] = {"color": "0.92", "lw": 0, "zorder": 0}
@@ -123,7 +130,7 @@ def draw_line(view: ResultView, name: str, roots: str) -> Figure:
         figure.colorbar(dots, ax=bottom, label=style.LABELS[name])
     bottom.axvline(0, color="0.5", lw=0.6)
     bottom.set(xlabel=r"$\mathrm{Re}\,\omega\,\tau_2$", ylabel=r"$\mathrm{Im}\,\omega\,\tau_2$")
-    style.draw_legend_below(figure, top.get_legend_handles_labels()[0], 2)
+    style.draw_shared_legend(figure, column_count=2)
     set_heading(figure, view, style.constant_parameters_text(view, name), ROOT_CHOICE_TEXTS[roots])
     return figure
 
@@ -179,11 +186,14 @@ def threshold_text(threshold: LocatedThreshold) -> str:
     return f"{word} ={NO_BREAK_SPACE}{threshold.position:#.{THRESHOLD_DIGITS}g}"
 
 
-def mark_thresholds(axes: Axes, view: ResultView, name: str) -> list[LocatedThreshold]:
+def mark_thresholds(
+    axes: Axes, view: ResultView, name: str, has_own_legend: bool = True
+) -> list[LocatedThreshold]:
     """Shades the range in which the straight rod is unstable and, if the parameter `name` is F, draws lines
     at the located thresholds. Returns these thresholds; an empty list for any other parameter.
 
     Thresholds are onsets of oscillation, and forces at which the stability of the straight rod changes.
+    has_own_legend: whether the legend is of this panel alone, with the forces at the thresholds.
     """
     x = view.parameter_values[name]
     unstable = view.variables["unstable_count"].reshape(-1) > 0
@@ -197,7 +207,8 @@ def mark_thresholds(axes: Axes, view: ResultView, name: str) -> list[LocatedThre
     thresholds = [threshold for threshold in located if isinstance(threshold, LocatedThreshold)]
     for threshold in thresholds:
         _, dashes = THRESHOLD_LOOKS[threshold.kind]
-        axes.axvline(threshold.position, ls=dashes, label=threshold_text(threshold), **THRESHOLD_LINE_STYLE)
+        label = threshold_text(threshold) if has_own_legend else THRESHOLD_WORDS[threshold.kind]
+        axes.axvline(threshold.position, ls=dashes, label=label, **THRESHOLD_LINE_STYLE)
     # The shaded range begins at the upper end of a bracketed Hopf point, and ends at the lower end of a
     # bracketed restabilization.
     starts, ends = list[float](), list[float]()

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
+from .....arrays import Array
 from .....config.arm.axes import PARAMETER_CHANGED_ALONG
 from .....config.task.limit_cycle import LONGEST_AXIS
 from .....errors import InputError
@@ -24,7 +24,9 @@ SERIES_LOOKS = tuple(zip(style.LINE_COLOURS, ("o", "s", "^", "D", "v", "P"), str
 """(colour, marker) of each line."""
 MIN_ARROW_POINTS = 4
 """Only a line with at least this number of points has an arrow in the direction of continuation."""
-UNSTABLE_LOOK: dict[str, Any] = {"mfc": "white", "ls": "", "ms": 5.0, "zorder": 3}
+UNSTABLE_LOOK: dict[str, Any] = {
+    "mfc": "white", "ls": "", "ms": 5.0, "zorder": 3, "label": "unstable cycle"
+}  # fmt: skip
 """Matplotlib style of the open markers of unstable cycles, which are drawn over the markers of the line."""
 
 
@@ -50,22 +52,17 @@ def draw_amplitude(views: Sequence[ResultView], is_narrow: bool = False) -> tupl
     figure = Figure(figsize=(4.4, 8.4) if is_narrow else (8.6, 5.6), layout="constrained")
     panels = figure.subplots(*((4, 1) if is_narrow else (2, 2)), sharex=True).T.ravel()
     common_text, series_texts = _common_and_own_texts(all_series, name)
-    handles = _draw_series(panels, all_series, series_texts, _legend_entries_of_files(views, name))
-    colours = (colour for colour, _ in SERIES_LOOKS)
-    coloured = zip(all_series, colours, strict=False)
-    marks = [(point, colour) for series, colour in coloured for point in series.hopf]
-    handles += mark_hopf_points(panels, marks)
+    _draw_series(panels, all_series, series_texts, _legend_entries_of_files(views, name))
+    coloured = zip(all_series, SERIES_LOOKS, strict=False)
+    mark_hopf_points(panels, [(point, look[0]) for series, look in coloured for point in series.hopf])
     laws = [
-        law
-        for series_of_file in all_series
-        for law in square_root_laws(series_of_file.x, series_of_file.amplitude_y, series_of_file.hopf)
+        law for series in all_series for law in square_root_laws(series.x, series.amplitude_y, series.hopf)
     ]
-    handles += draw_square_root_laws(panels[1], laws, units[0].names[0] * units[0].in_si)
+    draw_square_root_laws(panels[1], laws, units[0].names[0] * units[0].in_si)
     _label_axes(panels, name, units[0].panel_labels)
     for panel in panels:
         style.scale_axis(panel, "x", np.unique(all_series[0].x))
-    if legend := [handle for handle in handles if handle.get_label()]:
-        style.draw_legend_below(figure, legend, column_count=min(2, len(legend)))
+    style.draw_shared_legend(figure, column_count=2)
     figure.suptitle(style.heading_text(first_view, common_text))
     omissions = [infinite_values_clause(view.point_columns, [name]) for view in views]
     return figure, f"amplitudes of the tip, period and power against {name}{max(omissions, key=len)}"
@@ -76,27 +73,37 @@ def _draw_series(
     all_series: Sequence[AmplitudeSeries],
     texts: Sequence[str],
     direction_labels: dict[int, tuple[str, bool | None]],
-) -> list[Line2D]:
-    """Draws all lines in all panels; returns legend entries. direction_labels: result of
-    `_legend_entries_of_files`."""
-    handles = []
-    unknown_statuses = set[str]()
+) -> None:
+    """Draws all lines in all panels. direction_labels: result of `_legend_entries_of_files`."""
     for series, text, (colour, marker) in zip(all_series, texts, SERIES_LOOKS, strict=False):
-        keywords: dict[str, Any] = {"color": colour, "marker": marker, "lw": 1.2, "ms": 3.5}
+        look: dict[str, Any] = {"color": colour, "marker": marker, "lw": 1.2, "ms": 3.5}
         # Open, larger markers do not hide the markers of the first file.
         if series.view is not all_series[0].view:
-            keywords |= {"mfc": "none", "ms": 6.5, "ls": "--"}
+            look |= {"mfc": "none", "ms": 6.5, "ls": "--"}
         word, upward = direction_labels[id(series.view)]
-        handles.append(Line2D([], [], label=", ".join(filter(None, (word, text))), **keywords))
-        unknown_statuses |= _draw_one_series(panels, series, keywords)
-        if upward is not None:
-            _draw_direction_arrow_on_line(panels, series, upward, colour)
-    if any("unstable" in series.status_names for series in all_series):
-        handles.append(Line2D([], [], color="0.3", marker="o", label="unstable cycle", **UNSTABLE_LOOK))
-    if unknown_statuses:
-        label = ", ".join(sorted(unknown_statuses)) + " (at the top)"
-        handles.append(Line2D([], [], color="0.3", marker="x", ls="", ms=5, label=label))
-    return handles
+        label = ", ".join(filter(None, (word, text)))
+        unstable = series.status_names == "unstable"
+        for axes, values in zip(panels, series.measures, strict=True):
+            axes.plot(*series.with_gap_at_onset(values), label=label, **look)
+            if unstable.any():
+                axes.plot(series.x[unstable], values[unstable], **look | UNSTABLE_LOOK)
+            if upward is not None:
+                _draw_direction_arrow(axes, series.x, values, upward, colour)
+            _mark_unknown_amplitudes(axes, series, colour)
+
+
+def _mark_unknown_amplitudes(axes: Axes, series: AmplitudeSeries, colour: str) -> None:
+    """Marks, at the top of a panel, the points of a line without a known amplitude, by status."""
+    look: dict[str, Any] = {
+        "transform": axes.get_xaxis_transform(),
+        "color": colour,
+        "ms": 5,
+        "clip_on": False,
+    }
+    for word in np.unique(series.status_names).tolist():
+        if word not in (*CYCLE_STATUSES, "straight", "missing"):
+            x = series.x[series.status_names == word]
+            axes.plot(x, np.ones(len(x)), "x", label=f"{word.replace('_', ' ')} (at the top)", **look)
 
 
 def _legend_entries_of_files(views: Sequence[ResultView], name: str) -> dict[int, tuple[str, bool | None]]:
@@ -121,20 +128,17 @@ def _legend_entries_of_files(views: Sequence[ResultView], name: str) -> dict[int
     return {id(view): entries[direction] for view, direction in zip(views, directions, strict=True)}
 
 
-def _draw_direction_arrow_on_line(
-    panels: Sequence[Axes], series: AmplitudeSeries, upward: bool, colour: str
-) -> None:
-    """Draws an arrow of the colour `colour` on a line, in each panel, in the direction of continuation.
-    upward: whether the parameter increased."""
+def _draw_direction_arrow(axes: Axes, x: Array, values: Array, upward: bool, colour: str) -> None:
+    """Draws an arrow of the colour `colour` on a line in the direction of continuation. x, values: points of
+    the line, (n,) each. upward: whether the parameter increased."""
+    finite_indices = np.flatnonzero(np.isfinite(values))
+    if len(finite_indices) < MIN_ARROW_POINTS:
+        return
+    place = len(finite_indices) * 3 // 4
+    ends = finite_indices[place - 1], finite_indices[place]
+    tail, head = ((x[i], values[i]) for i in (ends if upward else ends[::-1]))
     arrow = {"arrowstyle": "-|>", "color": colour, "lw": 1.2, "mutation_scale": 14}
-    for axes, values in zip(panels, series.measures, strict=True):
-        finite_indices = np.flatnonzero(np.isfinite(values))
-        if len(finite_indices) < MIN_ARROW_POINTS:
-            continue
-        place = len(finite_indices) * 3 // 4
-        ends = finite_indices[place - 1], finite_indices[place]
-        tail, head = ((series.x[i], values[i]) for i in (ends if upward else ends[::-1]))
-        axes.annotate("", head, tail, arrowprops=arrow, zorder=4)
+    axes.annotate("", head, tail, arrowprops=arrow, zorder=4)
 
 
 def _common_and_own_texts(all_series: Sequence[AmplitudeSeries], name: str) -> tuple[str, list[str]]:
@@ -165,18 +169,3 @@ def _label_axes(panels: Sequence[Axes], name: str, labels: Sequence[str]) -> Non
         grid_cell = axes.get_subplotspec()
         if grid_cell is not None and grid_cell.is_last_row():
             axes.set_xlabel(style.LABELS[name])
-
-
-def _draw_one_series(panels: Sequence[Axes], series: AmplitudeSeries, keywords: dict[str, Any]) -> set[str]:
-    """Draws a line in all panels, with open markers for unstable cycles; returns the statuses of points
-    without a known amplitude."""
-    unstable = series.status_names == "unstable"
-    is_unknown = ~np.isin(series.status_names, (*CYCLE_STATUSES, "straight", "missing"))
-    look: dict[str, Any] = {"color": keywords["color"], "ms": 5, "clip_on": False}
-    for axes, values in zip(panels, series.measures, strict=True):
-        axes.plot(*series.with_gap_at_onset(values), **keywords)
-        if unstable.any():
-            axes.plot(series.x[unstable], values[unstable], **keywords | UNSTABLE_LOOK)
-        for x in series.x[is_unknown]:
-            axes.plot(x, 1.0, "x", transform=axes.get_xaxis_transform(), **look)
-    return {str(word).replace("_", " ") for word in series.status_names[is_unknown]}
