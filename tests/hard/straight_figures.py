@@ -40,7 +40,7 @@ from .drawing import (
     unloaded,
     xy,
 )
-from .page import read, unit_of
+from .page import NUMBER, read, unit_of
 from .truths import changes_along, rods_of
 
 
@@ -139,15 +139,22 @@ def _changes_marked(d, axes, name, rods, here, x, growth):
     low, high = float(x.min()), float(x.max())
     rod = rods[int(np.flatnonzero(here)[0])]
     true = changes_along(replace(rod, **{name: low}), name, low, high) if name == "F" and low < high else []
+    kinds = {"F*": "onset", "F**": "hopf", "restabilization": "restabilization"}
     for at, line in d.verticals(axes):
         word, _, number = plain(line.get_label()).partition(" = ")
-        kind = {"F*": "onset", "F**": "hopf", "restabilization": "restabilization"}[word.strip()]
+        if not number:  # of several panels: the title of each has the numbers
+            told = re.findall(rf"(F\*\*?|restabilization) = ({NUMBER})", d.title(axes))
+            right = [
+                (text, symbol)
+                for symbol, text in told
+                if (symbol == "F*") == (word == "onset of oscillation")
+            ]
+            number, word = min(right, key=lambda pair: abs(float(pair[0]) - at))
+        kind = kinds[word.strip()]
         near = min((c.value for c in true if c.kind.name == kind), key=lambda c: abs(c - at), default=np.inf)
         yield d.compare(axes, ([at], [0.0]), ([near], [0.0]), LINE) if near < np.inf else f"no {kind} at {at}"
         yield nearly(number, near)
-        texts = [
-            text for text in d.page if text in plain(line.get_label()) or f"{word.strip()} = {number}" in text
-        ]
+        texts = [text for text in d.page if f"{word.strip()} = {number}" in text]
         yield "" if texts else f"{word} is nowhere told"
         for text in texts:
             start = text.index(f"{word.strip()} = {number}") + len(f"{word.strip()} = ")

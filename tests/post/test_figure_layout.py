@@ -18,7 +18,6 @@ from rodsweep.api.dataset import view_of_dataset
 from rodsweep.post.figures import draw
 from rodsweep.post.figures.cycle.animation import prepared_animation
 from rodsweep.post.figures.cycle.selection import chosen_cycles
-from rodsweep.post.figures.layout import ticks
 from rodsweep.post.figures.layout.fitting import WORD_PATTERN, break_lines, fit_layout
 from rodsweep.post.figures.layout.ticks import visible_labels
 from rodsweep.post.figures.request import FigureLook
@@ -306,25 +305,3 @@ def test_a_figure_whose_text_leaves_no_room_for_its_panel_grows():
     figure.draw_without_rendering()
     assert axes.bbox.height >= 0.45 * axes.bbox.width
     assert figure.get_size_inches()[0] == 3
-
-
-def places(axis_ticks_remembered):
-    """Boxes of the panels and of the labels of their ticks, after the figure was laid out."""
-    figure = Figure(layout="constrained", figsize=(3.4, 3.0))
-    above, below = figure.subplots(2, 1, sharex=True)
-    above.set(xscale="log", yscale="log", xlim=(1, 1e5), ylim=(1e-7, 1e3), title="growth", ylabel="a rate")
-    below.plot([1, 1e5], [-12345.678, 98765.4])
-    below.secondary_xaxis("top", functions=(lambda x: 2 * x, lambda x: x / 2)).set_xlabel("twice")
-    with pytest.MonkeyPatch.context() as patch:
-        if not axis_ticks_remembered:
-            patch.setattr(ticks, "CACHED_METHODS", ("absent in other releases",))
-        fit_layout(figure)
-    found = [panel.get_position().bounds for panel in figure.axes]
-    for panel in figure.axes:
-        for axis in (panel.xaxis, panel.yaxis):
-            found += [label.get_window_extent().bounds for label in axis.get_ticklabels()]
-    return np.array(found)
-
-
-def test_ticks_found_once_for_each_position_of_a_panel_give_the_same_layout():
-    assert places(True).tolist() == places(False).tolist()

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from matplotlib.text import Text
 
-from .ticks import cached_ticks, thin_ticks
+from .ticks import thin_ticks
 
 MIN_ASPECT = 0.45
 """Smallest ratio of height to width of a panel. If a panel is flatter, the height of the figure is
@@ -73,8 +73,7 @@ def _position_panels(figure: Figure) -> None:
     if not isinstance(canvas, FigureCanvasAgg):
         canvas = FigureCanvasAgg(figure)  # otherwise each text creates a canvas to measure itself
     if engine := figure.get_layout_engine():
-        with cached_ticks(figure):
-            engine.execute(figure)
+        engine.execute(figure)
     for legend in figure.legends:
         legend.draw(canvas.get_renderer())  # drawing places the entries
 
