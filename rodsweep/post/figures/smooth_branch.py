@@ -25,8 +25,6 @@ CHORD_LENGTH_CANDIDATES = ((CHORD_WEIGHTS, 1.0), (CHORD_WEIGHTS, 0.5), (np.array
 power. The arc length (power 1) is best on most branches, the sum of square roots where steps grow at a bend.
 A length close to y is best on a branch that ends near its Hopf point, where parameter and period are
 quadratic in y."""
-CENTRED_SLOPE_CYCLE_COUNT = 5
-"""Number of neighbouring cycles in the polynomial that gives the slope at the middle cycle."""
 CORNER_CYCLE_COUNT = 4
 """Number of cycles on each side of a corner in the polynomials that locate the corner; fewer near an end of
 the branch."""
@@ -85,7 +83,7 @@ def _smooth_vertices(cycles: Array, extent: Array) -> Array:
     abscissa = min(variables, key=lambda variable: _largest_cubic_deviation(variable, extended / extent))
     ends = abscissa[first_index : first_index + len(cycles)]
     drawn = np.linspace(ends[:-1], ends[1:], SEGMENT_COUNT, endpoint=False, axis=1).ravel()
-    spline = scipy.interpolate.CubicHermiteSpline(abscissa, extended, slopes_at_cycles(abscissa, extended))
+    spline = scipy.interpolate.CubicSpline(abscissa, extended)
     return np.asarray(spline(np.append(drawn, ends[-1])))
 
 
@@ -157,16 +155,3 @@ def _largest_cubic_deviation(s: Array, points: Array) -> float:
         cubic = scipy.interpolate.barycentric_interpolate(s[neighbours], points[neighbours], s[i])
         deviations.append(points[i] - cubic)
     return float(np.abs(deviations).max()) if deviations else 0.0
-
-
-def slopes_at_cycles(s: Array, points: Array) -> Array:
-    """Derivatives of the points with respect to s, (n, columns), from polynomials through
-    CENTRED_SLOPE_CYCLE_COUNT neighbouring points. s: (n,). points: points, (n, columns)."""
-    count = min(CENTRED_SLOPE_CYCLE_COUNT, len(s))
-    slopes = np.empty_like(points)
-    for i, start in enumerate(np.clip(np.arange(len(s)) - count // 2, 0, len(s) - count)):
-        distances = s[start : start + count] - s[i]
-        largest_distance = np.abs(distances).max()
-        vandermonde = np.vander(distances / largest_distance, increasing=True)
-        slopes[i] = np.linalg.solve(vandermonde, points[start : start + count])[1] / largest_distance
-    return slopes
