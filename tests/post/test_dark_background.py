@@ -2,46 +2,40 @@
 
 import matplotlib
 import pytest
+from known_cycles import make_view
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
-from rodsweep.post.figures.layout.dark_background import adapt_to_dark_background
+from rodsweep.post.figures.cycle.amplitudes.amplitude import draw_amplitude
+from rodsweep.post.figures.style import draw_shared_legend, text_colour
 
 BLACK, WHITE = (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)
 
 
-def curve_and_map():
-    figure = Figure()
-    left, right = figure.subplots(1, 2)
-    left.plot([0, 1], [0, 1], "o-", color="k", mfc="white", label="curve")
-    left.plot([0, 1], [1, 0], color="C0")
-    left.scatter([0.5], [0.5], color="k")
-    right.pcolormesh([[0, 1], [1, 0]])
-    right.plot([0, 1], [0, 1], color="k", label="on the map")
-    return figure, left, right
-
-
-def test_black_lines_are_drawn_in_the_colour_of_texts_on_a_dark_background():
-    with matplotlib.rc_context(matplotlib.style.library["dark_background"]):
-        figure, left, right = curve_and_map()
-        left.legend()
-        right.legend()
-        adapt_to_dark_background(figure)
-    black, blue = left.lines
-    assert to_rgb(black.get_color()) == to_rgb(black.get_markeredgecolor()) == WHITE
-    assert to_rgb(black.get_markerfacecolor()) == BLACK
-    assert blue.get_color() == "C0"
-    assert tuple(left.collections[0].get_facecolor()[0][:3]) == WHITE
-    assert to_rgb(right.lines[0].get_color()) == BLACK
-    legend = right.get_legend()
-    assert legend.get_frame_on() and min(legend.get_frame().get_facecolor()[:3]) > 0.8
-    assert to_rgb(legend.get_texts()[0].get_color()) == BLACK
-
-
-@pytest.mark.parametrize("style", ["default", "ggplot"])
-def test_figures_with_a_light_background_are_not_changed(style):
+@pytest.mark.parametrize("style", ["default", "ggplot", "dark_background"])
+def test_black_lines_are_drawn_in_the_colour_of_texts(style):
     with matplotlib.rc_context(matplotlib.style.library.get(style, {})):
-        figure, left, _ = curve_and_map()
-        adapt_to_dark_background(figure)
-    assert to_rgb(left.lines[0].get_color()) == BLACK
-    assert to_rgb(left.lines[0].get_markerfacecolor()) == WHITE
+        assert to_rgb(text_colour()) == (WHITE if style == "dark_background" else BLACK)
+
+
+@pytest.mark.parametrize("style", ["default", "dark_background"])
+def test_open_markers_have_the_colour_of_their_panel(style):
+    view = make_view(([20.0, 30.0, 40.0], [1e4], [1e2], [1e-2], [1.0]), [1, 0, 5])
+    with matplotlib.rc_context(matplotlib.style.library.get(style, {})):
+        panel = draw_amplitude([view])[0].axes[0]
+        (marks,) = (line for line in panel.lines if line.get_label() == "unstable cycle")
+        assert to_rgb(marks.get_mfc()) == to_rgb(panel.get_facecolor())
+
+
+@pytest.mark.parametrize("has_map", [False, True])
+def test_the_legend_of_a_map_is_light_on_a_dark_background(has_map):
+    with matplotlib.rc_context(matplotlib.style.library["dark_background"]):
+        figure = Figure()
+        panel = figure.subplots()
+        if has_map:
+            panel.pcolormesh([[0, 1], [1, 0]])
+        panel.plot([0, 1], [0, 1], color="k", label="a line")
+        draw_shared_legend(figure, column_count=1)
+    (legend,) = figure.legends
+    assert legend.get_frame_on() == has_map
+    assert to_rgb(legend.get_texts()[0].get_color()) == (BLACK if has_map else WHITE)

@@ -102,7 +102,7 @@ def draw_branch_curves(
             if kind_or_reason in SPECIAL_POINT_MARKS:
                 marker, label = SPECIAL_POINT_MARKS[kind_or_reason]
                 for axes, value in ((upper, special.tip_y_max), (lower, special.period)):
-                    axes.plot(special.at, value, marker, color="k", ms=5, label=label)
+                    axes.plot(special.at, value, marker, color=style.text_colour(), ms=5, label=label)
 
 
 def draw_straight_rod(axes: Axes, rod: RodBranches) -> None:
@@ -113,7 +113,7 @@ def draw_straight_rod(axes: Axes, rod: RodBranches) -> None:
         end = min(end, 1.1 * max(float(np.nanmax(curve.parameter)) for curve in rod.curves))
     for stable, ranges in zip((1, 0), rod.straight_ranges((start, end)), strict=True):
         for low, high in ranges:
-            axes.plot([low, high], [0, 0], STABILITY_LOOKS[stable][0], color="k", lw=1.4)
+            axes.plot([low, high], [0, 0], STABILITY_LOOKS[stable][0], color=style.text_colour(), lw=1.4)
 
 
 def add_stability_entries(axes: Axes, curves: Sequence[StoredBranch]) -> None:
@@ -122,7 +122,7 @@ def add_stability_entries(axes: Axes, curves: Sequence[StoredBranch]) -> None:
     stabilities = {int(stability) for curve in curves for stability in curve.stable} | {1, 0}
     for stability in sorted(stabilities, reverse=True):
         line_style, label = STABILITY_LOOKS[stability]
-        axes.plot([], [], color="k", ls=line_style, label=label)
+        axes.plot([], [], color=style.text_colour(), ls=line_style, label=label)
 
 
 def _omissions_clause(rods: Sequence[RodBranches], cycling: int, drawn_count: int) -> str:

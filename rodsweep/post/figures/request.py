@@ -13,7 +13,6 @@ from ...results.file.view import ResultView
 from ..output_files import save_figure
 from .arm.second_scales import add_arm_scales
 from .arm.validity_hatches import hatch_invalid_points
-from .layout.dark_background import adapt_to_dark_background
 from .layout.fitting import MIN_ASPECT, fit_layout
 
 CycleShapeSolver = Callable[[ResultView, Sequence[int]], ResultView]
@@ -167,7 +166,6 @@ class FigureRequest:
         # Figures over an arm's quantities show the validity themselves.
         if not any(view.arm_axes for view in self.views):
             hatch_invalid_points(figure, self.views)
-        adapt_to_dark_background(figure)
         if self.figure_callback is not None:
             self.look.fit(figure, min_aspect)
             self.figure_callback(figure)

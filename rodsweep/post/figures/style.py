@@ -5,6 +5,7 @@ from math import isinf
 from typing import Literal
 
 import numpy as np
+from matplotlib import rcParams
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
@@ -17,6 +18,7 @@ from ...model.parameters import PARAMETERS
 from ...results.file.view import ResultView
 from ...results.layouts.variables import MISSING_STATUS
 from ..material_texts import material_words
+from .layout.fitting import place_legend
 
 TEX_SYMBOLS = {name: parameter.symbol for name, parameter in PARAMETERS.items()}
 """Symbols of the parameters in TeX, by name."""
@@ -67,6 +69,12 @@ FONT_SIZE_SETTINGS = ("font.size", "axes.titlesize", "axes.labelsize", "figure.t
 """Names of matplotlib's settings of font sizes."""
 PRINT_STYLE = FIGURE_STYLE | dict.fromkeys(FONT_SIZE_SETTINGS, 8)
 """Settings of matplotlib for a figure with a given width; all text has a size of 8 points."""
+
+
+def text_colour() -> str:
+    """Colour of texts in the current style of matplotlib. Black lines have this colour, so that they are
+    visible on a dark background; lines on maps are black in every style."""
+    return str(rcParams["text.color"])
 
 
 def escape_dollar_signs(text: object) -> str:
@@ -163,8 +171,7 @@ def draw_shared_legend(figure: Figure, column_count: int, areas: Sequence[Artist
             entries.setdefault(label, artist)
     labels = sorted(entries, key=lambda label: isinstance(entries[label], Line2D))
     if labels:
-        look = {"loc": "outside lower center", "ncols": column_count, "frameon": False}
-        figure.legend([entries[label] for label in labels], labels, **look)
+        place_legend(figure, [entries[label] for label in labels], labels, column_count)
 
 
 def is_logarithmic(values: np.ndarray) -> bool:

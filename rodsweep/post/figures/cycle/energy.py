@@ -11,7 +11,7 @@ from ....results.file.view import ResultView
 from ...summary.errors import relative_power_error
 from ...summary.number_texts import rounded_text
 from ..arm.quantities import NO_BREAK_SPACE
-from ..style import BLUE, GREEN, VERMILION, draw_shared_legend
+from ..style import BLUE, GREEN, VERMILION, draw_shared_legend, text_colour
 from .selection import ENERGY_BUDGET_VARIABLE_NAMES, StoredCycle, chosen_cycles, rounded_number_in_tex
 
 ENERGY_RATE_MARK_COUNT = 24
@@ -70,7 +70,7 @@ def _draw_budget(panels: Sequence[Axes], cycle: StoredCycle) -> None:
     time = phase * cycle.period
     budget_samples = (cycle.values[name] for name in ENERGY_BUDGET_VARIABLE_NAMES)
     energy, injection, dissipation = (interpolate_samples(values, phase) for values in budget_samples)
-    top.plot(time, energy, color="k", lw=1.5)
+    top.plot(time, energy, color=text_colour(), lw=1.5)
     mean_power = float(cycle.values["injection_mean"])
     middle.axhline(mean_power, color="0.6", lw=0.9, ls=":", label="mean injection", zorder=1)
     middle.plot(time, injection, color=VERMILION, lw=1.5, label="injection")
@@ -80,7 +80,9 @@ def _draw_budget(panels: Sequence[Axes], cycle: StoredCycle) -> None:
     marks = np.arange(ENERGY_RATE_MARK_COUNT) / ENERGY_RATE_MARK_COUNT
     rate = interpolate_samples(time_derivative(cycle.values["energy"]), marks) / cycle.period
     rate = rate * cycle.units.power_of_rate
-    bottom.plot(marks * cycle.period, rate, "o", color="k", mfc="none", ms=3.5, label="derivative of $U$")
+    bottom.plot(
+        marks * cycle.period, rate, "o", color=text_colour(), mfc="none", ms=3.5, label="derivative of $U$"
+    )
     bottom.set_xlabel(cycle.units.time_label)
     bottom.set_xlim(0, cycle.period)
     bottom.xaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))

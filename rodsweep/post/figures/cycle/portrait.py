@@ -21,7 +21,7 @@ from matplotlib.ticker import FuncFormatter
 
 from ....arrays import Array
 from ....results.file.view import ResultView
-from ..style import BLUE, VERMILION
+from ..style import BLUE, VERMILION, text_colour
 from .selection import SHAPE_VARIABLE_NAMES, StoredCycle, chosen_cycles
 from .transient import draw_start_of_motion, label_time_axes, label_tip_axes
 
@@ -165,7 +165,7 @@ def draw_clamp(axes: Axes, length: float) -> None:
     half_height = WALL_HALF_HEIGHT * length
     look: dict[str, Any] = {"fc": "white", "ec": "0.3", "hatch": "/////", "lw": 0}
     axes.add_patch(Rectangle((-depth, -half_height), depth, 2 * half_height, **look))
-    axes.plot([0, 0], [-half_height, half_height], color="k", lw=1.4, zorder=5)
+    axes.plot([0, 0], [-half_height, half_height], color=text_colour(), lw=1.4, zorder=5)
 
 
 def set_common_limits(panels: Sequence[Axes], cycles: Sequence[StoredCycle]) -> None:

@@ -4,12 +4,18 @@ All sizes are measured in the figure after matplotlib's constrained layout.
 """
 
 import re
+from collections.abc import Sequence
 from math import ceil
+from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import QuadMesh
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
+from matplotlib.image import AxesImage
 from matplotlib.legend import Legend
 from matplotlib.text import Text
 
@@ -36,6 +42,10 @@ EQUAL_SCALE_HEIGHT_FACTOR = 1.03
 just suffice, and successive layouts would alternate."""
 TEXT_MARGIN = 0.04
 """Smallest distance of a text from the edge of the figure, in inches."""
+DARK_BELOW = 0.3
+"""A background is dark if red, green and blue are all below this number, from 0 to 1."""
+LEGEND_BACKGROUND = "0.9"
+"""Background of the legend beside a map on a dark figure."""
 WORD_PATTERN = re.compile(r"(?:\\.|\$(?:\\.|[^$\\])*\$|[^\s$]|\xa0)+")
 """Pattern for a word of a text. A formula between dollar signs, including spaces, is part of a word, as is a
 no-break space."""
@@ -149,6 +159,19 @@ def _column_distance(axes: Axes, figure: Figure) -> float:
     )
 
 
+def place_legend(
+    figure: Figure, handles: Sequence[Artist], labels: Sequence[str], column_count: int
+) -> Legend:
+    """Legend with `column_count` columns below the panels of a figure. Beside a map on a dark figure, the
+    legend has a light background, because lines on maps are black."""
+    panels = [artist for axes in figure.axes for artist in (*axes.images, *axes.collections)]
+    has_map = any(isinstance(artist, AxesImage | QuadMesh) for artist in panels)
+    look: dict[str, Any] = {"frameon": False}
+    if has_map and max(to_rgb(figure.get_facecolor())) < DARK_BELOW:
+        look = {"frameon": True, "facecolor": LEGEND_BACKGROUND, "labelcolor": "black"}
+    return figure.legend(list(handles), labels, loc="outside lower center", ncols=column_count, **look)
+
+
 def _fit_legends(figure: Figure) -> bool:
     """Reduces the number of columns of legends that are too wide, and breaks long entries; returns whether
     any legend changed."""
@@ -156,34 +179,20 @@ def _fit_legends(figure: Figure) -> bool:
     changed = False
     for old_legend in list(figure.legends):
         legend = old_legend
-        while legend.get_window_extent().width > max_width and _legend_column_count(legend) > 1:
-            legend = _legend_with_columns(figure, legend, _legend_column_count(legend) - 1)
-            changed = True
         texts = legend.get_texts()
-        if legend.get_window_extent().width > max_width:
-            extra_width = legend.get_window_extent().width - max(
-                text.get_window_extent().width for text in texts
-            )
+        column_count = len({round(text.get_window_extent().x0) for text in texts})
+        while legend.get_window_extent().width > max_width and column_count > 1:
+            column_count -= 1
+            handles = [handle for handle in legend.legend_handles if handle is not None]
+            legend.remove()
+            legend = place_legend(figure, handles, [text.get_text() for text in texts], column_count)
+            texts = legend.get_texts()
+            _position_panels(figure)
+            changed = True
+        if (width := legend.get_window_extent().width) > max_width:
+            extra_width = width - max(text.get_window_extent().width for text in texts)
             changed |= any([break_lines(text, max_width - extra_width) for text in texts])
     return changed
-
-
-def _legend_column_count(legend: Legend) -> int:
-    """Number of columns of a legend."""
-    return len({round(text.get_window_extent().x0) for text in legend.get_texts()})
-
-
-def _legend_with_columns(figure: Figure, legend: Legend, column_count: int) -> Legend:
-    """Replaces a legend of the figure by a legend with the same entries in `column_count` columns; returns
-    the new legend."""
-    texts = [text.get_text() for text in legend.get_texts()]
-    handles = [handle for handle in legend.legend_handles if handle is not None]
-    legend.remove()
-    columned_legend = figure.legend(
-        handles, texts, loc="outside lower center", ncols=column_count, frameon=False
-    )
-    _position_panels(figure)
-    return columned_legend
 
 
 def _spare_height(figure: Figure, min_aspect: float) -> float:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from matplotlib import rcParams
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -25,7 +26,7 @@ SERIES_LOOKS = tuple(zip(style.LINE_COLOURS, ("o", "s", "^", "D", "v", "P"), str
 MIN_ARROW_POINTS = 4
 """Only a line with at least this number of points has an arrow in the direction of continuation."""
 UNSTABLE_LOOK: dict[str, Any] = {
-    "mfc": "white", "ls": "", "ms": 5.0, "zorder": 3, "label": "unstable cycle"
+    "ls": "", "ms": 5.0, "zorder": 3, "label": "unstable cycle"
 }  # fmt: skip
 """Matplotlib style of the open markers of unstable cycles, which are drawn over the markers of the line."""
 
@@ -86,7 +87,12 @@ def _draw_series(
         for axes, values in zip(panels, series.measures, strict=True):
             axes.plot(*series.with_gap_at_onset(values), label=label, **look)
             if unstable.any():
-                axes.plot(series.x[unstable], values[unstable], **look | UNSTABLE_LOOK)
+                axes.plot(
+                    series.x[unstable],
+                    values[unstable],
+                    mfc=rcParams["axes.facecolor"],
+                    **look | UNSTABLE_LOOK,
+                )
             if upward is not None:
                 _draw_direction_arrow(axes, series.x, values, upward, colour)
             _mark_unknown_amplitudes(axes, series, colour)
