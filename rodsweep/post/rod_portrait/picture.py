@@ -14,7 +14,7 @@ from ...results.file.view import ResultView
 from ...results.layouts.limit_cycle import CYCLE_STATUSES
 from ..figures import style
 from ..figures.branch import BRANCH_COLOURS, add_stability_entries, draw_branch_curves, draw_straight_rod
-from ..figures.cycle.portrait import ARROW_LENGTH, UNUSED_COLOUR_FRACTION, draw_clamp, draw_force_arrow
+from ..figures.cycle.portrait import ARROW_LENGTH, draw_shapes, shades_of_shapes
 from ..figures.stability.class_bars import draw_class_bar, mark_thresholds_on_bars
 from .paragraph import paragraph
 from .portrait_units import rescale_panel
@@ -174,15 +174,8 @@ def _draw_cycles(panels: Sequence[Axes], results: RodResults) -> None:
             axes.set_title(force)
             _write_sentence(axes, f"no cycle: {_status_meaning(view)}", PANEL_TEXT_WIDTH)
             continue
-        shades = matplotlib.colormaps["viridis_r"](
-            np.linspace(UNUSED_COLOUR_FRACTION, 1, len(stored["shape_x"]))
-        )
-        draw_clamp(axes, length)
-        for x, y, theta, shade in zip(
-            stored["shape_x"], stored["shape_y"], stored["shape_theta"], shades, strict=True
-        ):
-            axes.plot(length * x, length * y, color=shade, lw=1.3)
-            draw_force_arrow(axes, length * x, length * y, theta, shade, length)
+        shapes = length * stored["shape_x"], length * stored["shape_y"], stored["shape_theta"]
+        draw_shapes(axes, shapes, shades_of_shapes(len(shapes[0])), length, lw=1.3)
         period = units.time.text(float(stored["period"]), float(stored["period"] * stored["period_error"]))
         axes.set_title(f"{force}\n$T$ = {period}".replace("tau2", r"$\tau_2$"))
         ends = length * np.array([-0.1, 1 + ARROW_LENGTH])

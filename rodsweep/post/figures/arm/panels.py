@@ -35,16 +35,16 @@ def _threshold_panels(view: ResultView) -> list[Panel]:
     restabilization), and frequency at flutter."""
     # A threshold pressure is shown in the unit in which the user typed Young's modulus.
     load = view.load_kind
-    si, unit_quantity = ("N", "force") if load == "force" else ("Pa", "young")
-    loads_by_threshold = {}
-    for event in ("hopf", "onset", "restabilization"):
-        loads = view.variables[f"{load}_{event}"]
-        loads_by_threshold[THRESHOLD_KIND_WORDS[event]], unit = in_typed_unit(view, unit_quantity, loads, si)
-    flutter = loads_by_threshold[THRESHOLD_KIND_WORDS["hopf"]]
+    unit_of, si = ("force", "N") if load == "force" else ("young", "Pa")
+    loads = {
+        word: in_typed_unit(view, unit_of, view.variables[f"{load}_{kind}"], si)
+        for kind, word in THRESHOLD_KIND_WORDS.items()
+    }
+    flutter, unit = loads["flutter"]
+    lines = {word: values for word, (values, _) in loads.items()}
+    label = f"{load} at flutter ({unit})"
     return [
-        Panel(
-            f"{load} at flutter ({unit})", flutter, loads_by_threshold, "", f"{load} ({unit})", "no flutter"
-        ),
+        Panel(label, flutter, lines, lines_label=f"{load} ({unit})", no_value_label="no flutter"),
         Panel("frequency at flutter (Hz)", view.variables["frequency_hopf_hz"], no_value_label="no flutter"),
     ]
 

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ....arrays import Array
-from ....config.arm.axes import NON_LOAD_KEYS, STORAGE_AXIS_OF_QUANTITY
+from ....config.arm.axes import NON_LOAD_KEYS
 from ....config.arm.shape import MATERIAL_KEYS
 from ....model.arm.arm import SlenderArm
 from ....model.arm.drag import DRAG_ESTIMATE_NAMES
@@ -16,6 +16,7 @@ from ....model.arm.quantities import ALL_QUANTITIES, ARM_SCALES, LOAD_OF_RATIO
 from ....model.units import value_in_unit
 from ....results.file.view import ResultView
 from ...summary.arm.arm import quantity_words
+from ...tables.rows_and_columns import quantities_of_view
 from ..style import heading_text
 
 NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
@@ -45,11 +46,6 @@ def quantity_text(view: ResultView, name: str, value: float) -> str:
     )
 
 
-def given_quantities(view: ResultView) -> list[str]:
-    """Names of the quantities that the user gave for the arm of a file."""
-    return [name for name in view.quantities if name not in (*ARM_SCALES, *LOAD_OF_RATIO)]
-
-
 def constant_quantities_text(view: ResultView, drawn_names: Sequence[str] = ()) -> str:
     """Constant quantities of the arm with their values, as text; empty without an arm."""
     texts = []
@@ -69,15 +65,12 @@ def set_heading(figure: Figure, view: ResultView, *lines: str) -> None:
     figure.suptitle(heading_text(view, constant_quantities_text(view), *lines))
 
 
-def quantity_at_point(view: ResultView, name: str, number: int) -> float:
-    """Value of the quantity `name` at a point of the file. number: number of the point, from 1."""
-    values = np.asarray(view.variables[name])
-    if values.size == 1:
-        return float(values.ravel()[0])
-    if view.is_grid:  # the quantity is stored along the parameter that depends on it
-        position = np.unravel_index(number - 1, view.variables["status"].shape)
-        return float(values[position[view.parameters.index(STORAGE_AXIS_OF_QUANTITY[name])]])
-    return float(values.ravel()[number - 1])
+def quantities_at_point(view: ResultView, number: int) -> dict[str, float]:
+    """Quantities that the user gave for the arm at a point, by name, in SI units; a drag as an index in
+    DRAG_ESTIMATE_NAMES. number: number of the point, from 1."""
+    columns = quantities_of_view(view)
+    derived = (*ARM_SCALES, *LOAD_OF_RATIO)
+    return {name: float(column[number - 1]) for name, column in columns.items() if name not in derived}
 
 
 def shear_stiffness(view: ResultView, poisson: float) -> float:
@@ -101,10 +94,7 @@ def replaced_parameters(view: ResultView, number: int) -> dict[str, float]:
     """Parameters at a point, by name, that differ from the parameters computed from the arm, because the
     config gives them. F is included if the arm has no load, and otherwise left out. number: number of the
     point, from 1."""
-    quantities: dict[str, Any] = {
-        name_of_quantity: quantity_at_point(view, name_of_quantity, number)
-        for name_of_quantity in given_quantities(view)
-    }
+    quantities: dict[str, Any] = dict(quantities_at_point(view, number))
     if "drag" in quantities:
         quantities["drag"] = DRAG_ESTIMATE_NAMES[int(quantities["drag"])]
     arm = _arm_of(view, quantities)

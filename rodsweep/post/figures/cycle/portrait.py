@@ -66,16 +66,11 @@ def draw_portrait(view: ResultView, points: Sequence[int], is_narrow: bool = Fal
     has_transients = all(cycle.has_transient for cycle in cycles)
     end = DRAWN_TIP_PERIODS * max(cycle.period for cycle in cycles)
     shape_indices, step = drawn_shape_indices(len(cycles[0].values["shape_x"]))
-    # Light to dark, so that colour-blind readers see the order.
-    darkness = np.linspace(UNUSED_COLOUR_FRACTION, 1, len(shape_indices))
-    colours = ListedColormap(matplotlib.colormaps["viridis_r"](darkness))
+    shades = shades_of_shapes(len(shape_indices))
     for axes, (upper, lower), cycle in zip(shape_panels, tip_panels, cycles, strict=True):
         draw_tip_path(axes, cycle)
-        draw_clamp(axes, cycle.units.length)
-        for number, frame in enumerate(shape_indices):
-            x, y, theta = (cycle.values[name][frame] for name in SHAPE_VARIABLE_NAMES)
-            axes.plot(x, y, color=colours(number), lw=1.8, solid_capstyle="round", zorder=2 + number / 100)
-            draw_force_arrow(axes, x, y, theta, colours(number), cycle.units.length)
+        shapes = [cycle.values[name][shape_indices] for name in SHAPE_VARIABLE_NAMES]
+        draw_shapes(axes, shapes, shades, cycle.units.length, lw=1.8)
         axes.set_xlabel(cycle.units.axis_label("x"))
         axes.set_title(cycle.heading(cycle.period_text, cycle.period_in_tau1))
         if has_transients:
@@ -85,7 +80,7 @@ def draw_portrait(view: ResultView, points: Sequence[int], is_narrow: bool = Fal
     set_common_limits(shape_panels, cycles)
     shape_panels[0].set_ylabel(cycles[0].units.axis_label("y"))
     label_tip_axes(*tip_panels[0], cycles[0].units)
-    _draw_phase_bar(figure, shape_panels, colours, step, is_narrow)
+    _draw_phase_bar(figure, shape_panels, ListedColormap(shades), step, is_narrow)
     figure.suptitle(selection.title)
     tip_text = "the tip from the start on" if has_transients else "the tip in time"
     return figure, f"shapes through the cycle and {tip_text}{selection.omissions}"
@@ -136,6 +131,22 @@ def _draw_phase_bar(
     shades = ScalarMappable(norm, colours)
     colorbar = figure.colorbar(shades, ax=panels, label="time of the shape $t/T$", **look)
     colorbar.ax.minorticks_off()
+
+
+def shades_of_shapes(count: int) -> Array:
+    """Colours of the shapes of a period, (count, 4), from light to dark, so that colour-blind readers see the
+    order."""
+    return np.asarray(matplotlib.colormaps["viridis_r"](np.linspace(UNUSED_COLOUR_FRACTION, 1, count)))
+
+
+def draw_shapes(axes: Axes, shapes: Sequence[Array], shades: Array, length: float, lw: float) -> None:
+    """Draws the wall, and shapes of the arm with the follower force, later shapes over earlier shapes.
+    shapes: x, y and theta of the shapes, (shapes, nodes) each. shades: colours, (shapes, 4). length: L, in
+    the unit of the axes. lw: width of the lines."""
+    draw_clamp(axes, length)
+    for number, (x, y, theta, shade) in enumerate(zip(*shapes, shades, strict=True)):
+        axes.plot(x, y, color=shade, lw=lw, solid_capstyle="round", zorder=2 + number / 100)
+        draw_force_arrow(axes, x, y, theta, shade, length)
 
 
 def draw_tip_path(axes: Axes, cycle: StoredCycle) -> None:

@@ -14,7 +14,7 @@ from ....arrays import Array
 from ....errors import InputError
 from ....results.file.view import ResultView
 from ...summary.number_texts import rounded_text
-from ..arm.quantities import given_quantities, quantity_at_point, quantity_text, replaced_parameters
+from ..arm.quantities import quantities_at_point, quantity_text, replaced_parameters
 from ..style import heading_text, parameter_text
 from .units_and_labels import DIMENSIONLESS_UNITS, REQUIRED_QUANTITIES, CycleUnits, units_at_points
 
@@ -213,10 +213,10 @@ def shared_and_own_of_arms(
     numbers: numbers of the points of the arms, from 1. omitted: quantities and parameters that are left out,
     for example because they are on axes.
     """
-    texts_by_quantity = []
-    names = given_quantities(view)
+    texts_of_arms = []
     for number in numbers:
-        entry = {n: quantity_text(view, n, quantity_at_point(view, n, number)) for n in names}
-        entry |= {n: parameter_text({n: value}) for n, value in replaced_parameters(view, number).items()}
-        texts_by_quantity.append({name: text for name, text in entry.items() if name not in omitted})
-    return _without_shared_texts(texts_by_quantity)
+        quantities = quantities_at_point(view, number).items()
+        texts = {name: quantity_text(view, name, value) for name, value in quantities}
+        texts |= {n: parameter_text({n: value}) for n, value in replaced_parameters(view, number).items()}
+        texts_of_arms.append({name: text for name, text in texts.items() if name not in omitted})
+    return _without_shared_texts(texts_of_arms)
