@@ -377,7 +377,13 @@ def test_one_spectrum_is_drawn_as_its_eigenvalues_in_the_complex_plane(command, 
 def test_points_of_a_list_of_arms_are_labelled_by_words_of_the_quantities():
     quantities = {"drag": np.array([0, 2]), "poisson": np.array([0.3, 0.5]), "young": np.array([1e5, 2e5])}
     axes = Figure().subplots()
-    label_point_numbers(axes, SimpleNamespace(quantities=quantities), 2)
+    view = SimpleNamespace(
+        quantities=quantities,
+        variables={"status": np.zeros(2)},
+        is_grid=False,
+        typed_units={"young": "kPa"},
+    )
+    label_point_numbers(axes, view, 2)
     assert axes.get_xlabel() == "drag\nPoisson's ratio\nYoung's modulus (kPa)"
     texts = [label.get_text() for label in axes.get_xticklabels()]
     assert texts == ["likeliest\n0.3\n100", "most rotational\n0.5\n200"]

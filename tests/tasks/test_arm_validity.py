@@ -483,9 +483,9 @@ def test_roots_are_drawn_over_the_points_of_a_grid_with_what_varies(command, dra
     command.solved("a.yaml")
     figure = figure_of(drawn, command.directory / "a.h5", command.directory / "f.png", roots="all")
     (axes,) = (axes for axes in figure.axes if "radius" in axes.get_xlabel())
-    assert axes.get_xlabel() == "length (mm)\nradius (mm)"
+    assert axes.get_xlabel() == "length (cm)\nradius (mm)"
     places = [label.get_text() for label in axes.xaxis.get_ticklabels()]
-    assert places == ["100\n4", "100\n5", "120\n4", "120\n5"]
+    assert places == ["10\n4", "10\n5", "12\n4", "12\n5"]
 
 
 def test_a_thin_wall_ends_the_model_where_the_arm_beats_widely(command):

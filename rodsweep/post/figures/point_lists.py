@@ -7,11 +7,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
-from ...model.arm.drag import DRAG_ESTIMATE_NAMES
-from ...model.arm.quantities import ALL_QUANTITIES, ARM_SCALES
-from ...model.units import with_si_prefix
 from ...results.file.view import ResultView
-from ..summary.arm.arm import quantity_words
+from ..summary.arm.arm import varied_columns
+from .arm.quantities import quantity_label_and_texts
 
 DIMENSIONS_OF_ITEMS = ("mode", "u", "crossing")
 """Names of dimensions that are not dimensions of points; their length may equal the length of the list."""
@@ -52,42 +50,20 @@ def shared_parameters(view: ResultView) -> dict[str, float]:
 def label_point_numbers(axes: Axes, view: ResultView, point_count: int) -> None:
     """Labels the horizontal axis with the numbers of the points of a list, from 1.
 
-    For an arm, the label names the varied quantities, in SI units; the tick labels of a short list are the
-    values of these quantities.
+    For an arm, the label names the varied quantities, in the units typed by the user; the tick labels of a
+    short list are the values of these quantities.
     """
     axes.set_xlim(0.5, point_count + 0.5)
     axes.xaxis.set_major_locator(
         MaxNLocator(min(point_count, MAX_LABELLED_POINTS), integer=True, min_n_ticks=1)
     )
-    varied_values = _varied_quantities(view)
-    if varied_values and point_count <= MAX_LABELLED_POINTS:
-        columns = zip(*(numbers for _, numbers in varied_values), strict=True)
-        axes.set_xticks(np.arange(1, point_count + 1), ["\n".join(numbers) for numbers in columns])
-        axes.set_xlabel("\n".join(name for name, _ in varied_values))
+    labels_and_texts = [
+        quantity_label_and_texts(view, name, column) for name, column in varied_columns(view).items()
+    ]
+    if labels_and_texts and point_count <= MAX_LABELLED_POINTS:
+        columns = zip(*(texts for _, texts in labels_and_texts), strict=True)
+        axes.set_xticks(np.arange(1, point_count + 1), ["\n".join(texts) for texts in columns])
+        axes.set_xlabel("\n".join(label for label, _ in labels_and_texts))
     else:
-        range_texts = (f"{name}: {numbers[0]} to {numbers[-1]}" for name, numbers in varied_values)
+        range_texts = (f"{label}: {texts[0]} to {texts[-1]}" for label, texts in labels_and_texts)
         axes.set_xlabel("\n".join(["point of the list", *range_texts]))
-
-
-def _varied_quantities(view: ResultView) -> list[tuple[str, list[str]]]:
-    """Pairs (name with unit, values at the points as text), one pair for each quantity of an arm that
-    varies."""
-    quantities = view.quantities.items()
-    varied = (
-        (quantity_name, quantity_values)
-        for quantity_name, quantity_values in quantities
-        if quantity_name not in ARM_SCALES and len(np.unique(quantity_values)) > 1
-    )
-    return [_name_and_value_texts(name, values) for name, values in varied]
-
-
-def _name_and_value_texts(name: str, values: np.ndarray) -> tuple[str, list[str]]:
-    """Returns (name with unit, values as text) of the quantity `name`. values: (points,); for a drag, indices
-    in DRAG_ESTIMATE_NAMES."""
-    if name == "drag":
-        return quantity_words(name), [DRAG_ESTIMATE_NAMES[int(value)].replace("_", " ") for value in values]
-    unit = ALL_QUANTITIES[name].unit
-    if unit == "1":
-        return quantity_words(name), [f"{value:.4g}" for value in values]
-    factor, unit = with_si_prefix(float(np.abs(values).max()), unit)
-    return f"{quantity_words(name)} ({unit})", [f"{factor * value:.4g}" for value in values]

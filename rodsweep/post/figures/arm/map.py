@@ -22,7 +22,7 @@ from .. import style
 from ..cells import cell_edges, draw_coloured_cells, fill_cells, map_panels
 from ..request import FigureRequest
 from .panels import PANEL_MAKERS, Panel
-from .quantities import NO_BREAK_SPACE, constant_quantities_text, in_typed_unit, quantity_text
+from .quantities import NO_BREAK_SPACE, constant_quantities_text, quantity_text, values_and_label
 
 ARM_MAP_FIGURE_KINDS = ("map", "maps")
 """Values of `--what` that request this figure."""
@@ -122,8 +122,7 @@ def _typed_axis_values_and_label(view: ResultView, name: str) -> tuple[Array, st
     values = view.variables[name]
     if name in style.LABELS:
         return values, style.LABELS[name]
-    values, unit = in_typed_unit(view, name, values)
-    return values, quantity_words(name) + (f" ({unit})" if unit else "")
+    return values_and_label(view, name, values)
 
 
 def _draw_map(axes: Axes, panel: Panel, view: ResultView, names: Sequence[str], index: Any) -> None:

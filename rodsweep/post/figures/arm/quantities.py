@@ -34,6 +34,22 @@ def in_typed_unit(view: ResultView, name: str, values: Array, si: str = "") -> t
     return (values, "") if si == "1" else (values * value_in_unit(1.0, unit, si), unit)
 
 
+def values_and_label(view: ResultView, name: str, values: Array) -> tuple[Array, str]:
+    """Returns (values in the unit typed by the user, label of an axis) of the quantity `name`. values: in SI
+    units, (n,)."""
+    values, unit = in_typed_unit(view, name, values)
+    return values, quantity_words(name) + (f" ({unit})" if unit else "")
+
+
+def quantity_label_and_texts(view: ResultView, name: str, values: Array) -> tuple[str, list[str]]:
+    """Returns (label, values as text) of the quantity `name`, in the unit typed by the user. values: in SI
+    units, (n,); for a drag, indices in DRAG_ESTIMATE_NAMES."""
+    if name == "drag":
+        return quantity_words(name), [DRAG_ESTIMATE_NAMES[int(value)].replace("_", " ") for value in values]
+    typed_values, label = values_and_label(view, name, values)
+    return label, [f"{value:.4g}" for value in typed_values]
+
+
 def quantity_text(view: ResultView, name: str, value: float) -> str:
     """Name and value of the quantity `name` in the unit typed by the user, such as "length 12 cm". value: in
     SI units; for a drag, index in DRAG_ESTIMATE_NAMES."""
