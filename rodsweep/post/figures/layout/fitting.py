@@ -5,12 +5,10 @@ All sizes are measured in the figure after matplotlib's constrained layout.
 
 import re
 from collections.abc import Sequence
-from math import ceil
 from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
-from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import QuadMesh
 from matplotlib.colors import to_rgb
@@ -125,38 +123,23 @@ def _break_texts(figure: Figure) -> bool:
     for axes in figure.axes:
         box = axes.get_window_extent()
         grid_cell = axes.get_subplotspec()
-        row_count = 1 if grid_cell is None else ceil(grid_cell.get_gridspec().nrows / len(grid_cell.rowspan))
-        centred = min(box.x0 + box.x1, 2 * width - box.x0 - box.x1) - 2 * margin
-        title_width = min(centred, _column_distance(axes, figure) - 2 * margin)
+        row_count = column_count = 1.0
+        if grid_cell is not None:
+            grid = grid_cell.get_gridspec()
+            row_count = grid.nrows / len(grid_cell.rowspan)
+            column_count = grid.ncols / len(grid_cell.colspan)
+        # A left title ends at the edge of the page; a centred text extends equally to both sides.
+        left_width = min(width - box.x0, width / column_count) - 2 * margin
+        centred_width = min(box.x0 + box.x1, 2 * width - box.x0 - box.x1, width / column_count) - 2 * margin
         max_height = max(figure.bbox.height / row_count - 2 * margin, box.height)
-        side_texts = [
-            text for text in axes.get_children() if isinstance(text, Text) and text not in axes.texts
-        ]
-        for title in side_texts:
-            left_title_width = min(width - box.x0 - margin, _column_distance(axes, figure) - 2 * margin)
-            max_width = title_width if title.get_horizontalalignment() == "center" else left_title_width
-            changed.append(break_lines(title, max_width))
+        texts = [text for text in axes.get_children() if isinstance(text, Text) and text not in axes.texts]
+        for title in texts:
+            is_centred = title.get_horizontalalignment() == "center"
+            changed.append(break_lines(title, centred_width if is_centred else left_width))
         for panel in (axes, *axes.child_axes):
-            changed.append(break_lines(panel.xaxis.label, title_width))
+            changed.append(break_lines(panel.xaxis.label, centred_width))
             changed.append(break_lines(panel.yaxis.label, max_height, is_vertical=True))
     return any(changed)
-
-
-def _column_distance(axes: Axes, figure: Figure) -> float:
-    """Distance, in pixels, between the centres of a panel and of the nearest panel in another column; the
-    width of the figure if there is only one column."""
-    grid_cell = axes.get_subplotspec()
-    if grid_cell is None:
-        return float(figure.bbox.width)
-    centres = {
-        round(panel.get_position(original=True).intervalx.mean() * figure.bbox.width)
-        for panel in figure.axes
-        if (spec := panel.get_subplotspec()) is not None and spec.get_gridspec() is grid_cell.get_gridspec()
-    }
-    centre = round(axes.get_position(original=True).intervalx.mean() * figure.bbox.width)
-    return float(
-        min((abs(other_centre - centre) for other_centre in centres - {centre}), default=figure.bbox.width)
-    )
 
 
 def place_legend(
