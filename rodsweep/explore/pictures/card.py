@@ -36,12 +36,16 @@ FIGURE_HEIGHT = 300
 """Height of a picture in pixels."""
 
 
-def new_figure(x_label: str, y_label: str, tooltips: Any = None, **options: Any) -> figure:
-    """Empty Bokeh figure with the page's style, as wide as a column of the page. x_label, y_label: labels of
-    the axes. tooltips, options: keywords of Bokeh's `figure`."""
+Limits = tuple[float, float]
+"""Lower and upper limit of an axis."""
+
+
+def new_figure(x: tuple[str, Limits], y: tuple[str, Limits], **options: Any) -> figure:
+    """Empty Bokeh figure with the page's style, as wide as a column of the page. x, y: (label, limits) of the
+    axes. options: keywords of Bokeh's `figure`."""
     plot = figure(
         height=FIGURE_HEIGHT, sizing_mode="stretch_width", tools="pan,wheel_zoom,box_zoom,reset,save",
-        x_axis_label=x_label, y_axis_label=y_label, tooltips=tooltips, **options,
+        x_axis_label=x[0], y_axis_label=y[0], x_range=Range1d(*x[1]), y_range=Range1d(*y[1]), **options,
     )  # fmt: skip
     plot.toolbar.autohide = True  # moves the toolbar outside the frame, so that no button covers the plot
     plot.toolbar.logo = None
@@ -87,7 +91,7 @@ def source_columns(**arrays: Array) -> dict[str, list[Any]]:
     return {name: array.tolist() for name, array in arrays.items()}
 
 
-def axis_limits(values: Array, margin: float = 0.08) -> tuple[float, float]:
+def axis_limits(values: Array, margin: float = 0.08) -> Limits:
     """(lower, upper) limit of an axis for `values`, (n,): their range, widened at both ends by the fraction
     `margin`; (-1, 1) for an empty array."""
     if len(values) == 0:
@@ -96,11 +100,6 @@ def axis_limits(values: Array, margin: float = 0.08) -> tuple[float, float]:
     high = float(values.max())
     pad = margin * ((high - low) or abs(high) or 1.0)
     return low - pad, high + pad
-
-
-def set_axis_range(axis: Range1d, start: float, end: float) -> None:
-    """Sets the ends of an axis, and the ends that the reset button of the figure restores."""
-    axis.update(start=start, end=end, reset_start=start, reset_end=end)
 
 
 def status_sentence(answer: dict[str, Any]) -> str:
@@ -118,6 +117,7 @@ class Card:
         self.figure = figure
         self.title_lines = title_lines
         figure.name = f"{name}_figure"
+        self.set_title("")
         self._set_axes_opacity(0.0)
         self.message = Div(name=f"{name}_message", visible=False, css_classes=["sentence"])
         self.root = Column(self.message, figure, name=name, sizing_mode="stretch_width")
@@ -126,6 +126,14 @@ class Card:
         """Sets the title of the figure, wrapped to lines of at most MAX_TITLE_CHARACTERS characters."""
         lines = wrap(text, MAX_TITLE_CHARACTERS)
         self.figure.title.text = "\n".join(lines + [NO_TITLE] * (self.title_lines - len(lines)))
+
+    def set_axes(self, x: Limits, y: Limits, labels: tuple[str, str] | None = None) -> None:
+        """Sets the limits of the axes, which are also the limits that the reset button of the figure
+        restores. labels: labels of the two axes; None leaves them unchanged."""
+        for axis_range, (start, end) in ((self.figure.x_range, x), (self.figure.y_range, y)):
+            axis_range.update(start=start, end=end, reset_start=start, reset_end=end)
+        if labels:
+            self.figure.xaxis.axis_label, self.figure.yaxis.axis_label = labels
 
     def show_sentence_instead(self, sentence: str) -> None:
         """Hides the figure and shows a sentence in its place."""

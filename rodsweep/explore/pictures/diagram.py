@@ -7,7 +7,7 @@ from itertools import groupby
 from typing import Any, NamedTuple
 
 import numpy as np
-from bokeh.models import FixedTicker, HoverTool, LogTicker, Range1d, Ticker
+from bokeh.models import FixedTicker, HoverTool, LogTicker, Ticker
 
 from ...arrays import Array
 from ...post.figures.phase_diagram import CURVE_END_CRUSHING_RATIO
@@ -150,8 +150,8 @@ class DiagramPicture:
     unstable modes. Grey: crushed, or not known."""
 
     def __init__(self) -> None:
-        ranges = {"x_range": Range1d(0, 1), "y_range": Range1d(0.1, 1)}
-        figure = card.new_figure("force F (k3/L^2)", "k2", y_axis_type="log", **ranges)
+        axes = ("force F (k3/L^2)", (0, 1)), ("k2", (0.1, 1))
+        figure = card.new_figure(*axes, y_axis_type="log")
         self.cell_source = card.empty_source(
             (*DiagramCell._fields, "words", "colour", "alpha"), "cell_source"
         )
@@ -196,12 +196,9 @@ class DiagramPicture:
         self._show_curves(answer)
         positions = (answer["crossing_x"] * load.factor, answer["crossing_y"] * row_scale.factor)
         self.crossing_source.data = _boundary_columns(*positions, answer["crossing_kind"])
-        figure = self.card.figure
-        card.set_axis_range(figure.x_range, float(x[0]), float(x[-1]))
-        card.set_axis_range(figure.y_range, float(grid[0].bottom), float(grid[-1].top))
-        figure.yaxis.ticker = log_axis_ticker(figure.y_range.start, figure.y_range.end)
-        figure.xaxis.axis_label = load.label
-        figure.yaxis.axis_label = row_scale.label
+        y_limits = float(grid[0].bottom), float(grid[-1].top)
+        self.card.set_axes((float(x[0]), float(x[-1])), y_limits, (load.label, row_scale.label))
+        self.card.figure.yaxis.ticker = log_axis_ticker(*y_limits)
         self.card.show_figure()
 
     def _show_curves(self, answer: dict[str, Any]) -> None:

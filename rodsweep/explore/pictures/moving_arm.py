@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 from bokeh.events import Pan, PanEnd
-from bokeh.models import CustomJS, Range1d
+from bokeh.models import CustomJS
 
 from ...arrays import Array
 from ...post.figures.cycle.tip_path import smooth_tip_path
@@ -36,9 +36,8 @@ class MovingArmPicture:
     `path` of the tip, the position of the mouse (`grip`)."""
 
     def __init__(self) -> None:
-        figure = card.new_figure(
-            "x (L)", "y (L)", x_range=Range1d(-0.1, 1.1), y_range=Range1d(-0.7, 0.7), match_aspect=True
-        )
+        axes = ("x (L)", (-0.1, 1.1)), ("y (L)", (-0.7, 0.7))
+        figure = card.new_figure(*axes, match_aspect=True)
         names = ("shapes", "motion", "reached")
         self.shapes_source, self.motion_source, self.reached_source = (
             card.empty_source(SHAPE_COLUMNS, f"{name}_source") for name in names
@@ -67,7 +66,6 @@ class MovingArmPicture:
             arguments = {"figure": figure, "grip": self.grip_source, "phase": phase}
             figure.js_on_event(event, CustomJS(args=arguments, code=template_text("grip.js")))
         self.card = card.Card("beating", figure)
-        self.card.set_title("")
 
     def animation_script(self) -> CustomJS:
         """Browser script that animates the arm; the page runs this script once, when the document is
@@ -101,9 +99,6 @@ class MovingArmPicture:
         self.shapes_source.data = shape_columns(x, y)
         self._draw_path(x[: len(x) * has_cycle], y[: len(y) * has_cycle], is_closed=True)
         self._fit_axes(x, y)
-        self.card.figure.xaxis.axis_label, self.card.figure.yaxis.axis_label = (
-            f"{coordinate} ({length.label})" for coordinate in "xy"
-        )
         is_stable = answer["status"] == "cycle"
         self.card.set_title("" if is_stable or not has_cycle else answer["sentence"])
         if has_cycle:
@@ -158,8 +153,9 @@ class MovingArmPicture:
         of the axes."""
         factor = self.length.factor
         half_height = 1.15 * max(0.3 * factor, float(np.abs(y).max()))
-        card.set_axis_range(self.card.figure.y_range, -half_height, half_height)
-        card.set_axis_range(self.card.figure.x_range, min(0.0, float(x.min())) - 0.1 * factor, 1.1 * factor)
+        x_limits = min(0.0, float(x.min())) - 0.1 * factor, 1.1 * factor
+        labels = f"x ({self.length.label})", f"y ({self.length.label})"
+        self.card.set_axes(x_limits, (-half_height, half_height), labels)
 
 
 def shape_columns(x: Array, y: Array) -> dict[str, Any]:

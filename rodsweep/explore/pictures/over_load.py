@@ -4,7 +4,7 @@ bifurcation diagram, the largest tip deflection of stable and unstable cycles.""
 from typing import Any
 
 import numpy as np
-from bokeh.models import HoverTool, Range1d, Span
+from bokeh.models import HoverTool, Span
 
 from ..slider_scales import PictureAxis
 from . import card
@@ -30,8 +30,7 @@ class GrowthPicture:
     vertical line marks the load of the page."""
 
     def __init__(self) -> None:
-        ranges = {"x_range": Range1d(0, 1), "y_range": Range1d(-1, 1)}
-        figure = card.new_figure("force F (k3/L^2)", "growth rate (1/tau2)", **ranges)
+        figure = card.new_figure(("force F (k3/L^2)", (0, 1)), ("growth rate (1/tau2)", (-1, 1)))
         self.rate_source = card.empty_source(("F", "first", "second", "third"), "growth_source")
         self.threshold_source = card.empty_source(("F", "kind", "colour", "frequency"), "threshold_source")
         for name in ("third", "second"):
@@ -47,7 +46,6 @@ class GrowthPicture:
         self.load_line.line_width = 3
         figure.add_layout(self.load_line)
         self.card = card.Card("growth", figure, title_lines=2)
-        self.card.set_title("")
 
     def show_rates(self, answer: dict[str, Any], load: PictureAxis) -> None:
         """Draws the growth rates of the answer `answer`."""
@@ -57,10 +55,7 @@ class GrowthPicture:
             F=F, first=first_rate, second=second_rate, third=third_rate
         )
         limits = card.axis_limits(np.append(first_rate[np.isfinite(first_rate)], 0.0))
-        card.set_axis_range(self.card.figure.y_range, *limits)
-        card.set_axis_range(self.card.figure.x_range, F[0], F[-1])
-        self.card.figure.xaxis.axis_label = load.label
-        self.card.figure.yaxis.axis_label = f"growth rate ({answer['unit']})"
+        self.card.set_axes((F[0], F[-1]), limits, (load.label, f"growth rate ({answer['unit']})"))
         self.card.show_figure()
 
     def show_thresholds(self, answer: dict[str, Any], load: PictureAxis) -> None:
@@ -108,8 +103,8 @@ class BranchPicture:
     torus points."""
 
     def __init__(self) -> None:
-        ranges = {"x_range": Range1d(0, 1), "y_range": Range1d(-0.05, 1)}
-        figure = card.new_figure("force F (k3/L^2)", "largest tip deflection (L)", **ranges)
+        axes = ("force F (k3/L^2)", (0, 1)), ("largest tip deflection (L)", (-0.05, 1))
+        figure = card.new_figure(*axes)
         self.branch_source = card.empty_source(("F", "y", "colour", "dash"), "branch_source")
         self.cycle_source = card.empty_source(("F", "y", "colour"), "stored_cycle_source")
         self.special_point_source = card.empty_source(("F", "y", "kind", "period"), "special_source")
@@ -125,7 +120,6 @@ class BranchPicture:
         self.load_line = card.vertical_line(card.POINT_COLOUR)
         figure.add_layout(self.load_line)
         self.card = card.Card("branches", figure)
-        self.card.set_title("")
 
     def show(self, answer: dict[str, Any], load: PictureAxis, length: PictureAxis) -> None:
         """Draws the branches of the answer `answer`, with separately solved cycles as dots; the title is the
@@ -147,10 +141,8 @@ class BranchPicture:
             lines = [*(piece[:2] for piece in pieces), (cycles["F"], cycles["y"])]
             all_F, all_y = (np.concatenate([line[i] for line in lines]) for i in range(2))
             margin = SIDE_MARGIN if len(cycles["F"]) else 0.0
-            card.set_axis_range(self.card.figure.x_range, *card.axis_limits(all_F * load.factor, margin))
-            card.set_axis_range(self.card.figure.y_range, *card.axis_limits(all_y * length.factor))
-            self.card.figure.xaxis.axis_label = load.label
-            self.card.figure.yaxis.axis_label = f"largest tip deflection ({length.label})"
+            limits = card.axis_limits(all_F * load.factor, margin), card.axis_limits(all_y * length.factor)
+            self.card.set_axes(*limits, (load.label, f"largest tip deflection ({length.label})"))
         special_points = [(F * load.factor, y * length.factor, *texts) for F, y, *texts in answer["special"]]
         names = enumerate(("F", "y", "kind", "period"))
         self.special_point_source.data = {name: [row[i] for row in special_points] for i, name in names}

@@ -3,7 +3,6 @@
 from typing import Any
 
 import numpy as np
-from bokeh.models import Range1d
 
 from . import card
 from .numbers import SI_NAME_BY_VARIABLE
@@ -14,16 +13,13 @@ class SpectrumPicture:
     (the dashed line) are unstable."""
 
     def __init__(self) -> None:
-        figure = card.new_figure(
-            "growth rate (1/tau2)", "frequency (rad/tau2)",
-            [("growth rate", "@growth{0.00000000}"), ("frequency", "@frequency{0.00000000}")],
-            x_range=Range1d(-1, 1), y_range=Range1d(-1, 1),
-        )  # fmt: skip
+        tooltips = [("growth rate", "@growth{0.00000000}"), ("frequency", "@frequency{0.00000000}")]
+        axes = ("growth rate (1/tau2)", (-1, 1)), ("frequency (rad/tau2)", (-1, 1))
+        figure = card.new_figure(*axes, tooltips=tooltips)
         self.source = card.empty_source(("growth", "frequency", "colour"), "spectrum_source")
         figure.add_layout(card.vertical_line(card.NEUTRAL_COLOUR, "dashed"))
         figure.scatter("growth", "frequency", size=11, color="colour", source=self.source)
         self.card = card.Card("spectrum", figure)
-        self.card.set_title("")
 
     def show(self, answer: dict[str, Any]) -> None:
         """Draws the eigenvalues of `answer`, an answer of the task `spectrum`; if no eigenvalue is known,
@@ -41,11 +37,10 @@ class SpectrumPicture:
         frequency = frequency[is_finite]
         colours = np.where(growth > 0, card.UNSTABLE_COLOUR, card.STABLE_COLOUR)
         self.source.data = card.source_columns(growth=growth, frequency=frequency, colour=colours)
-        figure = self.card.figure
-        card.set_axis_range(figure.x_range, *card.axis_limits(np.append(growth, 0.0)))
-        card.set_axis_range(figure.y_range, *card.axis_limits(frequency))
-        figure.xaxis.axis_label = f"growth rate ({answer['units'][names[0]]})"
-        figure.yaxis.axis_label = f"frequency ({answer['units'][names[1]]})"
+        growth_unit, frequency_unit = (answer["units"][name] for name in names)
+        labels = f"growth rate ({growth_unit})", f"frequency ({frequency_unit})"
+        limits = card.axis_limits(np.append(growth, 0.0)), card.axis_limits(frequency)
+        self.card.set_axes(*limits, labels)
         self.card.set_title(unstable_count_sentence(answer))
         self.card.show_figure()
 
@@ -66,8 +61,7 @@ class ModePicture:
     """Real and imaginary part of the deflection Y(u) of the leading mode."""
 
     def __init__(self) -> None:
-        ranges = {"x_range": Range1d(0, 1), "y_range": Range1d(-1, 1)}
-        figure = card.new_figure("u along the arm", "deflection Y, Y(1) = 1", **ranges)
+        figure = card.new_figure(("u along the arm", (0, 1)), ("deflection Y, Y(1) = 1", (-1, 1)))
         self.source = card.empty_source(("u", "real", "imaginary"), "mode_source")
         for name, colour, dash in (
             ("real", card.STABLE_COLOUR, "solid"),
@@ -87,5 +81,5 @@ class ModePicture:
             self.card.show_sentence_instead(card.status_sentence(answer))
             return
         self.source.data = card.source_columns(u=answer["u"], real=real_part, imaginary=imaginary)
-        card.set_axis_range(self.card.figure.y_range, *card.axis_limits(np.append(real_part, imaginary)))
+        self.card.set_axes((0.0, 1.0), card.axis_limits(np.append(real_part, imaginary)))
         self.card.show_figure()
