@@ -6,7 +6,6 @@ import h5py
 import numpy as np
 import pytest
 from contents import content, same
-from rodsweep.post.figures.stability.criticality_curves import parts_of_equal_criticality
 from second_normal_form import ArmGeometry, coefficients
 from test_paper import run, stated
 
@@ -14,6 +13,7 @@ import rodsweep as rs
 from rodsweep.determinant.parameter_plane import ParameterPlane, PlaneAxis
 from rodsweep.errors import InputError
 from rodsweep.model.rod import Rod
+from rodsweep.post.figures.stability.diagram_curves import parts_of_equal_criticality
 from rodsweep.post.plane_curves import PlaneParameters
 from rodsweep.results.file.view import read_view
 from rodsweep.solve.changes.diagram.boundary_curves import trace_boundary
