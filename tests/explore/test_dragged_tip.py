@@ -15,7 +15,7 @@ from rodsweep.explore.solving.dragged_tip import motion_in_page_units
 from rodsweep.explore.solving.request_inputs import INSTANT_KINDS
 from rodsweep.explore.solving.requests import SHAPE_COUNT, Reply, SolveRequest, answer_to
 from rodsweep.explore.state import PageState
-from rodsweep.post.figures.cycle.released_motion_film import motion_film
+from rodsweep.post.figures.cycle.animation import motion_film
 from rodsweep.post.figures.cycle.tip_path import SEGMENTS_BETWEEN_SHAPES, smooth_tip_path
 
 KINDS = (*INSTANT_KINDS, "bent", "motion", "film")

@@ -7,7 +7,7 @@ import numpy as np
 
 from ...api.arm import Arm
 from ...errors import InputError
-from ...post.figures.cycle.released_motion_film import FilmedMotion, motion_film
+from ...post.figures.cycle.animation import FilmedMotion, motion_film
 from ...post.rod_portrait.results import DescribedRod
 from ...tasks.released_motion import FRAMES_PER_RETURN, ReleasedMotion, bent_shape, released_motion
 from ...tasks.rod_portrait import PortraitRequest

@@ -1,8 +1,11 @@
-"""Animation of the beating arm as a GIF, or as an MP4 if ffmpeg is installed."""
+"""Films of a moving arm: the cycles of a file as a GIF, or as an MP4 if ffmpeg is installed; and the motion
+of an arm from an initial shape as a GIF."""
 
 from collections.abc import Sequence
 from math import floor, log10
 from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import NamedTuple
 
 import matplotlib
 import numpy as np
@@ -10,13 +13,16 @@ from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ....arrays import Array
 from ....errors import EnvironmentIncomplete, InputError
 from ....results.file.view import ResultView
+from ....solve_progress import SolvePosition, report
 from ...output_files import replaced_file
 from ..layout.fitting import fit_layout
 from ..style import BLUE, VERMILION
-from .portrait import draw_clamp, draw_force_arrow, draw_tip_path, set_common_limits
+from .portrait import SHAPE_MARGIN, WALL_DEPTH, draw_clamp, draw_force_arrow, draw_tip_path, set_common_limits
 from .selection import SHAPE_VARIABLE_NAMES, CycleSelection, StoredCycle, chosen_cycles
+from .tip_path import SEGMENTS_BETWEEN_SHAPES, smooth_tip_path
 
 FILM_SUFFIXES = (".gif", ".mp4")
 """Suffixes of animation files."""
@@ -33,6 +39,15 @@ TIME_TEXT_HEIGHT = 0.08
 """Height of the line with the running time, as a fraction of the panel's height."""
 MAX_EARLIER_SHAPE_AGE = 0.2
 """Age of the oldest earlier shape that is drawn, in periods."""
+DPI = 100
+"""Resolution of a frame, in pixels per inch."""
+FRAME_SIZE = (3.6, 4.0)
+"""Width and height of a frame of a released motion, in inches."""
+FRAME_RATE = 16
+"""Frames per second of a released motion. The 32 shapes between two returns of the tip take 2 s, as on the
+page of `rodsweep explore`."""
+MAX_FRAMES = 256
+"""Largest number of frames of a released motion: a film of 16 s, whose drawing takes some 10 s."""
 
 
 def write_animation(view: ResultView, points: Sequence[int], output: Path) -> str:
@@ -45,7 +60,7 @@ def write_animation(view: ResultView, points: Sequence[int], output: Path) -> st
         raise InputError(f"{view.path} holds {frames} shapes of a cycle, {remedy}")
     writer = _film_writer(output, max(1, round(frames / FILM_PERIOD_SECONDS)))
     figure, arms = prepared_animation(selection)
-    with replaced_file(output) as partial, writer.saving(figure, str(partial), dpi=100):
+    with replaced_file(output) as partial, writer.saving(figure, str(partial), dpi=DPI):
         for frame_index in range(frames):
             for arm in arms:
                 arm.show_frame(frame_index)
@@ -115,3 +130,44 @@ class MovingArm:
         decimals = max(0, PERIOD_DIGITS - 1 - floor(log10(self.cycle.period)))
         time_unit = self.cycle.units.names[1]
         self.text.set_text(f"$t$ = {time:.{decimals}f} {time_unit} = {frame_index / self.frames:.2f} $T$")
+
+
+class FilmedMotion(NamedTuple):
+    """Motion of an arm in the units of the film.
+
+    x, y: shapes, (frames, nodes). step: time between shapes. length: length of the arm. units: names of the
+    units of length and time.
+    """
+
+    x: Array
+    y: Array
+    step: float
+    length: float
+    units: tuple[str, str]
+
+
+def motion_film(motion: FilmedMotion) -> bytes:
+    """The motion as the content of a GIF file, with at most the first MAX_FRAMES shapes."""
+    frames = min(len(motion.x), MAX_FRAMES)
+    figure = Figure(figsize=FRAME_SIZE, layout="constrained")
+    axes = figure.subplots()
+    draw_clamp(axes, motion.length)
+    margin = SHAPE_MARGIN * motion.length
+    x_min = min(float(motion.x.min()), -WALL_DEPTH * motion.length)
+    y_max = float(abs(motion.y).max()) + margin
+    axes.set(xlim=(x_min - margin, float(motion.x.max()) + margin), ylim=(-y_max, y_max), aspect="equal")
+    axes.set(xlabel=f"$x$ ({motion.units[0]})", ylabel=f"$y$ ({motion.units[0]})")
+    (path,) = axes.plot([], [], color="0.6", lw=0.8)
+    (rod,) = axes.plot([], [], color=BLUE, lw=3.0, solid_capstyle="round", zorder=3)
+    tip_path = smooth_tip_path(np.stack([motion.x[:, -1], motion.y[:, -1]], axis=1), is_closed=False)
+    with TemporaryDirectory() as directory:
+        output = Path(directory) / "film.gif"
+        writer = PillowWriter(fps=FRAME_RATE)
+        with writer.saving(figure, str(output), dpi=DPI):
+            for k in range(frames):
+                report(lambda k=k: SolvePosition(f"frame {k + 1} of {frames}", k / frames))  # type: ignore[misc]
+                rod.set_data(motion.x[k], motion.y[k])
+                path.set_data(*tip_path[: k * SEGMENTS_BETWEEN_SHAPES + 1].T)
+                axes.set_title(f"$t$ = {k * motion.step:.3g} {motion.units[1]}")
+                writer.grab_frame()
+        return output.read_bytes()
