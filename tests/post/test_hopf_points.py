@@ -187,7 +187,8 @@ def rising(F, k1, k2, gamma3, gamma1):
 
 
 def dotted(axes):
-    return [(float(line.get_xdata()[0]), line.get_color()) for line in axes.lines if line.get_ls() == ":"]
+    lines = [line for line in axes.lines if line.get_ls() == ":" and len(line.get_xdata())]
+    return [(float(line.get_xdata()[0]), line.get_color()) for line in lines]
 
 
 def legend(figure):

@@ -140,11 +140,13 @@ def mark_hopf_points(panels: Sequence[Axes], marks: Sequence[tuple[LocatedThresh
             if point.kind == kind:
                 known = (known for known in colours_of_points if known.equals_within_errors(point))
                 colours_of_points.setdefault(next(known, point), set()).add(colour)
-        label = word
+        label = None
         if len(colours_of_points) == 1:
             (point,) = colours_of_points
             prefix = f"{word} = " if kind == "hopf" else rf"{word} at $\tilde F$ = "
             label = f"{prefix}{point.position:.{HOPF_DIGITS}g}"
+        elif colours_of_points:
+            panels[0].plot([], [], color=SHARED_POINT_COLOUR, label=word, **HOPF_LINE_LOOK)
         for point, colours in colours_of_points.items():
             colour = colours.pop() if len(colours) == 1 else SHARED_POINT_COLOUR
             for axes in panels:
