@@ -7,7 +7,6 @@ error and count are satisfactory.
 """
 
 from dataclasses import replace
-from typing import Any
 
 from ...discretization.elements.resolution import RESOLUTION_SETTINGS, mesh_accuracy
 from ...model.rod import Rod
@@ -219,14 +218,14 @@ class SpectrumSearch:
 
 def _best_spectrum(best: CheckedCandidates, problem: TransverseProblem, request: SpectrumRequest) -> Spectrum:
     """The spectrum of the best candidates, with its status and whether it is proved complete."""
-    roots = best.candidates.roots
-    comparison = best.comparison
-    is_accurate = best.error_over_limit <= SEARCH_SETTINGS.max_stalled_error_over_limit
+    roots, comparison = best.candidates.roots, best.comparison
+    error_over_limit = best.error_over_limit
+    if request.certify and not request.vector_node_count:  # the mesh is not accurate, but the roots of D are
+        error_over_limit = best.candidates.worst_error(request.modes) / request.accuracy
+    is_accurate = error_over_limit <= SEARCH_SETTINGS.max_stalled_error_over_limit
     status = SpectrumStatus.ok if is_accurate else SpectrumStatus.accuracy_not_reached
     is_proved = comparison is not None and comparison.agrees
-    w: Any = roots.w.tolist()
-    on_axis: Any = roots.is_imaginary.tolist()
-    is_undecided = any(on_axis)
+    is_undecided = bool(roots.is_imaginary.any())
     message = ""
     if status == SpectrumStatus.ok and request.certify:
         if not is_proved:
@@ -234,7 +233,7 @@ def _best_spectrum(best: CheckedCandidates, problem: TransverseProblem, request:
             message = comparison.count.failure_reason if comparison else ""
         elif is_undecided:
             status = SpectrumStatus.undecided
-    unstable_count = sum(value.real > 0 for value in w)
+    unstable_count = int((roots.w.real > 0).sum())
     # Without a request for a proof, the unstable modes are known if the search went beyond them.
     is_known = not is_undecided and (is_proved if request.certify else unstable_count < len(roots.w))
     return Spectrum(

@@ -129,6 +129,20 @@ def test_without_a_bound_there_are_eigenvalues_but_nothing_is_certified():
     assert found.eigenvalues == pytest.approx(uniform.eigenvalues, rel=0.02)
 
 
+def test_accurate_eigenvalues_without_a_bound_are_not_certified_though_the_mesh_is_coarse():
+    """A thin cone with two short stiff rings: roots of D to 2e-14, from a mesh with a larger error, had the
+    status of eigenvalues that miss the accuracy."""
+    one = (1.0,) * 6
+    inner, outer = (3.7, 3.7, 13.5, 1.3, 1.3, 3.7), (18.9, 18.9, 357.0, 1.8, 1.8, 18.9)
+    u = (0.0, 0.6, 0.6, 0.61, 0.61, 0.88, 0.88, 0.89, 0.89, 1.0)
+    rings = Profile(u, (one, one, inner, inner, one, one, outer, outer, one, one))
+    material = RodMaterial("neo_hookean", "swelling", rings)
+    found = solve_spectrum(Rod(F=6.0, k1=5e3, k2=48.8, gamma3=0.0, taper=0.15, material=material), REQUEST)
+    assert found.status == SpectrumStatus.not_certified
+    assert found.message.startswith("no a-priori bound on the eigenvalues applies")
+    assert (found.error_estimate < REQUEST.accuracy * np.abs(found.eigenvalues)).all()
+
+
 def test_many_growing_modes_of_a_soft_segment_are_all_found():
     """Few modes are asked for; all that grow are counted, between them and beyond."""
     soft = (0.1, 0.01, 0.1, 0.1, 0.1, 0.1)
