@@ -44,6 +44,17 @@ def check_errors(F, k1, k2, gamma3):
     return True
 
 
+def test_an_eigenvalue_that_underflows_costs_no_other_eigenvalue():
+    """The leading eigenvalue of this cone is about -1e-1977; the point failed with a division by zero. The
+    others are those of collocation of the first-order system on 360 elements."""
+    cone = Rod(F=-176.0, k1=2e3, k2=5e4, gamma3=1e-4, taper=0.03)
+    found = solve_spectrum(cone, SpectrumRequest(3, 1e-10, certify=True))
+    assert found.status == SpectrumStatus.accuracy_not_reached
+    assert abs(found.eigenvalues[0]) <= found.error_estimate[0]
+    assert found.error_estimate[0] == np.nextafter(0, 1)
+    assert found.eigenvalues[1:] == pytest.approx([-598.92142188, -2998.498347], rel=1e-9)
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("rod", BEYOND)
 def test_exponentially_small_eigenvalues_lie_within_their_errors(rod):

@@ -5,7 +5,7 @@ number of D shows whether an eigenvalue is missing. `rodsweep.solve.spectrum.sea
 """
 
 from dataclasses import dataclass, replace
-from operator import truediv
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -90,7 +90,8 @@ class Candidates:
         """Largest relative error estimate among the first `mode_count` roots."""
         errors: Any = self.roots.error[:mode_count].tolist()
         w: Any = self.roots.w[:mode_count].tolist()
-        return max(0.0, *map(truediv, errors, map(abs, w)))
+        # An exponentially small eigenvalue may underflow to 0.
+        return max(0.0, *(e / abs(v) if v else inf for e, v in zip(errors, w, strict=True)))
 
 
 @dataclass(frozen=True, slots=True)

@@ -122,7 +122,8 @@ def errors_with_rounding(w: Complex, error: Array, rod: Rod) -> Array:
     rounding_in_ulps = (
         settings.rounding_in_ulps if rod.is_uniform_and_linear else settings.rounding_of_arms_in_ulps
     )
-    return error + rounding_in_ulps * MACHINE_EPSILON * np.abs(w)
+    # An exponentially small eigenvalue may underflow to 0; its error is then the smallest number.
+    return np.maximum(error + rounding_in_ulps * MACHINE_EPSILON * np.abs(w), np.nextafter(0.0, 1.0))
 
 
 def spectrum_or_failure(solve: Callable[[], Spectrum], request: SpectrumRequest) -> Spectrum:
