@@ -112,11 +112,6 @@ def _deviations_of_normal_form(
     last_fraction, last_estimate, last_error = inf, np.zeros(2), np.zeros(2)
     estimates, estimate_errors = [], []
     cycles = _cycles_near_hopf(start, hopf)
-    # The error of y grows with 1/distance at most. Cycles that are not measured have the errors of another
-    # cycle. The error of the period does not grow.
-    tip_y_error_times_distance = max(
-        _distance_from_hopf(orbit, hopf) * errors.amplitude_error for orbit, errors in cycles
-    )
     for orbit, _ in cycles:
         cycle_distance = _distance_from_hopf(orbit, hopf)
         fraction = distance / cycle_distance
@@ -124,8 +119,13 @@ def _deviations_of_normal_form(
         measured = orbit.period, CycleMotion(orbit).extrema["tip_y_max"]
         estimate = fraction * (np.array(normal_form) / measured - 1)
         higher_powers = abs(estimate - last_estimate) / (1 - fraction / last_fraction)
-        tip_y_error = tip_y_error_times_distance / cycle_distance
-        error = fraction * np.array([start.cycle.errors.period_error, tip_y_error])
+        # On a mesh the error of y grows with 1/distance at most. Cycles that are not measured have the errors
+        # of another cycle. The error of the period does not grow.
+        on_mesh = [cycle for cycle in cycles if mesh_of(cycle[0]) == mesh_of(orbit)]
+        tip_y_error = max(
+            _distance_from_hopf(other, hopf) * errors.amplitude_error for other, errors in on_mesh
+        )
+        error = fraction * np.array([on_mesh[0][1].period_error, tip_y_error / cycle_distance])
         estimates.append(estimate)
         # The error of the cycle nearer to the Hopf point enters `higher_powers`, too.
         estimate_errors.append(
@@ -137,12 +137,11 @@ def _deviations_of_normal_form(
 
 
 def _cycles_near_hopf(start: BranchCycle, hopf: HopfBranchStart) -> list[tuple[Orbit, CycleErrors]]:
-    """Orbits and errors of the cycle `start`, and of the cycles before it on its mesh that are small enough
-    for an extrapolation to the Hopf point `hopf`; the distance from this point increases along the list."""
-    mesh = mesh_of(start.orbit)
+    """Orbits and errors of the cycle `start`, and of the cycles before it that are small enough for an
+    extrapolation to the Hopf point `hopf`; the distance from this point increases along the list."""
     cycles = [(start.orbit, start.cycle.errors)]
     earlier = start.previous
-    while earlier is not None and mesh_of(earlier.orbit) == mesh:
+    while earlier is not None:
         # A fold lies between two cycles if the distance does not increase.
         is_farther = _distance_from_hopf(earlier.orbit, hopf) > _distance_from_hopf(cycles[-1][0], hopf)
         y = CycleMotion(earlier.orbit).extrema["tip_y_max"]

@@ -87,6 +87,20 @@ def test_the_normal_form_and_cycles_beside_the_hopf_point_give_the_cycle_at_an_e
     assert abs(end.tip_y_max / 0.00756562544604389 - 1) <= end.tip_y_max_error < 1e-5
 
 
+def test_cycles_on_another_mesh_show_the_deviation_from_the_normal_form_at_an_end():
+    """Before the last cycle the mesh changes: on its mesh alone the largest y had an error of 3e-5."""
+    rod = Rod(F=0.0, k1=295.8168, k2=177.39654, gamma3=0.02556)
+    (hopf, *_) = find_axis_crossings(ParameterPath(rod, "F"), 0.0, 60.0).thresholds
+    start = hopf.value * (1 + 1.3e-5)
+    exact, end = (
+        solve_branches(rod, BranchRequest("F", start, 1.06 * start, a, False, 100, 10))
+        .curves[0]
+        .special_points[0]
+        for a in (1e-8, 1e-5)
+    )
+    assert abs(end.tip_y_max / exact.tip_y_max - 1) <= end.tip_y_max_error < 1e-5
+
+
 @pytest.mark.parametrize("distance", [1e-5, 3e-6, 1e-6])
 @pytest.mark.parametrize("accuracy", [1e-4, 1e-5, 1e-6])
 def test_the_normal_form_gives_the_cycle_at_an_end_next_to_the_hopf_point(distance, accuracy):
