@@ -174,7 +174,9 @@ def _status_and_message(
     special_points = [point for curve in curves for point in curve.special_points]
     # Special points are solved to their own accuracy even if less is asked of the branch.
     tolerance = max(request.accuracy, SPECIAL_POINT_SETTINGS.accuracy)
-    is_inaccurate = any(point.error > tolerance * abs(point.parameter_value) for point in special_points)
+    is_inaccurate = any(
+        point.error > tolerance * abs(point.parameter_value) or point.is_unlocated for point in special_points
+    )
     if any(not curve.are_circle_crossings_explained for curve in curves):
         messages.append("multipliers cross the unit circle where no special point was found")
     applies_by_status = {

@@ -218,8 +218,10 @@ def with_bautin_ends(
 
 
 def lagrange_weights(abscissas: Array, abscissa: float) -> Array:
-    """Lagrange weights, (n,), n > 1: the weighted sum of n values at the abscissas `abscissas`, (n,), is the
+    """Lagrange weights, (n,): the weighted sum of n values at the abscissas `abscissas`, (n,), is the
     value of their interpolating polynomial at the abscissa `abscissa`."""
+    if len(abscissas) == 1:
+        return np.ones(1)
     # Relative to the last abscissa, whose weight follows as all weights sum to 1.
     differences = abscissas[:-1] - abscissas[-1]
     weights = extrapolated_change_weights(differences, np.zeros(len(differences)), abscissa - abscissas[-1])
@@ -228,9 +230,9 @@ def lagrange_weights(abscissas: Array, abscissa: float) -> Array:
 
 def extrapolated_hopf_end(points: Sequence[CurvePoint]) -> HopfEnd | None:
     """The Hopf point where the cycles vanish beyond the last of `points`, extrapolated by polynomials in the
-    squared amplitude; None if there are too few points."""
+    squared amplitude; None if there is only one point."""
     last_points = points[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
-    if len(last_points) < CURVE_IDENTITY_SETTINGS.max_interpolated_points:
+    if len(last_points) == 1:
         return None
     # Parameters and period are even in the amplitude, so polynomials in its square converge.
     squared_amplitudes = np.array([point.tip_y_max**2 for point in last_points])

@@ -146,6 +146,11 @@ class SpecialPoint:
     relative_coefficient_error: float = nan
     """Relative error of `amplitude_coefficient`."""
 
+    @property
+    def is_unlocated(self) -> bool:
+        """Whether the point was not located: it has the values of a cycle beside it."""
+        return bool(self.message) and self.kind not in (SpecialKind.hopf, SpecialKind.end)
+
     def is_same_as(self, other: "SpecialPoint") -> bool:
         """Whether this point and `other` are the same special point of a rod, or mirror images, located
         twice: kind, parameter and period agree."""

@@ -130,11 +130,18 @@ def _remaining_error_factor(coarser_zero: ZeroOnMesh, zero: ZeroOnMesh, segment:
 
 def unlocated_point(kind: SpecialKind, start: BranchCycle, end: BranchCycle, message: str) -> SpecialPoint:
     """A special point that is not located: values at the cycle `end`, with the differences between `start`
-    and `end` as errors. message: cause."""
+    and `end` as errors. A fold may lie beyond the two cycles, because rounding turns the parameter back where
+    it is nearly constant, as near a generalised Hopf point: the error of the largest tip y is then at least
+    its value, and that of the period grows in proportion. message: cause."""
     name = start.scale.parameter_name
     measures = end.cycle.measures
     start_measures = start.cycle.measures
     end_value, start_value = (getattr(point.orbit.form.rod, name) for point in (end, start))
+    tip_y_max_error = abs(start_measures.tip_y_max / measures.tip_y_max - 1)
+    period_error = abs(start_measures.period / measures.period - 1)
+    if kind is SpecialKind.fold and 0 < tip_y_max_error < 1:
+        period_error /= tip_y_max_error
+        tip_y_max_error = 1.0
     return SpecialPoint(
         kind=kind,
         parameter_value=end_value,
@@ -142,8 +149,8 @@ def unlocated_point(kind: SpecialKind, start: BranchCycle, end: BranchCycle, mes
         tip_y_max=measures.tip_y_max,
         # The two cycles may have the same parameter value, as on the two sides of a fold.
         error=max(abs(end_value - start_value), SPECIAL_POINT_SETTINGS.accuracy * abs(end_value)),
-        period_error=abs(start_measures.period / measures.period - 1),
-        tip_y_max_error=abs(start_measures.tip_y_max / measures.tip_y_max - 1),
+        period_error=period_error,
+        tip_y_max_error=tip_y_max_error,
         message=message,
     )
 
