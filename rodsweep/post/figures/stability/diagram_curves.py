@@ -123,12 +123,12 @@ def _mark_partial_beam(axes: Axes, view: ResultView, parameters: PlaneParameters
     """Marks the fold in the partial beam limit, if it lies in the plane."""
     if "partial_beam_k1" not in view.variables:
         return
-    place = {name: float(view.variables[f"partial_beam_{name}"]) for name in ("F", "k1")}
-    x, y = (place["F" if name == "F" else "k1"] for name in parameters)
+    F, k1 = float(view.variables["partial_beam_F"]), float(view.variables["partial_beam_k1"])
+    x, y = (F if name == "F" else k1 for name in parameters)
     line = view.variables[parameters.line]
     rows = view.parameter_values[parameters.row]
     if line[0] <= x <= line[-1] and rows[0] <= y <= rows[-1]:
-        label = rf"partial beam $2F_c = {place['F']:.6g}$, $4F_c = {place['k1']:.6g}$"
+        label = rf"partial beam $2F_c = {F:.6g}$, $4F_c = {k1:.6g}$"
         axes.plot(x, y, "+", color="k", ls="", ms=10, mew=1.2, label=label)
 
 
