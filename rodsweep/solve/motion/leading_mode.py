@@ -16,12 +16,12 @@ disturbance of the rod."""
 
 @dataclass(frozen=True, slots=True)
 class LeadingMode:
-    """Leading eigenvalue w of the straight rod, in 1/tau2, Im w >= 0, and its mode z, (unknowns,), scaled to
+    """Leading eigenvalue w of the straight rod, in 1/tau2, Im w >= 0, and its mode, (unknowns,), scaled to
     a tip deflection y(1) = 1 to first order; y(1) is smaller, but not negative, if the largest deflection |y|
     along the rod would exceed `MAX_DEFLECTION`."""
 
     w: complex
-    z: Complex
+    mode: Complex
 
     @property
     def period(self) -> float:

@@ -33,7 +33,7 @@ def test_run_recovers_from_a_step_whose_newton_iterates_overflow(scheme):
     mesh = motion_mesh(RUBBER, MOTION_MESH_SETTINGS.accuracy)
     system = ExplicitSystem(RUBBER, mesh)
     integrator = Integrator(mesh, scheme)
-    run = integrator.run(system, leading_mode(system).z.real, DURATION, 2 * DURATION)
+    run = integrator.run(system, leading_mode(system).mode.real, DURATION, 2 * DURATION)
     failures = integrator.ts.getSNESFailures()
     integrator.destroy()
     assert failures > 0

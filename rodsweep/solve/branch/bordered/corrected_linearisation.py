@@ -211,7 +211,7 @@ def linearisation_of(solved: ConvergedOrbit) -> BorderedMatrix | CorrectedLinear
     return solved.matrix
 
 
-def bordered_matrix_of(solved: ConvergedOrbit) -> BorderedMatrix:
+def nearby_bordered_matrix(solved: ConvergedOrbit) -> BorderedMatrix:
     """The bordered matrix of an orbit that was solved with the parameter as an unknown, assembled at a nearby
     orbit; raises TypeError if the parameter was fixed."""
     linearisation = linearisation_of(solved)

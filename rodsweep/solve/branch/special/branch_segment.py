@@ -7,7 +7,7 @@ from ...orbit.orbit_mesh import mesh_of
 from ...unsolvable import Unsolvable
 from ..arc_length_step import BranchCycle, arc_length_between
 from ..bordered.condition import moved_orbit
-from ..bordered.corrected_linearisation import bordered_matrix_of
+from ..bordered.corrected_linearisation import nearby_bordered_matrix
 from ..bordered.matrix import BorderedMatrix
 from ..branch_prediction import parameter_change_polynomial
 from .augmented.fold_and_torus_functions import FoldTestFunction, correct_until_converged
@@ -72,7 +72,7 @@ class BranchSegment:
             SPECIAL_POINT_SETTINGS.max_matrix_distance,
             self._nearby_matrix(start),
         )
-        self._matrix = bordered_matrix_of(solved)
+        self._matrix = nearby_bordered_matrix(solved)
         # The tangent is corrected with the factors of the nearby cycle, so no second matrix is factorised.
         function = FoldTestFunction(self._matrix, self.start.unit_tangent, False)
         correct_until_converged(function, solved.orbit)

@@ -18,7 +18,7 @@ from ...orbit.orbit_mesh import mesh_limit_error
 from ...unsolvable import Unsolvable, WorkLimitReached
 from ..arc_length_step import BranchCycle
 from ..bordered.condition import moved_orbit
-from ..bordered.corrected_linearisation import bordered_matrix_of
+from ..bordered.corrected_linearisation import nearby_bordered_matrix
 from ..bordered.scale import ArcLengthScale
 from .augmented.fold_and_torus_functions import TorusTestFunction, correct_until_converged
 from .branch_segment import BranchSegment
@@ -48,7 +48,7 @@ def test_function_value(kind: SpecialKind, segment: BranchSegment, solved: Conve
     if kind == SpecialKind.left_the_model:
         return least_stretch(CycleMotion(solved.orbit))
     if kind == SpecialKind.torus:
-        function = TorusTestFunction(bordered_matrix_of(solved))
+        function = TorusTestFunction(nearby_bordered_matrix(solved))
         correct_until_converged(function, solved.orbit)
         return function.value(solved.orbit)
     matrix = segment.matrix_at(solved.orbit)

@@ -11,6 +11,7 @@ motion that closes after several returns leaves gaps, as does a short motion. A 
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from math import ceil
 
 import numpy as np
 
@@ -44,9 +45,9 @@ class TorusTestSettings:
     max_angle_difference: float = 0.3
     """Largest difference, in rad, between the angle per return on a torus and the argument of the cycle's
     complex multipliers. The difference is 0 at the torus point; 0.18 was observed far from this point."""
-    trial_angles_per_width: int = 4
-    """The spacing of the trial angles, before the best angle is refined, is 2/(trial_angles_per_width k) rad
-    for k returns; with one harmonic, the minimum of the residual is 2 pi/k wide."""
+    trial_angles_per_minimum: int = 13
+    """Number of trial angles, before the best angle is refined, within the width of a minimum of the
+    residual, which is 2 pi/k for k returns and one harmonic."""
     angle_tolerance_ratio: float = 1e-4
     """Tolerance of the fitted angle divided by half the width of the residual's minimum."""
     max_period_difference: float = 0.1
@@ -174,16 +175,10 @@ def fitted_angle(return_states: Array, angle: float) -> float:
         )
 
     # With one harmonic the minimum is 2 pi/k wide, with m harmonics 2 pi/(k m); k: number of returns.
-    trial_angles = np.linspace(
-        angle - TORUS_TEST_SETTINGS.max_angle_difference,
-        angle + TORUS_TEST_SETTINGS.max_angle_difference,
-        int(
-            TORUS_TEST_SETTINGS.trial_angles_per_width
-            * TORUS_TEST_SETTINGS.max_angle_difference
-            * len(return_states)
-        )
-        + 1,
-    )
+    max_difference = TORUS_TEST_SETTINGS.max_angle_difference
+    minimum_width = 2 * np.pi / len(return_states)
+    angle_count = ceil(2 * max_difference / minimum_width * TORUS_TEST_SETTINGS.trial_angles_per_minimum)
+    trial_angles = angle + np.linspace(-max_difference, max_difference, angle_count + 1)
     best_angle = min(map(float, trial_angles), key=lambda at: residual(at, 1))
     # Every further harmonic narrows the minimum, so the search continues around the last one.
     for harmonics in range(1, TORUS_TEST_SETTINGS.harmonics + 1):
