@@ -117,7 +117,7 @@ def _integrate_until_periodic(reference: ReferenceCycle, contenders: Sequence[Ti
     """Integration at the loosest tolerance at which two successive returns agree, and period and largest tip
     y are accurate, within SETTLING_TOLERANCE; without such a tolerance, a method whose `reaches_cycle` is
     False. contenders: contenders of one integrator, from the loosest tolerance."""
-    start = START_DEFLECTION * leading_mode(reference.system).mode.real
+    start = leading_mode(reference.system).state(START_DEFLECTION)
     task = IntegrationTask(reference.system, start, WAITING_PERIODS * reference.period)
     name = WAITING_PREFIX + contenders[0].method
     failed: tuple[str, ...] = ()

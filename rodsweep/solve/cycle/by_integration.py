@@ -89,7 +89,7 @@ class _IntegrationUntilSettled:
         )
         try:
             z = relax_fast_components(
-                self.system, self.request.amplitude * self.leading_mode.mode.real, self.leading_mode.period
+                self.system, self.leading_mode.state(self.request.amplitude), self.leading_mode.period
             )
             settled = self._integrate_until_settled(z)
             motion = self._measured_path(settled)

@@ -231,7 +231,7 @@ def _outcome_of_motion(
     if request.tip is not None:
         start = bent_state_with_tip_at(system, *request.tip)
     elif neighbour is None:
-        start = request.amplitude * transient.leading_mode.mode.real
+        start = transient.leading_mode.state(request.amplitude)
     else:
         orbit = neighbour.predictor.orbit
         start = system.state_of_stresses(orbit.form.stresses_on_mesh(system.mesh, orbit.start_state))

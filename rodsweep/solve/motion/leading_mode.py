@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Complex
+from ...arrays import Array, Complex
 from ...determinant.exponents import EXPONENT_SETTINGS
 from ...discretization.explicit_system import ExplicitSystem
 
@@ -22,6 +22,10 @@ class LeadingMode:
 
     w: complex
     mode: Complex
+
+    def state(self, tip_y: float) -> Array:
+        """State of the rod, (unknowns,), at the tip deflection `tip_y`, in L, of the mode's real part."""
+        return tip_y * self.mode.real
 
     @property
     def period(self) -> float:

@@ -71,7 +71,7 @@ def test_a_motion_that_spirals_into_a_stable_cycle_is_no_torus(monkeypatch):
 def test_another_integrator_on_another_mesh_is_on_the_same_torus():
     """SciPy's LSODA; the states where theta of the tip rises through 0, by its dense output."""
     system = ExplicitSystem(rod_of(207.0, *SOFT[:3], gamma1=SOFT[3]), uniform_mesh(1, 21))
-    z, row = 0.1 * leading_mode(system).mode.real, tip_angle_row(system)
+    z, row = leading_mode(system).state(0.1), tip_angle_row(system)
     run = LSODA(
         lambda _, z: system.state_derivative(z), 0.0, z, np.inf, rtol=1e-7, atol=1e-7 * np.abs(z).max(),
         jac=lambda _, z: system.jacobian(z),

@@ -196,7 +196,7 @@ def test_equal_steps_have_the_order_of_the_method(variant, order):
 
 def test_all_steps_of_a_long_run_are_kept():
     system = ExplicitSystem(ROD, uniform_mesh(1, 6))
-    start, steps = 0.1 * leading_mode(system).mode.real, 3 * STEP_RECORD_SETTINGS.first_capacity
+    start, steps = leading_mode(system).state(0.1), 3 * STEP_RECORD_SETTINGS.first_capacity
     method = TimeScheme("arkimex", "3", equal_steps=True)
     run = integrator(system.mesh, method).run(system, start, 0.03, 0.03 / steps)
     assert run.times == pytest.approx(np.linspace(0.0, 0.03, steps + 1))
@@ -225,7 +225,7 @@ if PETSc.Sys.getVersion() >= (3, 20):  # its first slopes come from a solve whos
 @pytest.mark.parametrize("method", METHODS, ids=lambda method: f"{method.ts_type} {method.scheme_name}")
 def test_every_method_follows_the_same_motion(method):
     system = ExplicitSystem(ROD, uniform_mesh(1, 14))
-    start = 0.3 * leading_mode(system).mode.real
+    start = leading_mode(system).state(0.3)
     exact = evolve(system, start, 0.03, TimeScheme(tolerance=1e-10, newton_tolerance_ratio=0.01)).states[-1]
     run = evolve(system, start, 0.03, method)
     assert run.ending == EndReason.reached
@@ -253,7 +253,7 @@ def test_predicted_stages_are_known_by_then(variant):
 @pytest.mark.parametrize("variant", EXTRAPOLATION_POINTS)
 def test_prediction_spares_iterations_and_leaves_the_motion_alone(variant):
     system = ExplicitSystem(ROD, uniform_mesh(1, 14))
-    start, scheme = 0.3 * leading_mode(system).mode.real, TimeScheme("arkimex", variant, 1e-6)
+    start, scheme = leading_mode(system).state(0.3), TimeScheme("arkimex", variant, 1e-6)
     predicting, plain = Integrator(system.mesh, scheme), Integrator(system.mesh, scheme)
     plain.workspace.set_extrapolation_points("")
     ends, iterations = [], []
@@ -317,7 +317,7 @@ def test_users_options_override_the_method(petsc_options):
 
 def test_newtons_method_may_be_petscs(petsc_options):
     system = ExplicitSystem(ROD, uniform_mesh(1, 14))
-    start = 0.3 * leading_mode(system).mode.real
+    start = leading_mode(system).state(0.3)
     ours = evolve(system, start, 0.03, TimeScheme(tolerance=1e-8))
     petsc_options("cycle_snes_type", "newtonls")
     assert integrator(system.mesh, TimeScheme()).ts.getSNES().getType() == "newtonls"
@@ -351,6 +351,6 @@ def test_an_error_inside_petsc_is_an_ending(petsc_options):
 
 def test_a_crushed_rod_has_left_the_model():
     system = ExplicitSystem(Rod(F=195.0, k1=200.0, k2=1e4, gamma3=1e-4), uniform_mesh(1, 14))
-    run = evolve(system, 0.5 * leading_mode(system).mode.real, 1e-3)
+    run = evolve(system, leading_mode(system).state(0.5), 1e-3)
     assert run.ending == EndReason.left_the_model
     assert system.least_stretch(run.states[-1]) <= 0 < system.least_stretch(run.states[0])

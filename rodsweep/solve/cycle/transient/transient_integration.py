@@ -113,9 +113,7 @@ class TransientIntegration:
                 if self.record or self.jump_count >= TRANSIENT_SETTINGS.max_jumps:
                     break
                 # The rod is unstable, but the state has no component along the growing mode beyond rounding.
-                z = self._state_after_jump(
-                    TRANSIENT_SETTINGS.restart_deflection * self.leading_mode.mode.real
-                )
+                z = self._state_after_jump(self.leading_mode.state(TRANSIENT_SETTINGS.restart_deflection))
                 continue
             is_first = is_first_run
             is_first_run = False
