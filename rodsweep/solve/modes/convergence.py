@@ -6,7 +6,7 @@ eigenvalues, two meshes may agree by chance; there an estimate of the rounding e
 """
 
 from dataclasses import dataclass, replace
-from math import inf, ulp
+from math import ceil, inf, ulp
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from ...determinant.arm.newton import second_derivative
 from ...determinant.exponents import EXPONENT_SETTINGS
 from ...determinant.value import distance_to_next_root
 from ...discretization.elements.resolution import mesh_accuracy
-from ...discretization.straight.transverse_mesh import finer_mesh, mesh_for, pencil_on
+from ...discretization.straight.transverse_mesh import mesh_for, pencil_on
 from ...model.rod import Rod
 from .inverse_iteration import ModeVectors, mode_vectors
 
@@ -28,6 +28,9 @@ class ModeMeshSettings:
     order_increase: int = 4
     """Increase of the element order from the first mesh to the second; the errors of the modes fall by a
     factor of 100."""
+    further_order_ratio: float = 4 / 3
+    """Element order of a further mesh, divided by the order before. Elements are not split: a mesh of halved
+    elements of lower order may be less accurate than its predecessor, as if rounding errors dominated."""
     max_meshes: int = 4
     """Maximum number of meshes after the first, each finer than its predecessor."""
     max_unknowns: int = 1500
@@ -59,12 +62,13 @@ def converged_modes(
     best_modes: ModeVectors | None = None
     min_error = inf
     for _ in range(MODE_MESH_SETTINGS.max_meshes):
-        if best_modes is None:
-            mesh = replace(mesh, order=mesh.order + MODE_MESH_SETTINGS.order_increase)
-        else:
-            mesh = finer_mesh(rod, mesh)
-        if mesh.unknown_count > MODE_MESH_SETTINGS.max_unknowns:
+        order = mesh.order + MODE_MESH_SETTINGS.order_increase
+        max_order = MODE_MESH_SETTINGS.max_unknowns * mesh.order // mesh.unknown_count
+        if order > max_order:
             break
+        if best_modes is not None:
+            order = ceil(MODE_MESH_SETTINGS.further_order_ratio * mesh.order)
+        mesh = replace(mesh, order=min(order, max_order))
         fine_modes = mode_vectors(rod, pencil_on(mesh), eigenvalues, points)
         result = _with_errors_from_coarse(coarse_modes, fine_modes, separations)
         error = max(result.errors_by_name().values())

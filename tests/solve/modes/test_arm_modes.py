@@ -8,6 +8,8 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 from surveyed import RODS, few
 
+from rodsweep.discretization.elements.quadrature import lobatto_points
+from rodsweep.discretization.straight.arm_resolution import finer_arm_mesh
 from rodsweep.discretization.straight.dense_eigenproblem import dense_eigenproblem
 from rodsweep.discretization.straight.tip_layer import tip_angle_moment_ratio
 from rodsweep.discretization.straight.transverse_mesh import mesh_for, pencil_on
@@ -181,6 +183,28 @@ SLAVED = [
     Rod(F=1.0, k1=1e4, k2=1e8, gamma3=0.0, taper=0.3),
     Rod(F=-30.0, k1=1e4, k2=12.0, gamma3=0.0, taper=0.9),
 ]
+
+
+BASE, TIP = (8.4, 0.34, 2.7, 8.5, 3.4, 2.6), (2.8, 4.1, 0.35, 1.8, 4.0, 6.0)
+STIFF_BASE = Profile((0.0, 0.32, 0.32, 1.0), (BASE, BASE, TIP, TIP))
+REFINED = [
+    Rod(F=-41.6, k1=867.0, k2=583.0, gamma3=0.0173, taper=0.34, material=SWELLING),
+    Rod(F=72.0, k1=1350.0, k2=2340.0, gamma3=0.047, taper=0.417, material=RodMaterial(profile=STIFF_BASE)),
+]
+
+
+@pytest.mark.parametrize("rod", REFINED, ids=str)
+def test_modes_are_refined_to_the_accuracy(rod):
+    """Halved elements of lower order are less accurate than their predecessors; the refinement ended."""
+    found = solve_modes(rod, ModesRequest(modes=4, accuracy=1e-8, node_count=33, computes_growth=False))
+    assert found.status == SpectrumStatus.ok
+    assert 0 < max(found.vectors.errors_by_name().values()) < 1e-8
+    mesh = finer_arm_mesh(rod, mesh_for(rod, 60.0, 1e-24))
+    finer = mode_vectors(rod, pencil_on(mesh), found.spectrum.eigenvalues, lobatto_points(33))
+    assert mesh.element_count > found.vectors.resolution.element_count
+    assert relative(found.vectors.right_modes, finer.right_modes) < 1e-8
+    assert relative(found.vectors.left_modes, finer.left_modes) < 1e-8
+    assert relative(found.vectors.condition, finer.condition) < 1e-8
 
 
 @pytest.mark.long
