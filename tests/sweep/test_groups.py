@@ -216,7 +216,7 @@ def test_failed_points_of_a_stretch_are_told(command):
     assert run.returncode == 1
     assert "7 ok, 1 accuracy_not_reached" in run.stdout
     assert (
-        "accuracy_not_reached, for example at F = 20.0080207, k1 = 10000, k2 = 10000, gamma3 = 0.0001"
+        "accuracy_not_reached, for example at F = 20.0080206921031, k1 = 10000, k2 = 10000, gamma3 = 0.0001"
         in run.stdout
     )
 

@@ -190,8 +190,9 @@ class _RankRun:
     def _print_failures(self, contributions: list[RunContribution], exceptions: int) -> None:
         """Prints the first failed points, and the name of the file with the tracebacks of exceptions."""
         failures = [failure for contribution in contributions for failure in contribution.failures]
+        columns = self.job.points.columns_by_name
         for failure in failures[:MAX_FAILURES_PRINTED]:
-            click.echo(f"  {provenance.example_failure_sentence(failure)}")
+            click.echo(f"  {provenance.example_failure_sentence(failure, columns)}")
         if exceptions:
             exceptions_text = counted(exceptions, "unforeseen exception")
             click.echo(

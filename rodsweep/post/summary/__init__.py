@@ -184,7 +184,7 @@ def _failure_sentences(view: ResultView) -> Iterable[str]:
         for parameter, _, text in (pair.partition("=") for pair in points_text.split(", ")):
             has_status &= columns.get(parameter, float(text)) == float(text)
         if has_status.any() and reason:  # a later run may have computed the point anew
-            yield example_failure_sentence(line)
+            yield example_failure_sentence(line, columns)
 
 
 def _terminal_table(table: TextTable) -> Table:

@@ -14,6 +14,7 @@ import h5py
 import numpy as np
 
 from ... import __version__
+from ...arrays import Array
 
 MAX_RANK_STATISTICS = 10_000
 """Maximum number of ranks whose work statistics are stored, because an attribute is limited to 64 kB."""
@@ -30,6 +31,10 @@ has parameters, status and reason."""
 MESSAGE_NUMBER_PATTERN = re.compile(r"\d[\d.]*(?:e[+-]?\d+)?")
 """Matches a number in a message. Messages that differ only in numbers are treated as the same reason of
 failure."""
+MIN_EXAMPLE_DIGITS = 9
+"""Number of digits of the computed parameters of a failed point, unless another point would read the same."""
+MAX_TYPED_DIGITS = 15
+"""Largest number of digits of parameters that are shown as typed."""
 MAX_FAILURE_REASONS = 20
 """Maximum number of reasons of failure in a file; additional reasons are dropped."""
 KERNEL_NOT_RECORDED = "unknown"
@@ -68,16 +73,30 @@ def merged_blas_kernels(*kernel_texts: Iterable[str]) -> str:
     return "\n".join(sorted({kernel for kernels in kernel_texts for kernel in kernels}))
 
 
-def example_failure_sentence(failure: str) -> str:
-    """Sentence about a failed point, whose parameters have at most nine significant digits: "failed, for
-    example at F = 0.3, k1 = 200: no mesh ...". failure: stored text, "F=0.3, k1=200.0: failed no mesh ...".
+def example_failure_sentence(failure: str, columns: Mapping[str, Array]) -> str:
+    """Sentence about a failed point: "failed, for example at F = 0.3, k1 = 200: no mesh ...". failure: stored
+    text, "F=0.3, k1=200.0: failed no mesh ...". columns: values of each parameter at all points, (points,).
     """
     points_text, _, outcome = failure.partition(": ")
     status, _, message = outcome.partition(" ")
     name_value_pairs = (pair.partition("=") for pair in points_text.split(", "))
-    point_text = ", ".join(f"{name} = {float(value):.9g}" for name, _, value in name_value_pairs)
+    point_text = ", ".join(
+        f"{name} = {_parameter_text(float(value), columns.get(name, np.empty(0)))}"
+        for name, _, value in name_value_pairs
+    )
     sentence = f"{status}, for example at {point_text}"
     return f"{sentence}: {message}" if message else sentence
+
+
+def _parameter_text(value: float, values: Array) -> str:
+    """A parameter of a failed point: as typed, else with MIN_EXAMPLE_DIGITS digits, or with all digits if
+    another of `values`, (points,), has the same text."""
+    if float(typed_text := f"{value:.{MAX_TYPED_DIGITS}g}") == value:
+        return typed_text
+    text = f"{value:.{MIN_EXAMPLE_DIGITS}g}"
+    near = values[np.isclose(values, value, rtol=10.0 ** (1 - MIN_EXAMPLE_DIGITS), atol=0)].tolist()
+    is_shared = any(other != value and f"{other:.{MIN_EXAMPLE_DIGITS}g}" == text for other in near)
+    return repr(value) if is_shared else text
 
 
 def failure_kind(line: str) -> str:
