@@ -200,8 +200,13 @@ def _search_end_clause(plane: PlaneOfMotion, load: LoadFormatter) -> str:
 
 
 def _oscillation_onset_sentences(thresholds: ThresholdsOverDrags, load: LoadFormatter) -> list[str]:
-    """Sentence on the load above which a decaying disturbance oscillates; empty if no such load was found."""
+    """Sentence on the loads at which a decaying disturbance oscillates; empty if no such load was found."""
     onset = thresholds.first_forces(ThresholdKind.onset)
     if onset is None:
         return []
-    return [f"From {load.range_of_forces_text(onset)} on, a disturbed arm oscillates as it returns to rest."]
+    end = thresholds.first_forces(ThresholdKind.real_again)
+    range_text = f"From {load.range_of_forces_text(onset)} on"
+    if end is not None:
+        drag_note = "" if end.for_every_drag else " for part of the range of drag"
+        range_text += f", up to {load.range_of_forces_text(end)}{drag_note}"
+    return [f"{range_text}, a disturbed arm oscillates as it returns to rest."]

@@ -22,6 +22,8 @@ from rodsweep.explore.pictures.diagram import (
     unstable_count_words,
 )
 from rodsweep.explore.pictures.numbers import NumbersTable, number_text
+from rodsweep.explore.pictures.over_load import threshold_title
+from rodsweep.explore.slider_scales import PictureAxis
 from rodsweep.explore.solving.curves_and_counts import DiagramCurve
 from rodsweep.explore.solving.diagrams import CRUSHED_CODE, UNKNOWN_CODE
 from rodsweep.explore.solving.request_inputs import INSTANT_KINDS
@@ -494,3 +496,10 @@ def test_a_config_with_a_relative_load_opens_with_this_load(tmp_path):
     state, stored = page_state_of_file(config)
     assert (state.arm["pressure"], stored) == ("1.2 of flutter", None)
     assert "1.2 of flutter" in state.yaml("limit_cycle")
+
+
+def test_the_title_of_growth_rates_says_where_the_oscillation_of_an_arm_ends():
+    load = PictureAxis("pressure (kPa)", 0.5)
+    names = {"F_onset": 10.0, "F_hopf": np.nan, "F_restabilization": np.nan, "pressure_hopf": np.nan}
+    answer = {**names, "kinds": ["onset", "real_again"], "crossing_F": np.array([10.0, 30.0]), "certified": 1}
+    assert threshold_title(answer, load) == "Oscillates from 5 kPa to 15 kPa (certified)"

@@ -47,7 +47,7 @@ WITHOUT_CYCLE = {
 SAID = {
     "flutter begins at": "hopf",
     "the straight arm is stable again from": "restabilization",
-    "decaying disturbances oscillate from": "onset",
+    "decaying disturbances start to oscillate at": "onset",
 }
 NAMED = {"Young's modulus": "young", "Poisson's ratio": "poisson"}
 EQUAL_LOADS = 1e-12
@@ -453,7 +453,7 @@ def _flutter_answer(view, page, told, start, chosen, scales):
         told(rf"does not flutter{some} up to {value}$", (~there).sum(), ends)
     if view.task == "thresholds" and len(chosen) > 1:
         onset, back = (_first(view, scales, kind)[0][chosen] for kind in ("onset", "restabilization"))
-        told(rf"decaying disturbances{some} oscillate from {value} on$", 0, onset)
+        told(rf"decaying disturbances{some} start to oscillate at {value}$", 0, onset)
         told(rf"the straight arm is stable again{some}, from {value} on$", np.isfinite(back).sum(), back)
     in_newton = []
     if view.task == "thresholds" and force_unit(view) == "pressure_scale":
@@ -700,7 +700,7 @@ class ArmTruth:
         told(rf"would flutter at {value}{name}(?:\.| and)", loads)
         told(rf"begins? to beat at {value}", own["hertz"])
         told(rf"straight arm is stable again above {value}", self._loads(own["restabilization"]))
-        told(rf"^From {value} on, a disturbed arm", self._loads(own["onset"]))
+        told(rf"^From {value} on.*, a disturbed arm", self._loads(own["onset"]))
         told(rf"(?:crushed at|up to) {value}", [self._loads(own["end"])])
         if self.other:
             unit = self._other_unit()

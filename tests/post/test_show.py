@@ -19,6 +19,8 @@ from rodsweep.post.summary.errors import absolute_errors
 from rodsweep.post.summary.number_texts import axis_values_text, number_with_error
 from rodsweep.post.summary.selection import Selection
 from rodsweep.post.summary.stability import rod_and_arm_stability_lines
+from rodsweep.post.summary.thresholds import oscillation_end
+from rodsweep.results.file.provenance import example_failure_sentence
 from rodsweep.results.file.view import read_view
 from rodsweep.solve.changes.status import ThresholdStatus
 from rodsweep.sweep.points.points import lines_along
@@ -242,6 +244,48 @@ def test_thresholds_of_a_single_rod_are_told_one_by_one(command):
     ]
     assert [float(F) for _, F, _ in found] == pytest.approx([22.4709774737663, HOPF, STABLE_AGAIN], abs=1e-12)
     assert "the list of crossings is proved complete" in told
+
+
+def test_the_first_lines_say_where_an_oscillation_ends(command):
+    """Beyond F = 94.14 a real eigenvalue leads again, and a disturbance decays without oscillation."""
+    values = {"k1": 100, "k2": 1e4, "gamma3": 0.05}
+    config = "task: thresholds\nparameters: {k1: 100, k2: 1.0e4, gamma3: 0.05}\nthresholds: {F_max: 99}\n"
+    told = shown(command, config)
+    assert "\ndecaying oscillation from F = 14.7897 to 94.1445; 2 crossings up to F = 99\n" in told
+    answer = rs.Rod(**values).thresholds(F_max=99)
+    first_line = "decaying oscillation from F = 14.7897 k3/L^2 to 94.1445 k3/L^2\n"
+    assert repr(answer).startswith(first_line)
+    [below, above] = [rs.Rod(F=F, **values).spectrum(modes=2).data["frequency"].max() for F in (94.14, 94.15)]
+    assert below > 0 == above
+
+
+@pytest.mark.parametrize(
+    ("kinds", "end"),
+    [
+        (["onset", "real_again"], 1),
+        (["pair_leads", "onset", "real_leads", "hopf"], 2),
+        (["onset", "hopf", "restabilization", "real_again"], None),
+        (["onset"], None),
+        (["hopf", "restabilization"], None),
+    ],
+)
+def test_an_oscillation_ends_at_the_next_crossing_if_a_real_eigenvalue_leads_there(kinds, end):
+    assert oscillation_end(kinds) == end
+
+
+@pytest.mark.parametrize(
+    ("text", "values", "shown_text"),
+    [
+        ("147.9215196832", [147.92151969, 147.9215196832], "147.9215196832"),
+        ("0.1234567891234567", [0.1234567891234567, 0.5], "0.123456789"),
+        ("0.1234567891234567", [0.1234567891234567, 0.1234567891234569], "0.1234567891234567"),
+        ("30.0", [30.0], "30"),
+        ("inf", [1.0, inf], "inf"),
+    ],
+)
+def test_parameters_of_a_failed_point_are_those_of_no_other_point(text, values, shown_text):
+    line = example_failure_sentence(f"k1={text}, F=2.0: failed why", {"k1": np.array(values)})
+    assert line == f"failed, for example at k1 = {shown_text}, F = 2: why"
 
 
 def test_a_single_cycle_is_told_with_its_verdict(command):

@@ -358,6 +358,18 @@ def test_a_second_window_of_flutter_is_told():
     assert "again above 3.75" not in " ".join(verdict(arm(viscosity=1e3), found(1.0, *window)))
 
 
+def test_the_loads_between_which_a_disturbed_arm_oscillates_are_told():
+    onset, end = (10.0, ThresholdKind.onset, 0), (15.0, ThresholdKind.real_again, 0)
+    ending, lasting = (found(1.0, onset, *more, (20.0, ThresholdKind.hopf, 2)) for more in ([end], []))
+    sentence = "{}, a disturbed arm oscillates as it returns to rest."
+    for drags, loads in (
+        ((ending, ending), "From 0.625 kPa on, up to 0.937 kPa"),
+        ((ending, lasting), "From 0.625 kPa on, up to 0.937 kPa for part of the range of drag"),
+        ((lasting, lasting), "From 0.625 kPa on"),
+    ):
+        assert sentence.format(loads) in verdict(arm(viscosity=1e3), *drags)
+
+
 def test_thresholds_without_proof_are_told_with_the_doubt():
     known = found(1.0, (20.0, ThresholdKind.hopf, 2))
     unproved = replace(known.thresholds.search_result, proved=False)

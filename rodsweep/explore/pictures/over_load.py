@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from bokeh.models import HoverTool, Span
 
+from ...post.summary.thresholds import oscillation_end
 from ..slider_scales import PictureAxis
 from . import card
 from .numbers import SI_NAME_BY_VARIABLE
@@ -74,12 +75,15 @@ class GrowthPicture:
 
 def threshold_title(answer: dict[str, Any], load: PictureAxis) -> str:
     """Title with the first threshold of each kind in the answer `answer`, in the unit of the axis `load`."""
-    formats = ARM_THRESHOLD_FORMATS if SI_NAME_BY_VARIABLE["F_hopf"] in answer else ROD_THRESHOLD_FORMATS
+    is_arm = SI_NAME_BY_VARIABLE["F_hopf"] in answer
+    formats = ARM_THRESHOLD_FORMATS if is_arm else ROD_THRESHOLD_FORMATS
     texts = [
         value_format.format(load.factor * float(answer[name]))
         for value_format, name in zip(formats, NAMED_THRESHOLDS, strict=True)
         if np.isfinite(answer[name])
     ]
+    if is_arm and (end := oscillation_end(answer["kinds"])) is not None:
+        texts[0] += f" to {load.factor * float(answer['crossing_F'][end]):.5g} kPa"
     proof_text = "certified" if answer["certified"] else "not certified"
     text = f"{', '.join(texts) or 'no threshold'} ({proof_text})"
     return text[0].upper() + text[1:]

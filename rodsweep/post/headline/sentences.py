@@ -9,7 +9,12 @@ import numpy as np
 
 from ...wording import counted
 from ..branch_curves import RodBranches
-from ..summary.thresholds import FIRST_CROSSING_WORDS, LATER_CROSSING_WORDS, later_flutter_changes
+from ..summary.thresholds import (
+    FIRST_CROSSING_WORDS,
+    LATER_CROSSING_WORDS,
+    later_flutter_changes,
+    oscillation_end,
+)
 from .one_rod import SingleRodResult
 
 
@@ -57,10 +62,20 @@ def threshold_sentence(rod: SingleRodResult) -> str:
         column = rod.column(f"F_{event}")
         if column is not None:
             name = column.name.removesuffix(f"_{event}")
-            clauses.append(f"{phrase} {name} = {rod.text(f'F_{event}')}")
+            end_text = _oscillation_end_clause(rod) if event == "onset" else ""
+            clauses.append(f"{phrase} {name} = {rod.text(f'F_{event}')}{end_text}")
     clauses += _later_flutter_clauses(rod)
     none_text = "" if rod.count("crossing_count") else f"no threshold up to {_search_end_text(rod)}"
     return (", ".join(clauses) or none_text) + _early_end_clause(rod)
+
+
+def _oscillation_end_clause(rod: SingleRodResult) -> str:
+    """Clause on the force at which the first oscillation ends without flutter; empty if it does not."""
+    end = oscillation_end(rod.words("crossings", "crossing_kind"))
+    if end is None:
+        return ""
+    crossings = rod.list_texts["crossings"]
+    return f" to {crossings.short_text(rod.preferred_name(crossings, 'crossing_F'), end)}"
 
 
 def _later_flutter_clauses(rod: SingleRodResult) -> list[str]:

@@ -33,6 +33,15 @@ FIRST_CROSSING_WORDS = {
 """Phrase before the force of the first crossing of each kind, in the summary of a single rod."""
 LATER_CROSSING_WORDS = {"hopf": "flutter again from", "restabilization": "stable again from"}
 """Phrase before the force of a later window of flutter: of its start and of its end."""
+OSCILLATION_ENDS = ("real_again", "real_leads")
+"""Kinds of crossings of a stable rod above which a real eigenvalue leads."""
+
+
+def oscillation_end(kinds: Sequence[str]) -> int | None:
+    """Index, in a list of crossings, of the crossing at which the oscillation that starts at the first onset
+    ends without flutter; None if it does not. kinds: kinds of the crossings, in the order of the force."""
+    after_onset = list(kinds).index("onset") + 1 if "onset" in kinds else len(kinds)
+    return after_onset if after_onset < len(kinds) and kinds[after_onset] in OSCILLATION_ENDS else None
 
 
 def later_flutter_changes(kinds: Sequence[str]) -> list[int]:
@@ -114,8 +123,14 @@ def single_rod_crossing_lines(view: ResultView) -> list[str]:
     if not kinds:
         is_undecided = np.isfinite(variables["open_from"])
         return [f"{'no threshold is located' if is_undecided else 'no threshold'} up to {end_text}"]
-    first_forces = ((word, variables[f"F_{event}"]) for event, word in FIRST_CROSSING_WORDS.items())
-    changes = [f"{word} F = {F:.6g}" for word, F in first_forces if np.isfinite(F)]
+    first_forces = {event: f"{variables[f'F_{event}']:.6g}" for event in FIRST_CROSSING_WORDS}
+    if (end := oscillation_end(kinds)) is not None:
+        first_forces["onset"] += f" to {variables['crossing_F'][end]:.6g}"
+    changes = [
+        f"{word} F = {first_forces[event]}"
+        for event, word in FIRST_CROSSING_WORDS.items()
+        if np.isfinite(variables[f"F_{event}"])
+    ]
     for i in later_flutter_changes(kinds):
         changes.append(f"{LATER_CROSSING_WORDS[kinds[i]]} F = {variables['crossing_F'][i]:.6g}")
     count_text = f"{counted(int(variables['crossing_count']), 'crossing')} up to {end_text}"

@@ -113,7 +113,7 @@ def _threshold_lines(arms: Selection) -> Lines:
     lines += flutter_force_line(arms)
     onset, restabilized = (arms.values(f"{load}_{event}") for event in ("onset", "restabilization"))
     if arms.count > 1 and np.isfinite(onset).any():
-        lines.append(f"decaying disturbances oscillate from {loads_text(arms, onset)} on")
+        lines.append(f"decaying disturbances start to oscillate at {loads_text(arms, onset)}")
     if arms.count > 1 and np.isfinite(restabilized).any():
         points_text = f"{np.isfinite(restabilized).sum()} of {counted(arms.count, 'point')}"
         again_text = f"from {loads_text(arms, restabilized)} on"

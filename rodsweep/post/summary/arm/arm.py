@@ -40,7 +40,7 @@ QUANTITY_WORDS = {"young": "Young's modulus", "poisson": "Poisson's ratio"}
 THRESHOLD_SENTENCES = {
     "hopf": "flutter begins at {load}{rate}",
     "restabilization": "the straight arm is stable again from {load} on",
-    "onset": "decaying disturbances oscillate from {load} on",
+    "onset": "decaying disturbances start to oscillate at {load}",
 }
 """Sentence on the load at a threshold of the straight arm, by kind of threshold."""
 
