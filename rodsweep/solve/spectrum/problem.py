@@ -63,6 +63,13 @@ class TransverseProblem(ABC):
         """
         return
 
+    def move_shift_off(self, w: Complex) -> None:
+        """Moves the shift to the right by 1/tau2 if one of the eigenvalues w found, (n,), is so close to the
+        shift that rounding hides others. The leading eigenvalue of a pulled cone is exponentially small, and
+        its shift is 0."""
+        if np.abs(w - self.shift).min(initial=np.inf) < KRYLOV_SETTINGS.min_distance_from_shift:
+            self.shift += 1
+
     def move_shift_left(self, leftmost: float) -> None:
         """Moves the shift to the left of the leftmost eigenvalue found, whose real part is `leftmost`. The
         shift of a uniform rod stays."""

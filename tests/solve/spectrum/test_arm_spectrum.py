@@ -261,6 +261,22 @@ def test_strongly_pulled_cones_have_all_eigenvalues(rod, unstable_count, expecte
     assert (np.abs(found.eigenvalues - expected) <= found.error_estimate).all()
 
 
+@pytest.mark.parametrize("k2", [1e4, np.inf])
+def test_an_exponentially_small_eigenvalue_hides_no_others(k2):
+    """The shift 0 was so close to the leading eigenvalue, -9e-11 1/tau2, that rounding hid most others."""
+    base, tip = (5.9, 0.5, 0.54, 0.68, 2.3, 3.7), (7.6, 0.56, 2.6, 0.48, 4.4, 0.29)
+    material = RodMaterial(profile=Profile((0.0, 0.58, 0.58, 1.0), (base, base, tip, tip)))
+    rod = Rod(F=-44.4, k1=1e4, k2=k2, gamma3=0.041, taper=0.141, material=material)
+    found = solve_spectrum(rod, SpectrumRequest(9, 1e-10, certify=True))
+    assert (found.status, found.certified) == (SpectrumStatus.ok, True)
+    assert -1e-9 < found.eigenvalues[0].real < 0
+    # The reference needs a finite stiffness of shear; between both k2, eigenvalues differ by 0.6 %.
+    dense = eigenvalues(replace(rod, k2=1e4))
+    expected = dense[np.argsort(-dense.real)][:9]
+    tolerance = 1e-8 if k2 == 1e4 else 0.01
+    assert np.abs(found.eigenvalues - expected)[1:] == pytest.approx(0, abs=tolerance * abs(expected[-1]))
+
+
 def test_a_large_rotational_drag_slows_the_modes_of_a_cone():
     """gamma3 = 1e6 and 1e10: all motion is slow, and w gamma3 tends to a limit. With elements for |w| = 16
     there was no eigenvalue at all."""
