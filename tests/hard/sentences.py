@@ -280,7 +280,7 @@ def threshold_sentences(view, page):
             columns = np.concatenate(list(view.point_columns.values()))
             why += [near_one_of(text, columns) for text in match.groups() if text]
         for _, match in read(page, r", found on NUMBER of NUMBER lines? of points along", only=line):
-            lines = [each for each in lines_along(view.point_columns, name) if len(each.x)]
+            lines = [each for each in lines_along(view.point_columns, name) if len(each.x) > 1]
             having = len(
                 {
                     tuple(getattr(rod, n) for n in NON_OPTIONAL_LINEAR_PARAMETERS if n != name)

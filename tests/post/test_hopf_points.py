@@ -276,6 +276,15 @@ def test_the_summary_tells_hopf_points_one_by_one_or_their_range(view, expected)
     assert line == f"F** (straight rod starts to flutter): {expected}"
 
 
+def test_the_summary_counts_no_single_point_of_a_list_as_a_line():
+    """Two forces of one rod, and two other rods at one force each."""
+    columns = [np.array(values) for values in ([27.0, 28, 27, 28], [1e4] * 4, [100.0, 100, 50, 25])]
+    columns += [np.full(4, 1e-2), np.ones(4)]
+    view = make_view(columns, [1, 0, 1, 0], stored=(), hopf=constant, as_list=True)
+    (line,), _ = rod_and_arm_stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on)
+    assert ", found on 1 of 1 line of points along F" in line
+
+
 def test_the_summary_tells_every_window_of_flutter_on_a_line():
     axes = (np.arange(0.0, 100, 2.5), [1e4], [1e2], [1e-2], [1.0])
     view = make_view(axes, [0] * 40, stored=())

@@ -52,14 +52,14 @@ def rod_and_arm_stability_lines(
         for line in lines
     ]
     by_line = [thresholds_on(line) for line in lines]
+    searched_count = sum(len(line.indices) > 1 for line in lines)
     texts = list[str]()
     arm_sentences = list[str]()
     for kind, phrase in (FORCE_THRESHOLD_WORDS if name == "F" else OTHER_THRESHOLD_WORDS).items():
         kind_points = [[point for point in points if point.kind == kind] for points in by_line]
         if points_of_line := {i: points for i, points in enumerate(kind_points) if points}:
-            texts.append(
-                f"{phrase.format(name=name)}: {_positions_text(points_of_line, parameter_texts, name)}"
-            )
+            places_text = _positions_text(points_of_line, parameter_texts, searched_count, name)
+            texts.append(f"{phrase.format(name=name)}: {places_text}")
             pairs = [(point, lines[i].indices) for i, points in points_of_line.items() for point in points]
             located = [(point, indices) for point, indices in pairs if isinstance(point, LocatedThreshold)]
             arm_sentences += thresholds_of_arm(view, kind, located) if name == "F" else []
@@ -67,15 +67,16 @@ def rod_and_arm_stability_lines(
 
 
 def _positions_text(
-    by_line: Mapping[int, list[SummaryThreshold]], names: list[str], parameter_name: str
+    by_line: Mapping[int, list[SummaryThreshold]], names: list[str], searched_count: int, parameter_name: str
 ) -> str:
     """Positions of thresholds as text: one by one for a few lines of points, else as a range. by_line:
-    thresholds by index of the line."""
+    thresholds by index of the line. names: text for each line. searched_count: number of lines with at least
+    two points; a threshold of any other line is not known."""
     points = [point for line in by_line.values() for point in line]
     located = [point for point in points if isinstance(point, LocatedThreshold)]
     errors = [rounded_number_and_total_error(point.position, point.error)[1] for point in located]
     error_clause = f" (+- {error_text(max(errors))})" if errors else ""
-    count_text = count_of_total(len(by_line), len(names), "line")
+    count_text = count_of_total(len(by_line), searched_count, "line")
     lines_text = f", found on {count_text} of points along {parameter_name}"
     lines_text *= len(by_line) < len(names)
     if len(located) == len(points) and all(point.equals_within_errors(located[0]) for point in located):
