@@ -266,9 +266,25 @@ def test_lasting_error_inside_slepc_is_told(monkeypatch):
     assert result.message == "Error in LAPACK subroutine trexc: info=1"
 
 
+STRONGLY_PULLED = Rod(F=-1e5, k1=1e8, k2=1e8, gamma3=1.0)
+"""The leading eigenvalue is -9e-133; with the shift 0 no mesh resolves four modes."""
+
+
+@pytest.fixture
+def fixed_shift(monkeypatch):
+    fixed = replace(problem_module.KRYLOV_SETTINGS, min_distance_from_shift=0.0)
+    monkeypatch.setattr(problem_module, "KRYLOV_SETTINGS", fixed)
+
+
+def test_the_shift_of_a_strongly_pulled_rod_moves_off_its_leading_eigenvalue():
+    found = solve_spectrum(STRONGLY_PULLED, TIGHT)
+    assert (found.status, found.certified) == (SpectrumStatus.ok, True)
+    assert -1e-132 < found.eigenvalues[0].real < 0
+
+
+@pytest.mark.usefixtures("fixed_shift")
 def test_error_inside_slepc_is_not_the_reason_if_later_meshes_are_solved(monkeypatch):
-    # The leading eigenvalue of this strongly pulled rod is -9e-133; no mesh resolves four modes.
-    rod = Rod(F=-1e5, k1=1e8, k2=1e8, gamma3=1.0)
+    rod = STRONGLY_PULLED
     failing = Failing(problem_module.uniform_solver, 1, SystemError("[0] Zero pivot in row 806"))
     monkeypatch.setattr(problem_module, "uniform_solver", failing)
     result = solve_spectrum(rod, TIGHT)
@@ -277,11 +293,12 @@ def test_error_inside_slepc_is_not_the_reason_if_later_meshes_are_solved(monkeyp
     assert 0 < int(told[1]) < 10000
 
 
+@pytest.mark.usefixtures("fixed_shift")
 def test_a_search_that_ends_at_the_largest_mesh_names_its_size(monkeypatch):
     for module in (search, problem_module):
         smaller = replace(module.RESOLUTION_SETTINGS, max_unknowns=1000)
         monkeypatch.setattr(module, "RESOLUTION_SETTINGS", smaller)
-    result = solve_spectrum(Rod(F=-1e5, k1=1e8, k2=1e8, gamma3=1.0), TIGHT)
+    result = solve_spectrum(STRONGLY_PULLED, TIGHT)
     assert result.status == SpectrumStatus.failed
     assert result.message == "no mesh of at most 1000 unknowns resolves the requested modes"
 
