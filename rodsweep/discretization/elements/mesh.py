@@ -43,9 +43,9 @@ class NodeMatrices(NamedTuple):
 @dataclass(frozen=True)
 class Mesh(Elements):
     """Elements with matrices over all nodes. `node_count` is the number of nodes without the tip. Meshes with
-    equal edges and orders compare equal, also in different processes."""
+    equal edges, orders and spacing compare equal, also in different processes."""
 
-    # The matrices follow from edges and orders, and an array comparison has no single truth value.
+    # The matrices follow from these, and an array comparison has no single truth value.
     matrices: NodeMatrices = field(compare=False, repr=False)
 
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:

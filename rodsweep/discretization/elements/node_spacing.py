@@ -5,7 +5,7 @@ coordinate t from 0 to 1, and the position v from 0 to 1 along the element is
 
     v(t) = (1 - s^t)/(1 - s),        dv/dt = -ln s/(1 - s) (1 - (1 - s) v):
 
-the spacing decreases in proportion to v, from 1 to s = `spacing_ratio` in relative units. s = 1: v = t.
+the spacing is linear in v, from 1 to s = `spacing_ratio` in relative units. s = 1: v = t.
 """
 
 import numpy as np
