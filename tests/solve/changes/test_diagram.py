@@ -257,13 +257,6 @@ def test_a_force_that_is_k1_but_for_rounding_is_crushed(off):
             1,
             "because a search from F = -1000000 fails: no a-priori bound",
         ),
-        # The search from -5e3 ends within the pulls.
-        (
-            1e8,
-            [-5e3, -1e3, -100.0, 40.0],
-            1,
-            "because a search from F = -5000 fails: .*the winding number counts",
-        ),
     ],
 )
 def test_a_row_from_a_pull_that_cannot_be_searched_begins_at_a_smaller_pull(k, values, undecided, reason):
@@ -277,6 +270,17 @@ def test_a_row_from_a_pull_that_cannot_be_searched_begins_at_a_smaller_pull(k, v
     assert (row.rod_class == RodClass.undecided).tolist() == [n < undecided for n in range(len(values))]
     assert row.rod_class[undecided] == RodClass.monotone
     assert row.rod_class[-1] == RodClass.flutter
+
+
+def test_a_row_from_a_strong_pull_is_searched_whole():
+    """The leading eigenvalue is exponentially small under the pull, and must not hide the others."""
+    rod = Rod(F=0.0, k1=1e8, k2=1e8, gamma3=1e-3)
+    row = solve_row(rod, RowRequest("F", np.array([-5e3, -100.0, 40.0]), 1e-8, True, 9))
+    assert row.status == ThresholdStatus.ok
+    assert row.rod_class.tolist() == [RodClass.monotone, RodClass.monotone, RodClass.flutter]
+    pushed = solve_row(rod, RowRequest("F", np.array([0.0, 40.0]), 1e-8, True, 9)).thresholds.thresholds
+    found = [c.value for c in row.thresholds.thresholds]
+    assert found == pytest.approx([c.value for c in pushed], rel=1e-8)
 
 
 def test_a_pull_whose_bound_almost_underflows_is_no_failure():
