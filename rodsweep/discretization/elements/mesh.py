@@ -160,8 +160,8 @@ def integration_matrix(nodes: Array, upper_limits: Array, spacing_ratio: float =
     """Matrix (m, n) from values at `nodes`, (n,), to integrals of the interpolating polynomial along an
     element of length 1, from its start to `upper_limits`, (m,). All coordinates are in [-1, 1].
     spacing_ratio: ratio s of `node_spacing`."""
-    # n Gauss points integrate the interpolant, of degree n - 1, exactly; of the slope of the positions in
-    # addition its first n + 1 powers.
+    # n Gauss points are exact up to degree 2 n - 1: for the interpolant, of degree n - 1, times the first
+    # n + 1 powers of the slope of the positions.
     points, weights = gauss_legendre_rule(len(nodes))
     rows = []
     for end in upper_limits:
