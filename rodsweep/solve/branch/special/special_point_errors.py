@@ -85,7 +85,7 @@ def with_mesh_errors(
     slope = min(abs(zero.slope), abs(coarser_zero.slope))
     zero_error = (
         SPECIAL_POINT_SETTINGS.relative_slope_error * abs(zero.last_step)
-        + _test_function_error(point.kind) / slope
+        + _test_function_error(point) / slope
     )
     errors = SPECIAL_POINT_SETTINGS.error_factor * (factor * differences + rates * zero_error)
     errors += SPECIAL_POINT_SETTINGS.rounding_error * np.abs(values)
@@ -97,12 +97,15 @@ def with_mesh_errors(
     )
 
 
-def _test_function_error(kind: SpecialKind) -> float:
-    """Error of the test function of special points of a kind at a cycle."""
-    # Only the test functions of folds and torus points are corrected by iteration.
-    if kind in (SpecialKind.fold, SpecialKind.torus):
-        return SPECIAL_POINT_SETTINGS.test_function_change_tolerance
-    return SPECIAL_POINT_SETTINGS.test_function_rounding_error
+def _test_function_error(point: SpecialPoint) -> float:
+    """Error of the test function of a special point at a cycle."""
+    settings = SPECIAL_POINT_SETTINGS
+    if point.kind is SpecialKind.fold:
+        growth = settings.tip_y_of_doubled_fold_error / point.tip_y_max
+        return settings.test_function_change_tolerance * (1 + growth)
+    # Of the others, only the test function of torus points is corrected by iteration.
+    is_corrected = point.kind is SpecialKind.torus
+    return settings.test_function_change_tolerance if is_corrected else settings.test_function_rounding_error
 
 
 def _numbers_ahead(zero: ZeroOnMesh, segment: BranchSegment) -> Array:
