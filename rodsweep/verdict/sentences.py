@@ -205,8 +205,10 @@ def _oscillation_onset_sentences(thresholds: ThresholdsOverDrags, load: LoadForm
     if onset is None:
         return []
     end = thresholds.first_forces(ThresholdKind.real_again)
+    flutter = thresholds.first_forces(ThresholdKind.hopf)
     range_text = f"From {load.range_of_forces_text(onset)} on"
-    if end is not None:
+    # Otherwise a window of flutter may lie between onset and end.
+    if end is not None and (flutter is None or end.high < flutter.low):
         drag_note = "" if end.for_every_drag else " for part of the range of drag"
         range_text += f", up to {load.range_of_forces_text(end)}{drag_note}"
     return [f"{range_text}, a disturbed arm oscillates as it returns to rest."]

@@ -361,11 +361,14 @@ def test_a_second_window_of_flutter_is_told():
 def test_the_loads_between_which_a_disturbed_arm_oscillates_are_told():
     onset, end = (10.0, ThresholdKind.onset, 0), (15.0, ThresholdKind.real_again, 0)
     ending, lasting = (found(1.0, onset, *more, (20.0, ThresholdKind.hopf, 2)) for more in ([end], []))
+    window = (12.0, ThresholdKind.hopf, 2), (14.0, ThresholdKind.restabilization, 0)
+    interrupted = found(1.0, onset, *window, end)
     sentence = "{}, a disturbed arm oscillates as it returns to rest."
     for drags, loads in (
         ((ending, ending), "From 0.625 kPa on, up to 0.937 kPa"),
         ((ending, lasting), "From 0.625 kPa on, up to 0.937 kPa for part of the range of drag"),
         ((lasting, lasting), "From 0.625 kPa on"),
+        ((interrupted, interrupted), "From 0.625 kPa on"),
     ):
         assert sentence.format(loads) in verdict(arm(viscosity=1e3), *drags)
 
