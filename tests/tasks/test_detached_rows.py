@@ -351,7 +351,8 @@ def test_curves_are_followed_beyond_the_range_after_all_other_stages():
     assert isinstance(rows, DetachedRows)
     assert [start.parameter_value for start in rows.branch_starts_of_row(3)] == [1.5]
     results[5] = {"at": np.array([])}
-    assert stages.stages(results)[-1] == rows
+    # Their texts are compared, since from Python 3.13 on an error of NaN makes the rows unequal to themselves.
+    assert repr(stages.stages(results)[-1]) == repr(rows)
     assert stages.lost_beyond_count(results) == 0
     lost = half(tracer.special_points[0], 1.0, [0]) | {"end": np.array([float(CurveEndReason.not_followed)])}
     assert stages.lost_beyond_count(results | {4: lost}) == 1
@@ -390,5 +391,5 @@ def test_a_row_is_solved_again_with_all_its_crossings_and_only_for_new_ones():
     # A row whose solver failed is unchanged, and its crossings start nothing else.
     results[5] = {}
     assert stages.changed_rows(results) == {3: results[2]}
-    assert stages.stages(results)[-1] == rows
+    assert repr(stages.stages(results)[-1]) == repr(rows)
     assert replace(rows, first_item=0).end_item == 1
