@@ -63,13 +63,6 @@ class TransverseProblem(ABC):
         """
         return
 
-    def move_shift_off(self, w: Complex) -> None:
-        """Moves the shift to the right by 1/tau2 if one of the eigenvalues w found, (n,), is so close to the
-        shift that rounding hides others. The leading eigenvalue of a pulled cone is exponentially small, and
-        its shift is 0."""
-        if np.abs(w - self.shift).min(initial=np.inf) < KRYLOV_SETTINGS.min_distance_from_shift:
-            self.shift += 1
-
     def move_shift_left(self, leftmost: float) -> None:
         """Moves the shift to the left of the leftmost eigenvalue found, whose real part is `leftmost`. The
         shift of a uniform rod stays."""
@@ -130,7 +123,7 @@ class UniformProblem(TransverseProblem):
     def __init__(self, rod: Rod):
         self.rod = rod
         growth, self.largest_wave_number = largest_growth_and_wave_number(rod)
-        self.shift = KRYLOV_SETTINGS.shift_over_growth_rate * growth
+        self.shift = _shift_over_waves(rod, growth)
         self._sqrt_frequency_bound = sqrt(frequency_bound(rod))
         self.has_bound = isfinite(self._sqrt_frequency_bound)
 
@@ -171,8 +164,7 @@ class ArmProblem(TransverseProblem):
         )
         growth, wave_numbers = local_growths_and_wave_numbers(rod)
         self.largest_wave_number = float(wave_numbers.max())
-        # So far right that the eigenvalues nearest to it are mostly the rightmost.
-        self.shift = KRYLOV_SETTINGS.shift_over_growth_rate * float(growth.max())
+        self.shift = _shift_over_waves(rod, float(growth.max()))
 
     def move_shift_right(self) -> None:
         """Doubles the shift, or moves it beyond the growth rate of local waves at a thin tip, which lies
@@ -231,6 +223,16 @@ class ArmProblem(TransverseProblem):
         # The next mesh then refines all eigenvalues, as a count needs them.
         self._has_proof_failed |= not is_complete
         return is_complete, evaluations
+
+
+def _shift_over_waves(rod: Rod, growth: float) -> float:
+    """The shift of a rod whose most amplified wave has the growth rate `growth`, so far to the right that the
+    eigenvalues nearest to it are mostly the rightmost, in 1/tau2.
+
+    If no wave grows, the shift is the rate -F of a string under the pull. The leading eigenvalue of a pulled
+    rod is exponentially small, and shift-and-invert about 0 would map it to a value so large that rounding
+    errors exceed the values of all other eigenvalues."""
+    return KRYLOV_SETTINGS.shift_over_growth_rate * growth if growth else max(-rod.F, 0.0)
 
 
 def transverse_problem(rod: Rod, modes_to_prove: int = 0) -> TransverseProblem:

@@ -102,7 +102,6 @@ class SpectrumSearch:
                 self.request_decaying_modes(candidates)
                 return None
             # Too few eigenvalues converged to roots of D, or SLEPc failed: a finer mesh.
-            self.problem.move_shift_off(candidates.roots.w)
             self.failure_count += bool(candidates.failure)
             # If few eigenvalues are roots, the mesh is too coarse: further eigenvalues would be no roots.
             if len(candidates.roots.w) >= SEARCH_SETTINGS.min_found_fraction_for_more_modes * self.modes:

@@ -30,9 +30,6 @@ class KrylovSettings:
     shift_over_leftmost: float = 0.5
     """Shift divided by the smallest growth rate found, if smaller ones are missing: below 1, because the next
     eigenvalue lies to the left, and not 0, where growth rates are far apart."""
-    min_distance_from_shift: float = 1e-6
-    """An eigenvalue at a smaller distance from the shift, in 1/tau2, may hide others: shift-and-invert maps
-    it to a value so large that rounding errors exceed the values of the others."""
     shift_reduction: float = 0.01
     """The shift is multiplied by this number if the previous shift gave no further eigenvalue."""
     max_dense_unknowns: int = 300

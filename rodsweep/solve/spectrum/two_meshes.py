@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
-from ...discretization.elements.resolution import RESOLUTION_SETTINGS, mesh_accuracy
+from ...discretization.elements.resolution import RESOLUTION_SETTINGS, Resolution, mesh_accuracy
 from ...discretization.straight.transverse_mesh import AnyMesh
+from ...model.dispersion import end_coefficients, local_wave_numbers, sampled_arm
 from ...model.rod import Rod
 from ..unsolvable import Unsolvable
 from .problem import TransverseProblem, meshes_text, transverse_problem
@@ -68,25 +69,29 @@ def _spectrum_or_raise(rod: Rod, request: SpectrumRequest) -> Spectrum:
     best_spectrum: Spectrum | None = None
     smallest_error = math.inf
     for _ in range(TWO_MESH_SETTINGS.max_finer_meshes):
+        is_resolved = _are_waves_represented(rod, coarser_eigenvalues.w[:modes], mesh)
         mesh = problem.finer_mesh(mesh)
         if mesh.unknown_count > RESOLUTION_SETTINGS.max_unknowns:
             break
         eigenvalues = _leading_eigenvalues(problem, mesh, modes)
-        if len(eigenvalues.w) >= modes and len(coarser_eigenvalues.w):
+        # Two meshes that are too coarse for a boundary layer may agree on a wrong eigenvalue.
+        if is_resolved and len(eigenvalues.w):
             rounding_scale = _shift_and_squared_force_sum(problem)
             error = _errors_between_meshes(eigenvalues.w, coarser_eigenvalues.w, rounding_scale)
             spectrum = _spectrum_of_mesh(problem, request, mesh, eigenvalues, error)
             if spectrum.status == SpectrumStatus.ok:
                 return spectrum
-            # The finest mesh may have the largest rounding error.
-            largest_error = float((spectrum.error_estimate / np.abs(spectrum.eigenvalues)).max())
+            # The finest mesh may have the largest rounding error. An eigenvalue smaller than its rounding
+            # error, as the leading one of a pulled rod, must not decide: only a coarse mesh makes it large.
+            moduli = np.abs(spectrum.eigenvalues)
+            largest_error = float((spectrum.error_estimate / (moduli + rounding_scale)).max())
             if best_spectrum is None or largest_error < smallest_error:
                 best_spectrum = spectrum
                 smallest_error = largest_error
         coarser_eigenvalues = eigenvalues
     if best_spectrum is None:
         meshes = meshes_text(1 + TWO_MESH_SETTINGS.max_finer_meshes, problem.finer_mesh(mesh))
-        raise Unsolvable(f"{meshes} gives the requested number of eigenvalues")
+        raise Unsolvable(f"{meshes} resolves the requested modes")
     # If rounding dominates, the error may exceed the difference between the two meshes.
     best_spectrum = replace(
         best_spectrum, error_estimate=TWO_MESH_SETTINGS.mesh_error_factor * best_spectrum.error_estimate
@@ -151,24 +156,38 @@ def _leading_eigenvalues(problem: TransverseProblem, mesh: AnyMesh, mode_count: 
         requested_count = 2 * requested_count
 
 
+def _are_waves_represented(rod: Rod, w: Complex, mesh: AnyMesh) -> bool:
+    """Whether a mesh represents the exponentials exp(+-q u) of all its eigenvalues w, (k,), on average along
+    the rod or at an end, to which an eigenfunction may be confined; False without eigenvalues."""
+    max_q = RESOLUTION_SETTINGS.max_wave_number_per_node * mesh.order
+    lengths = np.full(2, 1 / mesh.element_count) if isinstance(mesh, Resolution) else mesh.lengths
+    _, weights, coefficients = sampled_arm(rod)
+    mean_q = local_wave_numbers(w[:, None], rod.F, coefficients) @ weights
+    end_q = local_wave_numbers(w[:, None], rod.F, end_coefficients(rod))
+    is_represented = (mean_q <= max_q * mesh.element_count) | (end_q * lengths[[0, -1]] <= max_q).any(axis=1)
+    return len(w) > 0 and bool(is_represented.all())
+
+
 def _errors_between_meshes(w: Complex, coarser_w: Complex, rounding_scale: float) -> Array:
     """Absolute errors of the sorted eigenvalues w, (k,), from the unsorted eigenvalues `coarser_w`, (l,), of
     a coarser mesh.
 
     rounding_scale: result of `_shift_and_squared_force_sum`. Two meshes may agree on one eigenvalue by
     chance. The relative error of an eigenvalue is therefore the largest of three differences: of the
-    eigenvalue and of its two neighbours. Near a double eigenvalue the stated rounding errors are larger than
-    elsewhere."""
-    distances = np.abs(w[:, None] - coarser_w).min(axis=1) / np.abs(w)
-    # In a cluster the nearest eigenvalue of the coarser mesh may be a neighbour's, so neighbours count too.
-    padded_distances = np.pad(distances, 1)
-    max_distances = np.max([padded_distances[:-2], padded_distances[1:-1], padded_distances[2:]], axis=0)
+    eigenvalue and of its two neighbours, of which rounding errors are no part. Near a double eigenvalue the
+    stated rounding errors are larger than elsewhere."""
+    moduli = np.abs(w)
     separations = np.abs(w[:, None] - w) + np.diag(np.full(len(w), np.inf))
     # Close eigenvalues are ill-conditioned: near a double one an error is the root of the rounding.
-    crowding_factor = np.sqrt(1 + np.abs(w) / separations.min(axis=1, initial=np.inf))
-    errors: Array = TWO_MESH_SETTINGS.mesh_error_factor * max_distances * np.abs(
-        w
-    ) + TWO_MESH_SETTINGS.rounding_ratio * crowding_factor * (np.abs(w) + rounding_scale)
+    crowding_factor = np.sqrt(1 + moduli / separations.min(axis=1, initial=np.inf))
+    rounding_errors = TWO_MESH_SETTINGS.rounding_ratio * crowding_factor * (moduli + rounding_scale)
+    distances = np.abs(w[:, None] - coarser_w).min(axis=1)
+    # In a cluster the nearest eigenvalue of the coarser mesh may be a neighbour's, so neighbours count too.
+    # The leading eigenvalue of a pulled rod, a rounding error, says nothing about the next one.
+    padded_distances = np.pad(np.maximum(distances - rounding_errors, 0) / moduli, 1)
+    neighbour_distances = np.maximum(padded_distances[:-2], padded_distances[2:])
+    mesh_errors = np.maximum(distances, neighbour_distances * moduli)
+    errors: Array = TWO_MESH_SETTINGS.mesh_error_factor * mesh_errors + rounding_errors
     return errors
 
 

@@ -272,11 +272,10 @@ STRONGLY_PULLED = Rod(F=-1e5, k1=1e8, k2=1e8, gamma3=1.0)
 
 @pytest.fixture
 def fixed_shift(monkeypatch):
-    fixed = replace(problem_module.KRYLOV_SETTINGS, min_distance_from_shift=0.0)
-    monkeypatch.setattr(problem_module, "KRYLOV_SETTINGS", fixed)
+    monkeypatch.setattr(problem_module, "_shift_over_waves", lambda rod, growth: 0.0)
 
 
-def test_the_shift_of_a_strongly_pulled_rod_moves_off_its_leading_eigenvalue():
+def test_the_shift_of_a_strongly_pulled_rod_is_off_its_leading_eigenvalue():
     found = solve_spectrum(STRONGLY_PULLED, TIGHT)
     assert (found.status, found.certified) == (SpectrumStatus.ok, True)
     assert -1e-132 < found.eigenvalues[0].real < 0
@@ -320,7 +319,7 @@ def test_two_meshes_name_the_number_of_meshes_without_a_result(monkeypatch):
     result = solve_on_two_meshes(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4), TIGHT)
     assert result.status == SpectrumStatus.failed
     assert re.fullmatch(
-        r"none of 1 meshes with fewer than \d+ unknowns gives the requested number of eigenvalues",
+        r"none of 1 meshes with fewer than \d+ unknowns resolves the requested modes",
         result.message,
     )
 
@@ -471,6 +470,8 @@ def test_krylov_schur_on_two_meshes_has_the_reference_spectra_within_its_errors(
     for point in reference_spectra:
         rod = rod_of(point)
         result, exact = solve_on_two_meshes(rod, request), leading(point, 4)
+        if rod.g < 0 and result.status == SpectrumStatus.failed:
+            continue  # boundary layers too thin for the meshes
         if result.status != SpectrumStatus.ok:
             assert result.status == SpectrumStatus.accuracy_not_reached, rod
             # A pull, or to be all but crushed, makes an eigenvalue less than its rounding.
@@ -497,6 +498,27 @@ def test_krylov_schur_on_two_meshes_says_which_mode_misses_the_accuracy_and_why(
     better = SpectrumRequest(modes=4, accuracy=1.01 * float(said[3]), certify=False)
     assert solve_on_two_meshes(rod, better).status == SpectrumStatus.ok
     assert solve_on_two_meshes(rod, better).message == ""
+
+
+def test_krylov_schur_on_two_meshes_gives_all_but_the_leading_eigenvalue_of_a_pulled_rod():
+    """The leading eigenvalue, -1e-35, is less than rounding errors; all others are accurate, and are said to
+    be."""
+    rod = Rod(F=-1353.0, k1=153.0, k2=np.inf, gamma3=0.62)
+    request = SpectrumRequest(modes=4, accuracy=1e-8, certify=False)
+    found, exact = solve_on_two_meshes(rod, request), solve_spectrum(rod, TIGHT)
+    assert (found.status, exact.status) == (SpectrumStatus.accuracy_not_reached, SpectrumStatus.ok)
+    error = np.abs(found.eigenvalues - exact.eigenvalues)
+    assert (error <= found.error_estimate).all()
+    assert (found.error_estimate[1:] <= 1e-8 * np.abs(found.eigenvalues[1:])).all()
+
+
+def test_krylov_schur_on_two_meshes_gives_no_number_where_no_mesh_resolves_boundary_layers():
+    """A pull beyond the shear stiffness makes layers of the thickness 1/2000: two meshes that are too coarse
+    agree to 3e-7 on an eigenvalue with an error of 4e-5."""
+    rod = Rod(F=-1600.0, k1=1e6, k2=2.3, gamma3=2.6e-7)
+    result = solve_on_two_meshes(rod, SpectrumRequest(modes=1, accuracy=1e-8, certify=False))
+    assert result.status == SpectrumStatus.failed
+    assert re.fullmatch(r"none of 9 meshes .* resolves the requested modes", result.message)
 
 
 def test_krylov_schur_on_two_meshes_is_sparse_where_elements_are_many():
