@@ -77,7 +77,9 @@ def _spectrum_or_raise(rod: Rod, request: SpectrumRequest) -> Spectrum:
         # Two meshes that are too coarse for a boundary layer may agree on a wrong eigenvalue.
         if is_resolved and len(eigenvalues.w):
             rounding_scale = _shift_and_squared_force_sum(problem)
-            error = _errors_between_meshes(eigenvalues.w, coarser_eigenvalues.w, rounding_scale)
+            error = _errors_between_meshes(
+                eigenvalues.w, coarser_eigenvalues.w, abs(problem.shift), rounding_scale
+            )
             spectrum = _spectrum_of_mesh(problem, request, mesh, eigenvalues, error)
             if spectrum.status == SpectrumStatus.ok:
                 return spectrum
@@ -168,19 +170,23 @@ def _are_waves_represented(rod: Rod, w: Complex, mesh: AnyMesh) -> bool:
     return len(w) > 0 and bool(is_represented.all())
 
 
-def _errors_between_meshes(w: Complex, coarser_w: Complex, rounding_scale: float) -> Array:
+def _errors_between_meshes(w: Complex, coarser_w: Complex, shift: float, rounding_scale: float) -> Array:
     """Absolute errors of the sorted eigenvalues w, (k,), from the unsorted eigenvalues `coarser_w`, (l,), of
     a coarser mesh.
 
-    rounding_scale: result of `_shift_and_squared_force_sum`. Two meshes may agree on one eigenvalue by
-    chance. The relative error of an eigenvalue is therefore the largest of three differences: of the
-    eigenvalue and of its two neighbours, of which rounding errors are no part. Near a double eigenvalue the
-    stated rounding errors are larger than elsewhere."""
+    shift: modulus of the shift. rounding_scale: result of `_shift_and_squared_force_sum`. Two meshes may
+    agree on one eigenvalue by chance. The relative error of an eigenvalue is therefore the largest of three
+    differences: of the eigenvalue and of its two neighbours, of which rounding errors are no part. Near a
+    double eigenvalue the stated rounding errors are larger than elsewhere."""
     moduli = np.abs(w)
     separations = np.abs(w[:, None] - w) + np.diag(np.full(len(w), np.inf))
-    # Close eigenvalues are ill-conditioned: near a double one an error is the root of the rounding.
-    crowding_factor = np.sqrt(1 + moduli / separations.min(axis=1, initial=np.inf))
-    rounding_errors = TWO_MESH_SETTINGS.rounding_ratio * crowding_factor * (moduli + rounding_scale)
+    # Close eigenvalues are ill-conditioned: rounding changes the product (v - w1) (v - w2) of two close ones
+    # by its error times |w|, and a double one by the root of this.
+    squared_errors = TWO_MESH_SETTINGS.rounding_ratio * (moduli + shift) * moduli
+    crowding_errors = np.minimum(
+        squared_errors / separations.min(axis=1, initial=np.inf), np.sqrt(squared_errors)
+    )
+    rounding_errors = TWO_MESH_SETTINGS.rounding_ratio * (moduli + rounding_scale) + crowding_errors
     distances = np.abs(w[:, None] - coarser_w).min(axis=1)
     # In a cluster the nearest eigenvalue of the coarser mesh may be a neighbour's, so neighbours count too.
     # The leading eigenvalue of a pulled rod, a rounding error, says nothing about the next one.

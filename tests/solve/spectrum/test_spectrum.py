@@ -521,6 +521,22 @@ def test_krylov_schur_on_two_meshes_gives_no_number_where_no_mesh_resolves_bound
     assert re.fullmatch(r"none of 9 meshes .* resolves the requested modes", result.message)
 
 
+@pytest.mark.parametrize("accuracy", [1e-4, 1e-6, 1e-8, 1e-10])
+@pytest.mark.parametrize(
+    ("onset", "k1", "k2"),
+    [(20.04926815902913, np.inf, 365923.0875981547), (27.555328108729338, 101.18046590242326, np.inf)],
+)
+def test_krylov_schur_on_two_meshes_states_how_rounding_parts_a_double_eigenvalue(onset, k1, k2, accuracy):
+    """At the onset, to the last digit of F, two eigenvalues are within 1e-5 of each other, and rounding moves
+    each by 1e-7 or more."""
+    rod = Rod(F=onset, k1=k1, k2=k2, gamma3=0.0)
+    found = solve_on_two_meshes(rod, SpectrumRequest(modes=2, accuracy=accuracy, certify=False))
+    exact = solve_spectrum(rod, SpectrumRequest(modes=2, accuracy=1e-4, certify=True)).eigenvalues
+    error = np.abs(found.eigenvalues[:, None] - exact).min(axis=1)
+    assert (error <= found.error_estimate).all()
+    assert (found.error_estimate < 1e-5 * np.abs(exact)).all()
+
+
 def test_krylov_schur_on_two_meshes_is_sparse_where_elements_are_many():
     rod, request = (
         Rod(F=390.0, k1=1e4, k2=15.0, gamma3=1e-3),
