@@ -127,7 +127,8 @@ def last_solution(fort8: str) -> tuple[Array, Array]:
     fort8: text of AUTO's solution file fort.8.
     """
     lines, line_number = fort8.splitlines(), 0
-    times, states = np.empty(0), np.empty((0, 0))
+    times: Array = np.empty(0)
+    states: Array = np.empty((0, 0))
     while line_number < len(lines):
         head = list(map(int, lines[line_number].split()))
         count, width, rows, points = head[6], head[7], head[8], head[10]

@@ -75,7 +75,7 @@ def _open_result_file(path: Path) -> xr.Dataset:
     data = in_layout_order(data, header.layout, header.config)
     if journal_directory(path).is_dir():
         recent = journalled_points(header, data["status"].values.ravel())
-        for name in data.variables.keys() & recent.dtype.fields.keys():
+        for name in data.variables.keys() & (recent.dtype.names or ()):
             insert_records(data[name].values, str(name), recent)
         data.attrs |= reasons_attribute_with_journals(header)
         data = with_checksums(data)

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..arrays import list_of
 from ..errors import InputError
 from ..results.file.creation import FilePlan
 from ..results.file.provenance import joined_reasons_attribute, utc_time
@@ -143,7 +144,7 @@ def _solve_groups(
         solved_indices = np.flatnonzero(result.is_solved)
         for name, column in result.part_at(solved_indices).values.items():
             columns[name][indices[solved_indices]] = column
-        unsolved += indices[~result.is_solved].tolist()
+        unsolved += list_of(indices[~result.is_solved])
         solved_count += len(solved_indices)
         display(solved_count)
     return unsolved

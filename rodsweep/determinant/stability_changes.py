@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..arrays import Array, Complex
+from ..arrays import Array, Complex, list_of
 from ..model.compiled.compilation import compiled
 from ..model.compiled.kernel_constants import KernelConstants
 from ..model.rod import Coefficients
@@ -89,7 +89,7 @@ def stability_change_between(
     unstable_count: number of growing modes at the unstable force. Returns None unless the number of crossings
     found is unstable_count/2.
     """
-    zeros = sorted(crossings_between(*end_forces, before_w, after_w, *rods).tolist())
+    zeros = sorted(list_of(crossings_between(*end_forces, before_w, after_w, *rods)))
     # Each crossing makes two modes grow or decay; any other number means that one was missed or two cancel.
     if not zeros or 2 * len(zeros) != unstable_count:
         return None

@@ -211,7 +211,7 @@ def _stored_branch(v: dict[str, Array], parameter_name: str, number: int) -> Sto
     outside = [min_unstable_count(int(count), float(size), float(error)) for count, size, error in crossing]
     counts = [outside[i] if is_cycle else None for is_cycle, i in order]
     is_cycle = np.array([cycle for cycle, _ in order], dtype=bool)
-    points = tuple(_special_point(v, i) for i in special)
+    points = tuple(_special_point(v, int(i)) for i in special)
     return StoredBranch(x, y, period, stability_between_vertices(counts), is_cycle, points)
 
 

@@ -6,7 +6,7 @@ from itertools import product
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, list_of
 from ..discretization.elements.elements import Elements, equal_edges
 from ..discretization.elements.resolution import expected_wave_number, resolution_for
 from ..discretization.straight.arm_resolution import arm_mesh
@@ -37,7 +37,7 @@ def largest_first_mesh(
     rod is searched, by name of the parameter; meshes are compared at these values.
     """
     # The finest meshes belong to extreme parameter values, which evenly spaced points may miss.
-    indices = {*sampled_points_with_rod(points).tolist(), *_corners(points)}
+    indices = {*list_of(sampled_points_with_rod(points)), *_corners(points)}
     rods = (
         rod
         for point_rod in _uncrushed_rods(points, sorted(indices))
@@ -57,7 +57,7 @@ def _uncrushed_rods(points: Points, indices: Iterable[int]) -> Iterator[Rod]:
 def _rods_at_parameter_ends(rod: Rod, parameter_ends: Mapping[str, Array]) -> Iterator[Rod]:
     """Yields the rod with every combination of the parameter values in `parameter_ends`, by name, (n,) each.
     A force is lowered to just below the crushing force. Combinations outside the model are omitted."""
-    for values in product(*(column.tolist() for column in parameter_ends.values())):
+    for values in product(*(list_of(column) for column in parameter_ends.values())):
         end_values = dict(zip(parameter_ends, values, strict=True))
         if "F" in end_values:
             # The other parameters come first, because they set the crushing force.

@@ -37,7 +37,7 @@ from .check_rows import (
     varying_arm_and_law_rows,
 )
 from .hopf.lines import HopfLine, hopf_lines_of, hopf_variables
-from .protocol import CheckRow, OrderedMap, Solver, Task, solve_on_one_rank
+from .protocol import CheckRow, NamedArrays, OrderedMap, Solver, Task, solve_on_one_rank
 
 if TYPE_CHECKING:
     from ..solve.cycle.limit_cycle import CycleOutcome, CycleRequest
@@ -84,7 +84,7 @@ class LimitCycleTask(Task):
         the dimension."""
         options = self.config.limit_cycle
         extents = {"sample": options.samples, "shape": options.shapes}
-        times = {name: np.arange(count) / count for name, count in extents.items() if count}
+        times: NamedArrays = {name: np.arange(count) / count for name, count in extents.items() if count}
         if options.transient:
             times["transient"] = np.linspace(0.0, 1.0, options.transient)
         return times | ({"u": lobatto_points(options.nodes)} if options.shapes else {})

@@ -9,7 +9,7 @@ from functools import partial
 from math import inf, nextafter
 from typing import Any
 
-from ...arrays import Complex
+from ...arrays import Complex, list_of
 from ...determinant.arm.determinant import ArmDeterminant
 from ...discretization.straight.arm_resolution import ArmMesh, arm_mesh
 from ...model.material.profile import Profile
@@ -79,7 +79,7 @@ def exact_arm_spectrum(rod: Rod) -> list[complex]:
     """The MODE_COUNT leading eigenvalues of an arm, by Newton's method for D, with elements finer than in
     `rodsweep`."""
     determinant = ArmDeterminant(rod)
-    roots: list[complex] = rodsweep_spectrum(rod, certify=True).tolist()
+    roots: list[complex] = list_of(rodsweep_spectrum(rod, certify=True))
     for _ in range(NEWTON_STEP_COUNT):
         values = [determinant.value_on_finer_elements(w, REFERENCE_RESOLVED_W_RATIO) for w in roots]
         roots = [w - value.D / value.D_w for w, value in zip(roots, values, strict=True)]

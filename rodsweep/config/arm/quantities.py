@@ -5,6 +5,7 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
 
+from ...arrays import list_of
 from ...errors import InputError, short_repr
 from ...model.arm.drag import ALL_DRAG_ESTIMATES_NAME, DRAG_ESTIMATE_NAMES
 from ...model.arm.quantities import LOAD_OF_RATIO, UNITS
@@ -121,9 +122,9 @@ def quantities_as_typed(quantities: Mapping[str, Axis]) -> str:
     typed = []
     unitless = []
     for name, axis in quantities.items():
-        end_values = axis.array()[[0, -1]].tolist()
+        end_values = list_of(axis.array()[[0, -1]])
         if name == "drag":
-            drag_list = drag_names_of_indices(axis.array().tolist())
+            drag_list = drag_names_of_indices(list_of(axis.array()))
             has_all = len(drag_list) == len(DRAG_ESTIMATE_NAMES)
             typed.append(f"drag {ALL_DRAG_ESTIMATES_NAME if has_all else ' and '.join(drag_list)}")
             continue

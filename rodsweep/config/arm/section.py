@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from ...arrays import Array
+from ...arrays import Array, list_of
 from ...errors import InputError
 from ...model.arm.arm import SlenderArm
 from ...model.arm.quantities import ARM_SCALES, LOAD_OF_RATIO, LOADS, QUANTITIES, SCALE_NAMES, UNITS
@@ -211,9 +211,9 @@ class ArmConfig(StrictConfigSection):
         units = {name: np.array([getattr(arm, name)]) for name in ARM_SCALES}
         if len(values.get("drag", ())) > 1:
             first_values = self.first_values
-            arms = {drag: self.arm_of(first_values | {"drag": drag}) for drag in values["drag"].tolist()}
+            arms = {drag: self.arm_of(first_values | {"drag": drag}) for drag in list_of(values["drag"])}
             values["drag"] = np.array(sorted(arms, key=lambda drag: arms[drag].gamma3))
-            units["tau2"] = np.array([arms[drag].tau2 for drag in values["drag"].tolist()])
+            units["tau2"] = np.array([arms[drag].tau2 for drag in list_of(values["drag"])])
         return {name: array[0] if len(array) == 1 else array for name, array in (values | units).items()}
 
     @property

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import BeforeValidator, WithJsonSchema
 
+from ...arrays import list_of
 from ...errors import InputError
 from ...model.arm.segments import EXAMPLE_SEGMENT, MAX_SEGMENTS, SEGMENT_KEYS, segment_texts, segments_of
 from ...model.material.rod_material import DEFAULT_MATERIAL, RodMaterial
@@ -82,7 +83,7 @@ def tapers_of(arm: "ArmConfig") -> set[float]:
     base radius is given."""
     if arm.tip_radius is None or arm.radius is None:
         return {1.0}
-    radius_pairs = product(arm.tip_radius.array().tolist(), arm.radius.array().tolist())
+    radius_pairs = product(list_of(arm.tip_radius.array()), list_of(arm.radius.array()))
     return {tip_value / base_value for tip_value, base_value in radius_pairs}
 
 
@@ -100,7 +101,7 @@ def refuse_misused_shape(arm: "ArmConfig", given_parameters: dict[str, Any]) -> 
 def refuse_compressible(arm: "ArmConfig", section: str) -> None:
     """Raises ValueError if the cross-section `section` is "swelling" but a Poisson's ratio of the arm is not
     0.5."""
-    ratios = [] if arm.poisson is None else arm.poisson.array().tolist()
+    ratios = [] if arm.poisson is None else list_of(arm.poisson.array())
     wrong = next((ratio for ratio in ratios if ratio != RUBBER_POISSON), None)
     if section == "swelling" and wrong is not None:
         raise ValueError(

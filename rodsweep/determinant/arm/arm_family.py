@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from ...arrays import Array
+from ...arrays import Array, list_of
 from ...model.compiled.kernel_constants import KernelConstants
 from ..exponents import MACHINE_EPSILON
 from ..parameter_path import ParameterPath
@@ -76,7 +76,7 @@ def interpolated_family(path: ParameterPath, low: float, high: float, W: float) 
     and FloatingPointError if no elements resolve an arm."""
     for node_count, spacing in ARM_FAMILY_SETTINGS.trials():
         scale = spacing * (high - low)
-        arms = [path.rod_at(value) for value in _interpolation_points(low, high, scale, node_count).tolist()]
+        arms = [path.rod_at(value) for value in list_of(_interpolation_points(low, high, scale, node_count))]
         samples = coefficient_samples(arms)
         # If the series of the coefficients does not converge, the series of the propagators cannot converge.
         if not _series_converges(samples):
@@ -104,7 +104,7 @@ def has_smooth_coefficients(path: ParameterPath, low: float, high: float) -> boo
     # The last trial has the most arms: if the coefficients are smooth at all, it mostly says so at once.
     for node_count, spacing in reversed(ARM_FAMILY_SETTINGS.trials()):
         p = _interpolation_points(low, high, spacing * (high - low), node_count)
-        if _series_converges(coefficient_samples([path.rod_at(value) for value in p.tolist()])):
+        if _series_converges(coefficient_samples([path.rod_at(value) for value in list_of(p)])):
             return True
     return False
 
@@ -119,7 +119,7 @@ def _series_converges(samples: CoefficientSamples) -> bool:
 def _interpolation_points(low: float, high: float, scale: float, point_count: int) -> Array:
     """Increasing values of p, low to high, of the interpolated arms, (point_count,); scale: see
     `ArmFamily`."""
-    t = (chebyshev_points(point_count) + 1) / 2
+    t: Array = (chebyshev_points(point_count) + 1) / 2
     if scale < LINEAR_SCALE:
         t = np.expm1(t * math.log1p((high - low) / scale)) * scale / (high - low)
     # Beyond the interval, by rounding, the model may have no arm.

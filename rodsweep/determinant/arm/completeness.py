@@ -21,7 +21,7 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from ...arrays import Array, Complex
+from ...arrays import Array, Complex, list_of
 from ...model.compiled.compilation import compiled
 from ...model.compiled.kernel_constants import KernelConstants
 from ..exponents import EXPONENT_SETTINGS
@@ -112,10 +112,10 @@ def prove_complete(
     return CompletenessProof(False, evaluation_count)
 
 
-def has_conjugate(known_w: Complex) -> Array:
+def has_conjugate(known_w: Complex) -> np.ndarray:
     """Mask, (n,), of known eigenvalues that are real or whose conjugate is known too."""
-    conjugates = set(known_w.conj().tolist())
-    return np.array([w in conjugates for w in known_w.tolist()], dtype=bool)
+    conjugates = set(list_of(known_w.conj()))
+    return np.array([w in conjugates for w in list_of(known_w)], dtype=bool)
 
 
 def largest_w_of_proof(line: float, hull: EigenvalueHull, known_w: Complex) -> float:
@@ -135,8 +135,8 @@ def cheapest_proof(line: float, hull: EigenvalueHull, known_w: Complex, mode_cou
     is possible."""
     cheapest = 0, math.inf
     # The leading eigenvalues are not the smallest, so |w| need not increase along the list.
-    moduli = np.maximum.accumulate(np.abs(known_w)).tolist()
-    complete = [*(known_w[1:] != known_w[:-1].conj()).tolist(), True]
+    moduli = list_of(np.maximum.accumulate(np.abs(known_w)))
+    complete = [*list_of(known_w[1:] != known_w[:-1].conj()), True]
     for k, ratio in COMPLETENESS_SETTINGS.proof_trials():
         last_w = _last_proof_point(points_right_of_hull(line, hull.a, hull.c, k))
         for count in range(mode_count, len(moduli) + 1):

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Array, Complex
+from ...arrays import Array, Complex, list_of
 from ...model.compiled.compilation import compiled
 from ...model.compiled.kernel_constants import KernelConstants
 from ..exponents import EXPONENT_SETTINGS, MACHINE_EPSILON
@@ -183,7 +183,7 @@ def refine_eigenvalues_and_errors(
         last = np.array([2 * step for step in max_first_steps], float)
         roots, errors, _ = _newton_from_guesses(np.array(w, complex), level, last)
         if (errors >= 0).all():
-            return list(zip(roots.tolist(), errors.tolist(), strict=True))
+            return list(zip(list_of(roots), list_of(errors), strict=True))
     # An iterate has left the common elements, so every guess now chooses its own.
     steps = zip(w, max_first_steps, strict=True)
     return [refine_eigenvalue_and_error(value, determinant, step) for value, step in steps]

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array, Complex
+from ...arrays import Array, Complex, list_of
 from ...model.dispersion import end_coefficients, local_wave_numbers
 from ..exponents import EXPONENT_SETTINGS
 from ..roots.roots import Roots
@@ -49,7 +49,7 @@ def refine_mesh_eigenvalues(
     guesses = _guesses_in_box(mesh_w, determinant, hull)
     resolved = _resolved_guesses(guesses, determinant, max_q, max_end_q)
     _prepare_elements(determinant, max((abs(guess.w) for guess in resolved), default=0.0), largest_w)
-    errors = root_errors([guess.w for guess in resolved], determinant).tolist()
+    errors = list_of(root_errors([guess.w for guess in resolved], determinant))
     max_ratio = ROOT_SETTINGS.max_pair_correction_ratio
     near = [(guess, e) for guess, e in zip(resolved, errors, strict=True) if e <= max_ratio * guess.scale]
     # From two close guesses Newton's method may find one root twice, so these are moved apart first.
@@ -86,10 +86,10 @@ class _Guess(NamedTuple):
 def _guesses_in_box(mesh_w: Complex, determinant: ArmDeterminant, hull: EigenvalueHull) -> list[_Guess]:
     """The eigenvalues `mesh_w` of a mesh, (n,), that lie in the a-priori box; real where nearly real."""
     tolerance = ROOT_NEWTON_SETTINGS.real_tolerance
-    w = [w.real + 0j if abs(w.imag) <= tolerance * abs(w) else w for w in mesh_w.tolist()]
+    w = [w.real + 0j if abs(w.imag) <= tolerance * abs(w) else w for w in list_of(mesh_w)]
     in_box = [i for i, value in enumerate(w) if _is_in_eigenvalue_box(value, hull)]
     w_in_box = [w[i] for i in in_box]
-    scales = mean_wave_numbers_and_w_scales(np.array(w_in_box, complex), determinant.samples).tolist()
+    scales = list_of(mean_wave_numbers_and_w_scales(np.array(w_in_box, complex), determinant.samples))
     return [_Guess(*values) for values in zip(in_box, w_in_box, *scales, strict=True)]
 
 

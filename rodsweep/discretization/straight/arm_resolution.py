@@ -6,7 +6,7 @@ from math import ceil, hypot, log, pi
 
 import numpy as np
 
-from ...arrays import Array
+from ...arrays import Array, list_of
 from ...model.dispersion import local_growths_and_wave_numbers, sampled_arm, wave_numbers_of_growth_at_ends
 from ...model.material.rod_material import RodMaterial
 from ...model.rod import Rod
@@ -116,7 +116,7 @@ def _elements_for_wave(
     sample interval, |q| times length, (n,). max_order: maximum order of an element without `order_increase`.
     order_increase: increase of the order that uniform pieces need."""
     intervals = len(rod.material.breaks) - 1
-    interval_phases = phases.reshape(intervals, -1).sum(axis=1).tolist()
+    interval_phases = list_of(phases.reshape(intervals, -1).sum(axis=1))
     min_counts = tuple(required_element_count(phase, accuracy, max_order) for phase in interval_phases)
     edges, counts = _edges_and_counts(rod.material, rod.taper, min_counts)
     if max(min_counts) == first_excessive_element_count(max_order):
@@ -173,4 +173,4 @@ def _graded_edges(taper: float, start: float, stop: float, element_count: int) -
         )[1:]
         edges = (1 - radii) / (1 - taper)
     # The last edge is the break itself, unrounded, as it is compared exactly with the positions of jumps.
-    return [*edges[:-1].tolist(), float(stop)]
+    return [*list_of(edges[:-1]), float(stop)]

@@ -9,7 +9,7 @@ from typing import Any
 from bokeh.models import Column, ColumnDataSource, Div, InlineStyleSheet, Legend, LegendItem, Range1d, Span
 from bokeh.plotting import figure
 
-from ...arrays import Array
+from ...arrays import Array, list_of
 
 STABLE_COLOUR, UNSTABLE_COLOUR, NEUTRAL_COLOUR, POINT_COLOUR = "#2f86c6", "#e0672a", "#8a8a8a", "#c23b8f"
 """Colours of lines and marks, with enough contrast on light and on dark pages."""
@@ -88,7 +88,7 @@ def empty_source(names: Sequence[str], name: str | None = None) -> ColumnDataSou
 def source_columns(**arrays: Array) -> dict[str, list[Any]]:
     """Columns of a Bokeh data source, as lists by name. Bokeh would send each array in two separate
     messages."""
-    return {name: array.tolist() for name, array in arrays.items()}
+    return {name: list_of(array) for name, array in arrays.items()}
 
 
 def axis_limits(values: Array, margin: float = 0.08) -> Limits:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array
+from ...arrays import Array, list_of
 from ..material.profile import FACTOR_NAMES, RADIUS_POWERS, Profile
 from .drag import Drag, drag_estimates
 from .section import Circle, Section, Tube
@@ -109,14 +109,14 @@ class ArmGeometry:
         u = (1 - radii) / (1 - self.taper)
         base_drag = self.drags_at(self.base, 1.0)[drag_index]
         rows = list[tuple[float, ...]]()
-        for radius in (radii * self.base.section.drag_radius).tolist():
+        for radius in list_of(radii * self.base.section.drag_radius):
             local_drag = drag_estimates(1.0, self.length, radius, radius)[drag_index]
             factors = {
                 "gamma1": local_drag.axial / base_drag.axial,
                 "gamma2": local_drag.across / base_drag.across,
             }
             rows.append(tuple(factors.get(name, 1.0) for name in FACTOR_NAMES))
-        return Profile((0.0, *u[1:-1].tolist(), 1.0), tuple(rows))
+        return Profile((0.0, *list_of(u[1:-1]), 1.0), tuple(rows))
 
     def _factors_at_station(self, station: Station, poisson: float, drag_index: int) -> tuple[float, ...]:
         """k1, k2, k3, gamma1, gamma2, gamma3 at a station, each divided by the value at the base. poisson:
@@ -127,7 +127,7 @@ class ArmGeometry:
         )
         # Overflow is refused later, with a message that names the quantities.
         with np.errstate(all="ignore"):
-            return tuple((values / base_values).tolist())
+            return tuple(list_of(values / base_values))
 
     def _stiffnesses_and_drag_factors(
         self, station: Station, poisson: float, drag_index: int
@@ -160,7 +160,7 @@ class ArmGeometry:
         volume = area * lengths
         # Weight beyond a section, so the sum runs from the tip.
         volume_beyond = np.cumsum(volume[::-1])[::-1] - volume / 2
-        theta = np.ones(len(lengths))
+        theta: Array = np.ones(len(lengths))
         ratio = 0.0
         for _ in range(MAX_POWER_ITERATIONS):
             moment_step = volume_beyond * theta * lengths
@@ -200,7 +200,7 @@ def shape_of_segments(segments: Sequence[tuple[float, Circle | Tube, float]]) ->
     segment, from the base to the tip."""
     ends = np.cumsum([length for length, _, _ in segments])
     # The last end is 1 exactly, whatever the rounding of the sum.
-    end_positions = [*(ends[:-1] / ends[-1]).tolist(), 1.0]
+    end_positions = [*list_of(ends[:-1] / ends[-1]), 1.0]
     stations = [
         Station(u, section, young) for u, (_, section, young) in zip(end_positions, segments, strict=True)
     ]

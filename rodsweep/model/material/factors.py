@@ -50,7 +50,7 @@ def _cached_factors(
 def _factors_along(profile: Profile | None, taper: float, u: Array, remainder: Array) -> dict[str, Array]:
     """The result of `factors_along`, computed anew."""
     if profile is None:
-        factors = dict.fromkeys(FACTOR_NAMES, np.ones(u.shape))
+        factors: dict[str, Array] = dict.fromkeys(FACTOR_NAMES, np.ones(u.shape))
     else:
         factors = dict(zip(FACTOR_NAMES, profile.factors_at(u, remainder), strict=True))
     # A uniform rod skips the products with 1, the most frequent case.

@@ -56,7 +56,7 @@ def point_map(view: ResultView) -> PointGrid:
         raise InputError(f"{view.path}: a map is drawn over two parameters, and {varied_clause}")
     columns = view.point_columns
     (x, column), (y, row) = (np.unique(columns[name], return_inverse=True) for name in names)
-    indices = np.full((len(y), len(x)), -1)
+    indices: NDArray[np.intp] = np.full((len(y), len(x)), -1)
     indices[row.ravel(), column.ravel()] = np.arange(row.size)
     if (indices < 0).any() or indices.size != row.size:
         raise InputError(

@@ -7,7 +7,7 @@ import scipy  # loads a subpackage at its first use: scipy.interpolate takes a q
 from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
-from ...arrays import Array
+from ...arrays import Array, list_of
 from ..branch_curves import StoredBranch
 
 MIRRORED_CYCLE_COUNT = 3
@@ -105,7 +105,7 @@ def corners_by_previous_cycle(cycles: Array, extent: Array) -> dict[int, Array]:
             continue  # y alone changes, which a jump between two maxima does not do
         x = (lengths[window] - lengths[i]) / (lengths[i + 1] - lengths[i])
         differences = [_difference_of_one_sided_polynomials(x, column) for column in cycles[window].T]
-        for root in differences[1].roots():
+        for root in list_of(differences[1].roots()):
             slope_jumps = [float(difference.deriv()(root.real)) for difference in differences]
             is_between = abs(root.imag) < BRANCH_ROUNDING_TOLERANCE and 0 < root.real < 1
             if (

@@ -7,6 +7,7 @@ entries by colour.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import compress
 from math import ceil
 from typing import Literal
 
@@ -85,15 +86,15 @@ def _panel_series(axes: Axes, meanings: dict[str, str]) -> Iterator[HoverSeries]
     series_list += [_scatter_series(dots, names) for dots in scatters]
     panel_box = axes.bbox.padded(FRAME_MARGIN)
     for series in series_list:
-        is_inside = np.isfinite(series.positions).all(axis=1)
+        is_inside = np.all(np.isfinite(series.positions), axis=1)
         is_inside[is_inside] = [panel_box.contains(x, y) for x, y in series.positions[is_inside]]
-        yield HoverSeries(series.positions[is_inside], [series.texts[i] for i in np.flatnonzero(is_inside)])
+        yield HoverSeries(series.positions[is_inside], list(compress(series.texts, is_inside)))
 
 
 def _line_series(axes: Axes, line: Line2D, names: tuple[str, str]) -> HoverSeries:
     """Texts for the vertices of a line. A line across the whole panel, such as a threshold, has a single
     text, its legend entry, at the middle. names: labels of the two axes."""
-    data = np.ma.filled(np.ma.asarray(line.get_xydata(), float), np.nan).reshape(-1, 2)
+    data: Array = np.ma.filled(np.ma.asarray(line.get_xydata(), float), np.nan).reshape(-1, 2)
     with np.errstate(all="ignore"):  # zero has no position on a logarithmic axis
         pixels = line.get_transform().transform(data)
     label = _series_name(line.get_label())
@@ -106,7 +107,7 @@ def _line_series(axes: Axes, line: Line2D, names: tuple[str, str]) -> HoverSerie
 def _scatter_series(dots: PathCollection, names: tuple[str, str]) -> HoverSeries:
     """Texts for the points of a scatter plot, with the value that is shown by the colour of a point, if any.
     An invisible scatter plot contains the points between which filled contours are interpolated."""
-    data = np.ma.filled(np.ma.asarray(dots.get_offsets(), float), np.nan)
+    data: Array = np.ma.filled(np.ma.asarray(dots.get_offsets(), float), np.nan)
     pixels = dots.get_offset_transform().transform(data)
     texts = _curve_point_texts(names, data, _series_name(dots.get_label()))
     values = dots.get_array()
@@ -133,7 +134,7 @@ def _cell_series(axes: Axes, names: tuple[str, str], meanings: dict[str, str]) -
         x = cell_centres(edges[0, :, 0])
         y = cell_centres(edges[:, 0, 1])
         pixels = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
-        values = np.ma.masked_invalid(np.ma.asarray(mesh.get_array())).ravel()
+        values: np.ndarray = np.ma.masked_invalid(np.ma.asarray(mesh.get_array())).ravel()
         name = "" if mesh.colorbar is None else label_text(mesh.colorbar.ax.get_ylabel())
         drawn_indices = np.flatnonzero(~np.ma.getmaskarray(values))
         centres = axes.transData.inverted().transform(pixels[drawn_indices]).reshape(-1, 2)

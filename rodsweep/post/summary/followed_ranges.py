@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ...arrays import list_of
 from ..branch_curves import branch_ends, followed_parameter
 from ..crushing import uncrushed_ranges
 from .number_texts import span_text
@@ -35,7 +36,7 @@ def searched_range_line(points: Selection) -> str:
     view = points.view
     parameter = followed_parameter(view)
     start, end = branch_ends(view)
-    ranges = uncrushed_ranges(view, np.flatnonzero(points.mask.ravel()).tolist())
+    ranges = uncrushed_ranges(view, list_of(np.flatnonzero(points.mask.ravel())))
     if all(last <= first for first, last in ranges):
         return "no branch is followed"
     note = "" if set(ranges) <= {(start, end)} else ", where the force does not crush the rod"

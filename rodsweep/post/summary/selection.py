@@ -99,7 +99,7 @@ class DiagramRows(Selection):
 
     def with_items(self, items: np.ndarray) -> Self:
         """The rows on which the mask `items`, (..., n), is true for an item."""
-        return self.where(items.any(axis=-1))
+        return self.where(np.any(items, axis=-1))
 
     @property
     def row_values_text(self) -> str:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import list_of
 from ...results.layouts.variables import NOT_KNOWN_SUFFIX, SECONDS_VARIABLE, Variable
 
 UNUSED_WORDS = ("none", "missing")
@@ -81,7 +82,7 @@ class Column:
         elif self.values.dtype.kind == "f":
             texts = self._numbers()
         else:
-            texts = self.values.astype(str).tolist()
+            texts = list_of(self.values.astype(str))
         return ["" if is_absent else text for text, is_absent in zip(texts, self.absent, strict=True)]
 
     def _numbers(self) -> list[str]:
@@ -90,7 +91,7 @@ class Column:
         if self.is_estimate:
             return [f"{value:.{ESTIMATE_DIGITS}g}" for value in self.values]
         values = self.values + self.values.dtype.type(0)  # -0.0 + 0 is 0.0, which needs no sign
-        texts = [text.removesuffix(".0") for text in values.astype(str).tolist()]
+        texts = [text.removesuffix(".0") for text in list_of(values.astype(str))]
         if not self.is_input:
             return texts
         return [_without_rounding_error(value, text) for value, text in zip(self.values, texts, strict=True)]

@@ -14,7 +14,7 @@ import h5py
 import numpy as np
 
 from ... import __version__
-from ...arrays import Array
+from ...arrays import Array, list_of
 
 MAX_RANK_STATISTICS = 10_000
 """Maximum number of ranks whose work statistics are stored, because an attribute is limited to 64 kB."""
@@ -94,7 +94,7 @@ def _parameter_text(value: float, values: Array) -> str:
     if float(typed_text := f"{value:.{MAX_TYPED_DIGITS}g}") == value:
         return typed_text
     text = f"{value:.{MIN_EXAMPLE_DIGITS}g}"
-    near = values[np.isclose(values, value, rtol=10.0 ** (1 - MIN_EXAMPLE_DIGITS), atol=0)].tolist()
+    near = list_of(values[np.isclose(values, value, rtol=10.0 ** (1 - MIN_EXAMPLE_DIGITS), atol=0)])
     is_shared = any(other != value and f"{other:.{MIN_EXAMPLE_DIGITS}g}" == text for other in near)
     return repr(value) if is_shared else text
 

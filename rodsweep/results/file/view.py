@@ -43,7 +43,7 @@ class FileVariables(Mapping[str, np.ndarray]):
         if name not in self.values_read:
             with damage_refusals(self.path):
                 values = self.file[name][...]
-                if len(self.recent) and name in self.recent.dtype.fields:
+                if len(self.recent) and name in (self.recent.dtype.names or ()):
                     insert_records(values, name, self.recent)
                 self.values_read[name] = values
         return self.values_read[name]

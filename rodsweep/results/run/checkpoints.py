@@ -9,7 +9,7 @@ import io
 import os
 from collections.abc import Callable
 from pathlib import Path
-from typing import ClassVar, Protocol
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
@@ -52,7 +52,7 @@ class ArrayStore:
         """Stores arrays by name under `number`; replaces earlier arrays of this number."""
         stream = io.BytesIO()
         # In memory first, as the checksum is needed before anything is written.
-        np.savez(stream, **arrays)
+        np.savez(stream, **dict[str, Any](arrays))  # `savez` has keywords of other types, too
         content = self.header + stream.getvalue()
         path = self._path(number)
         self.directory.mkdir(parents=True, exist_ok=True)  # the directory may have been moved or deleted

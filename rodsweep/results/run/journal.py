@@ -68,7 +68,7 @@ class Journal:
     ) -> None:
         """Writes the records of finished points: flat indices `index`, (n,), and `values` of all variables by
         name, (n, ...)."""
-        records = np.zeros(len(index), self.record.dtype)
+        records: np.ndarray = np.zeros(len(index), self.record.dtype)
         records["index"] = index
         for name in self.variable_names:
             records[name] = values[name]

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 from numpy.polynomial import Polynomial
 
+from ...arrays import list_of
 from ...model.parameters import PARAMETERS
 from ..continuation.curve import zero_along_step
 from ..cycle.accuracy.refinement import allowed_matrix_distance
@@ -155,7 +156,7 @@ def _range_end_passed_before_fold(
         )
     )
     # A real root of a real polynomial has an imaginary part of exactly 0 in NumPy.
-    fractions = [float(root.real) for root in cubic.roots() if root.imag == 0 and 0 < root.real < 1]
+    fractions = [root.real for root in list_of(cubic.roots()) if root.imag == 0 and 0 < root.real < 1]
     return (index, length * min(fractions)) if fractions else (-1, 0.0)
 
 

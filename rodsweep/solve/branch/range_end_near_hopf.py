@@ -8,7 +8,7 @@ from math import inf
 
 import numpy as np
 
-from ...arrays import Array
+from ...arrays import Array, list_of
 from ...model.parameters import PARAMETERS
 from ..cycle.accuracy.cycle_errors import CycleErrors
 from ..orbit.measures import CycleMotion
@@ -79,7 +79,7 @@ def _point_at_range_end(
     coordinate = limits.coordinate_range[index]
     distance = abs(coordinate - hopf.parameter_coordinate)
     deviations, (period_error, amplitude_error) = _deviations_of_normal_form(start, hopf, distance)
-    period, amplitude = (np.array(hopf.period_and_amplitude_at(coordinate)) / (1 + deviations)).tolist()
+    period, amplitude = list_of(np.array(hopf.period_and_amplitude_at(coordinate)) / (1 + deviations))
     # The amplitude is the square root of the distance, which is uncertain by the error of the Hopf point.
     hopf_error = abs(hopf.crossing.error / hopf.crossing.value * hopf.parameter_coordinate)
     displacement = hopf_error / (2 * distance) if distance else inf
@@ -109,7 +109,9 @@ def _deviations_of_normal_form(
     through two successive estimates at the Hopf point. The estimate with the smallest sum of both errors is
     returned.
     """
-    last_fraction, last_estimate, last_error = inf, np.zeros(2), np.zeros(2)
+    last_fraction = inf
+    last_estimate: Array = np.zeros(2)
+    last_error: Array = np.zeros(2)
     estimates, estimate_errors = [], []
     cycles = _cycles_near_hopf(start, hopf)
     for orbit, _ in cycles:

@@ -4,7 +4,7 @@ quantities that are interpolated between two samples."""
 from dataclasses import dataclass
 from functools import cached_property
 
-from ...arrays import Complex
+from ...arrays import Complex, list_of
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -79,12 +79,12 @@ class SpectrumSample:
         Both products are positive and smooth where a and b change between real and complex; r - a is not.
         """
         first = 2 if self.oscillates else 1
-        a, b = self.w[first : first + 2].tolist()
+        a, b = list_of(self.w[first : first + 2])
         # Sum and product of two eigenvalues are smooth even where they become a pair; of one half of a pair
         # they are not.
         if not (a.imag == b.imag == 0 or a.imag * b.imag < 0):
             return None
-        slope_a, slope_b = self.slope[first : first + 2].tolist()
+        slope_a, slope_b = list_of(self.slope[first : first + 2])
         leading_growth, slope = float(self.w[0].real), float(self.slope[0].real)
         # For a pair this is the squared distance, for two real ones it is positive while both stay below.
         product = ((leading_growth - a) * (leading_growth - b)).real

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from ...arrays import Array, Complex
+from ...arrays import Array, Complex, list_of
 from ...discretization.stress.form import StressForm
 from ..orbit.element_order_ratios import without_excess_orders
 from ..orbit.matrix.workspace import NewtonWorkspace
@@ -122,7 +122,7 @@ class CycleStart:
         predictor = CyclePredictor(orbit, *(arrays[name] for name in ("places", "orders", "data")))
         eigenvalues = arrays["eigenvalues"].astype(complex)
         start = cls(predictor, next_mesh, Calibration.from_arrays(arrays), eigenvalues)
-        arm_range = ArmRange(*arrays["arm_range"].tolist())
+        arm_range = ArmRange(*list_of(arrays["arm_range"]))
         return start if isnan(arm_range.low) else replace(start, arm_range=arm_range)
 
 

@@ -4,7 +4,7 @@ motion without a cycle."""
 from dataclasses import dataclass, replace
 from math import isfinite, isnan, nan
 
-from ...arrays import Array
+from ...arrays import Array, list_of
 from ..motion.time_scheme import TimeScheme
 from .integration_settings import INTEGRATION_SETTINGS
 from .status import IntegratedCycleStatus
@@ -46,7 +46,7 @@ class ReturnTimeEstimate:
     def record_run(self, times: Array, duration: float) -> None:
         """Updates `time_per_return` from a run that follows the earlier runs. times: times of the returns,
         (k,), and duration: length of the run, both from the start of the run, in tau2."""
-        for time in (self._elapsed + times).tolist():
+        for time in list_of(self._elapsed + times):
             if self._last_return is not None:
                 # Several returns within a period of the leading mode would make the runs too short.
                 self.time_per_return = max(self.shortest, time - self._last_return)

@@ -221,7 +221,8 @@ def _eigenvalue_and_modes(matrices: StraightMatrices, guess: complex) -> tuple[c
         shift = w * (1 + NORMAL_FORM_SETTINGS.shift_offset)
         factors = matrices.lu_factors(shift)
         # Odd unknowns are transverse. The longitudinal unknowns start at 0 and remain 0.
-        q = p = np.where(matrices.form.reflection_signs < 0, 1 + 0j, 0)
+        q: Complex = np.where(matrices.form.reflection_signs < 0, 1 + 0j, 0)
+        p = q
         for _ in range(ITERATIONS_PER_SHIFT):
             q = factors.solve(matrices.times_M(q))
             p = factors.solve(matrices.times_M(p), adjoint=True)

@@ -68,7 +68,7 @@ def maximum_propagator_norm(
     settings = NORM_MAXIMUM_SETTINGS
     low, high = time_range
     time_count = max(2, int(np.ceil(np.log(high / low) / np.log(settings.first_grid_ratio))) + 1)
-    times = np.geomspace(low, high, time_count, dtype=np.float64)
+    times: Array = np.geomspace(low, high, time_count, dtype=np.float64)
     # The ends are set exactly, since `geomspace` rounds them.
     times[[0, -1]] = time_range
     squared_norms, curvatures = _squared_norms_and_curvature_bounds(propagator, times)

@@ -53,14 +53,14 @@ def bent_state_with_tip_at(system: ExplicitSystem, x: float, y: float) -> Array:
     bending = _BentRod(system)
     sign_of_y = -1.0 if y < 0 else 1.0
     # The curvature falls to 0 at the free tip, as under a force at the tip; its integral is the angle.
-    Pi = 2 * sign_of_y * FIXED_TIP_SETTINGS.start_angle * (1 - system.mesh.node_positions)
+    Pi: Array = 2 * sign_of_y * FIXED_TIP_SETTINGS.start_angle * (1 - system.mesh.node_positions)
     first_tip = bending.tip_position(Pi)
     start_radius_and_angle = np.array([hypot(*first_tip), atan2(first_tip[1], first_tip[0])])
     # At a distance equal to its length the rod would be straight, and the force not determined.
     end_radius_and_angle = np.array(
         [min(hypot(x, y), FIXED_TIP_SETTINGS.max_tip_distance_ratio * bending.length), atan2(y, x)]
     )
-    force = np.zeros(2)
+    force: Array = np.zeros(2)
     solved_fraction = 0.0
     fraction_step = FIXED_TIP_SETTINGS.first_step_fraction
     while solved_fraction < 1 and fraction_step > FIXED_TIP_SETTINGS.min_step_fraction:

@@ -12,7 +12,7 @@ from math import nan
 
 import numpy as np
 
-from ...arrays import Array, Complex
+from ...arrays import Array, Complex, list_of
 from ...discretization.elements.elements import ELEMENT_SETTINGS
 from ...discretization.elements.mesh import Mesh, shape_from_strains
 from ...discretization.elements.quadrature import lobatto_points
@@ -126,8 +126,8 @@ class CycleMotion:
     @cached_property
     def extrema(self) -> dict[str, float]:
         """Extrema of the tip over the period: tip_x_min, tip_x_max, tip_y_max and tip_theta_max, by name."""
-        minima = self._path.least_tip_values.tolist()
-        maxima = self._path.largest_tip_values.tolist()
+        minima = list_of(self._path.least_tip_values)
+        maxima = list_of(self._path.largest_tip_values)
         return {
             "tip_x_min": minima[0],
             "tip_x_max": maxima[0],

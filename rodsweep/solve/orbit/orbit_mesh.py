@@ -6,7 +6,7 @@ from math import ceil
 
 import numpy as np
 
-from ...arrays import Array
+from ...arrays import Array, list_of
 from ...discretization.elements.elements import element_orders, halved_element_edges
 from ...discretization.elements.mesh import Mesh, mesh_with_edges
 from ...discretization.elements.node_spacing import halved_spacing_ratios
@@ -154,8 +154,8 @@ class OrbitMesh:
         counts, amplitudes, (harmonic,), positions = np.split(numbers, [3, 5, 6])
         order, interval_count, stage_count = map(int, counts)
         grading = TimeGrading(float(amplitudes[0]), float(amplitudes[1]), int(harmonic))
-        edges = tuple(positions[: -2 * (len(positions) // 3)].tolist())
-        ratios = (tuple(part.tolist()) for part in np.split(positions[len(edges) :], 2))
+        edges = tuple(list_of(positions[: -2 * (len(positions) // 3)]))
+        ratios = (tuple(list_of(part)) for part in np.split(positions[len(edges) :], 2))
         # Ratios that are all 1 are stored as no ratios, because equal meshes must compare equal.
         order_ratios, spacing_ratios = (() if set(part) == {1.0} else part for part in ratios)
         return cls(edges, order, interval_count, stage_count, order_ratios, grading, spacing_ratios)

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array
+from ...arrays import Array, list_of
 from ...config.arm.axes import MAX_ARM_GRID_POINTS
 from ...config.arm.status import CRUSHED, SLENDER
 from ...config.base_config import Config
@@ -105,7 +105,7 @@ def rods_for_flutter_forces(config: Config) -> list[Rod]:
         return rods_needing_flutter_force(config.parameters.arm, config.stated_rod_material)
     require_in_range(PARAMETERS["taper"].allowed, "taper", taper_axis.array())
     return rods_needing_flutter_force(
-        config.parameters.arm, config.stated_rod_material, taper_axis.array().tolist()
+        config.parameters.arm, config.stated_rod_material, list_of(taper_axis.array())
     )
 
 

@@ -93,7 +93,7 @@ def _motion_at_hopf_point(F_name: str) -> Callable[[Record], ArmMotion]:
 
 def _motion_of_row(record: Record) -> ArmMotion:
     """Motion at the first Hopf point of a row. may_be_missed: whether rods of the row may flutter."""
-    has_flutter = np.isin(record["class"], DIAGRAM_CLASSES_WITH_POSSIBLE_FLUTTER).any(axis=-1)
+    has_flutter = np.any(np.isin(record["class"], DIAGRAM_CLASSES_WITH_POSSIBLE_FLUTTER), axis=-1)
     return replace(_motion_at_hopf_point("crossing_at")(record), may_be_missed=has_flutter)
 
 

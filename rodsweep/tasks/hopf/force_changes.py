@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array, Complex
+from ...arrays import Array, Complex, list_of
 from ...model.rod import Rod
 from ...results.layouts.spectrum import FORCE_CHANGE_VARIABLES
 from ...results.layouts.thresholds import CROSSING_KINDS
@@ -103,12 +103,12 @@ def _thresholds_on_lines(lines: ForceLines) -> Iterator[dict[str, float]]:
     from ...determinant.stability_changes import onset_between, stability_change_between
     from .oscillation_onset import locate_oscillation_onset
 
-    F = lines.F.tolist()
+    F = list_of(lines.F)
     eigenvalues = lines.eigenvalues
     onsets = _pairs_by_line(_pairs_at_oscillation_onset(lines.F, eigenvalues))
     changes = _pairs_by_line(_sign_changes(eigenvalues))
     for number in sorted(onsets.keys() | changes.keys()):
-        fixed = dict(zip(lines.names, lines.fixed_values[number].tolist(), strict=True))
+        fixed = dict(zip(lines.names, list_of(lines.fixed_values[number]), strict=True))
         rod = Rod(F=0.0, **fixed)
         eigenvalues_here = eigenvalues[number]
         rods = rod.coefficients, rod.coefficient_derivative("F")
@@ -155,7 +155,7 @@ def _pairs_at_oscillation_onset(F: Array, eigenvalues: Complex) -> NeighbourPair
     if eigenvalues.shape[-1] < 2:
         return np.empty((0, 3), np.int64)
     is_real = eigenvalues[..., :2].imag == 0
-    line, lower, upper = _neighbouring_points(np.isfinite(eigenvalues[..., :2].real).all(axis=-1))
+    line, lower, upper = _neighbouring_points(np.all(np.isfinite(eigenvalues[..., :2].real), axis=-1))
     is_far = F[upper] - F[lower] > MAX_SPACING_OVER_FORCE_RANGE * np.ptp(F)
     is_complex = eigenvalues[line, upper, 0].imag > 0
     is_onset = is_real[line, lower, 0] & (is_real[line, lower, 1] | is_far) & is_complex
@@ -174,6 +174,6 @@ def _neighbouring_points(has_eigenvalues: NDArray[np.bool_]) -> tuple[NDArray[np
 def _pairs_by_line(steps: NeighbourPairs) -> dict[int, list[tuple[int, int]]]:
     """Pairs (index of the first point, index of the second point), by index of the line."""
     pairs: dict[int, list[tuple[int, int]]] = {}
-    for line, lower, upper in steps.tolist():
+    for line, lower, upper in list_of(steps):
         pairs.setdefault(line, []).append((lower, upper))
     return pairs

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import __version__
+from ...arrays import list_of
 from ...errors import UserError
 from ...results.file.provenance import MAX_FAILURE_REASONS, failure_kind, utc_time
 from ...results.layouts.variables import SECONDS_VARIABLE, STATUS_VARIABLE, Layout
@@ -149,7 +150,7 @@ class _GuardedSolver:
             raise
         except Exception as error:
             destroy_pooled_solvers()
-            self.note_exception(indices.tolist(), error)
+            self.note_exception(list_of(indices), error)
             point_count = len(indices)
             empty = {name: np.stack([value] * point_count) for name, value in self.layout.empty_point.items()}
             return GroupResult(empty, np.zeros(point_count, np.bool_))

@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ....arrays import Array, Complex
+from ....arrays import Array, Complex, list_of
 from ....model.compiled.compilation import compiled
 from ....model.rod import Rod
 from ..arm_family import ArmFamily
@@ -94,7 +94,7 @@ def proves_no_crossing_of_arms(
     """
     w, error = eigenvalues_and_errors
     overlaps = (hulls.p[:-1] <= p.max()) & (hulls.p[1:] >= p.min())
-    intervals = zip(hulls.a[overlaps].tolist(), hulls.c[overlaps].tolist(), strict=True)
+    intervals = zip(list_of(hulls.a[overlaps]), list_of(hulls.c[overlaps]), strict=True)
     # Largest |Im w| right of the line in the hulls of all arms.
     top = max(EigenvalueHull(a, c).box(max(-line, 0.0))[1] for a, c in intervals)
     # The upper half of the line suffices only if D stays real after the division by known eigenvalues.
@@ -102,7 +102,7 @@ def proves_no_crossing_of_arms(
         return False
     samples = [ArmDeterminant(rod).gauss_samples for rod in rods]
     squares = np.array([exponent_samples.squares for exponent_samples in samples])
-    propagators = [propagators_at(family, p_of_arm)[1] for p_of_arm in p.tolist()]
+    propagators = [propagators_at(family, p_of_arm)[1] for p_of_arm in list_of(p)]
     arms = ArmsOfInterval(w, error, squares, samples[0].weights, family.largest_w, np.array(propagators))
     scale = mean_wave_number_and_w_scale(complex(line, 0.0), samples[0])[1]
     height, radius = covered_height(

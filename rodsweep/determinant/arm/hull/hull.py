@@ -29,7 +29,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ....arrays import Array
+from ....arrays import Array, list_of
 from ....model.compiled.compilation import compiled
 from ....model.local_coefficients import local_coefficient_array
 from ....model.material.rod_material import RodMaterial
@@ -55,7 +55,7 @@ def hulls_along(path: ParameterPath, low: float, high: float, point_count: int) 
     `low` to `high`. Extremes along the path are evaluated at these values only;
     `HULL_SETTINGS.enlargement_fraction` allows for the arms between."""
     p = np.linspace(low, high, point_count)
-    arms = _hull_samples([path.rod_at(x) for x in p.tolist()])
+    arms = _hull_samples([path.rod_at(x) for x in list_of(p)])
     hulls = [_hull_of_sampled_arms(_slice_of_samples(arms, slice(i, i + 2))) for i in range(point_count - 1)]
     return PathHulls(p, np.array([hull.a for hull in hulls]), np.array([hull.c for hull in hulls]))
 
@@ -90,7 +90,7 @@ def _hull_samples(rods: Sequence[Rod]) -> HullSamples:
     lengths, u, end_to_end_u = _chebyshev_points_of_material(material)
     F = np.array([rod.F for rod in rods], float)
     coefficients = local_coefficient_array(rods, u)
-    averaged_regions = np.empty((len(rods), 0, 2))
+    averaged_regions: Array = np.empty((len(rods), 0, 2))
     if material.jump_positions:
         averaged_regions = averaged_regions_of_arms(F, end_to_end_u, coefficients.reshape(6, len(F), -1))
     return HullSamples(F, lengths, coefficients, averaged_regions)

@@ -87,7 +87,7 @@ def _with_points_where_window_ends_jump(u: Array, h: float) -> tuple[Array, NDAr
     """Returns (points, sources): the points u of an arm, (points,), and two more near each u at the distance
     h from a jump, sorted; index of each point in u, -1 for the others."""
     # Each jump adds at most four points: two window ends, with a point on either side of each.
-    added = np.empty(4 * len(u))
+    added: Array = np.empty(4 * len(u))
     count = 0
     for i in range(len(u) - 1):
         if u[i + 1] - u[i] < AVERAGED_WEIGHT_SETTINGS.max_distance_across_jump:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ....arrays import Array
+from ....arrays import Array, list_of
 from ....errors import InputError
 from ....results.file.view import ResultView
 from ...summary.number_texts import rounded_text
@@ -149,7 +149,7 @@ def _selected_cycles(
     empty. is_drawable: mask, (points,). complaint: message on a chosen point that is not drawable, with
     `{status}`. Raises InputError if no point, or a chosen point, is not drawable."""
     statuses = view.status_names
-    status_words = [word.replace("_", " ") for word in statuses.tolist()]
+    status_words = [word.replace("_", " ") for word in list_of(statuses)]
     if len(points) > MAX_CYCLES:
         limit_sentence = f"one figure shows at most {MAX_CYCLES} points"
         raise InputError(f"--point is given {len(points)} times; {limit_sentence}")
@@ -162,7 +162,7 @@ def _selected_cycles(
     if not available.size:
         reason = f"the statuses of its points are: {', '.join(sorted(set(status_words)))}"
         raise InputError(f"{view.path} holds no {noun} that could be drawn; {reason}")
-    numbers = list(points) or available[:MAX_CYCLES].tolist()
+    numbers = list(points) or list_of(available[:MAX_CYCLES])
     columns = view.point_columns
     common_text, labels = shared_and_own_of_points(view, numbers)
     cycles = []

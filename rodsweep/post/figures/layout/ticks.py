@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from matplotlib.ticker import FixedFormatter, FixedLocator
 
-from ....arrays import Array
+from ....arrays import Array, list_of
 
 LABEL_GAP = 0.25
 """Smallest gap between neighbouring tick labels of a horizontal axis, divided by the height of the labels."""
@@ -54,7 +54,7 @@ def _thin_axis(axis: Axis) -> bool:
     if isinstance(axis.get_major_formatter(), FixedFormatter):
         axis.set_ticks(kept, [label.get_text() for position, label in ticks if position in kept])
     else:
-        axis.set_major_locator(FixedLocator(kept.tolist()))
+        axis.set_major_locator(FixedLocator(list_of(kept)))
     return True
 
 

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from ....arrays import Array
+from ....arrays import Array, list_of
 from ....model.crushing import uncrushed_interval
 from ....model.material.rod_material import RodMaterial
 from ....results.file.view import ResultView
@@ -52,7 +52,7 @@ def classes_between_crossings(
         if not len(stored_indices):
             continue
         low, high = _uncrushed_row(view, material, parameters, int(index))
-        ends = [low, *positions[index, stored_indices].tolist(), high]
+        ends = [low, *list_of(positions[index, stored_indices]), high]
         crossings = [(int(kinds[index, i]), int(unstable_counts[index, i])) for i in stored_indices]
         curve_words = ["monotone" if crossings[0] == (ONSET_CODE, 0) else ""]
         curve_words += [class_above_crossing(*crossing) for crossing in crossings]
@@ -70,7 +70,7 @@ def _uncrushed_row(
 ) -> tuple[float, float]:
     """First and last value on a row at which the force does not crush the rod."""
     rod = {name: float(column[index]) for name, column in view.point_columns.items()}
-    row_start, row_end = view.variables[parameters.line][[0, -1]].tolist()
+    row_start, row_end = list_of(view.variables[parameters.line][[0, -1]])
     return uncrushed_interval(material, rod, (parameters.line, row_start, row_end))
 
 

@@ -93,7 +93,7 @@ class Extension:
         for variable in self.new_layout.variables:
             target = converted[variable.name]
             target[...] = variable.fill
-            if variable.name in records.dtype.names:
+            if variable.name in (records.dtype.names or ()):
                 values = records[variable.name]
                 common_part = tuple(map(slice, np.minimum(values.shape, target.shape)))
                 target[common_part] = values[common_part]

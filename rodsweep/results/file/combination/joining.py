@@ -13,7 +13,7 @@ from typing import Any, Literal
 import h5py
 import numpy as np
 
-from ....arrays import Array
+from ....arrays import Array, list_of
 from ....config.axis import Axis
 from ....config.base_config import Config
 from ....config.document.reading import config_from_resolved, config_yaml, resolved_config
@@ -210,7 +210,7 @@ def _axis_from_values(own_axis: Axis, values: Array) -> Axis:
             axis = Axis(start=start, stop=float(values[-1]), num=len(values), spacing=spacing)
             if np.array_equal(axis.array(), values):
                 return axis
-    return Axis(values=tuple(values.tolist()))
+    return Axis(values=tuple(list_of(values)))
 
 
 def _refuse_broken_chains(sources: Sequence[ResultHeader], grids: Sequence[Points], plan: FilePlan) -> None:

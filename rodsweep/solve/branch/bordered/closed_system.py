@@ -12,7 +12,7 @@ class LinearSystemWithBorderRow:
 
     def __init__(self, matrix: Array) -> None:
         self._matrix = matrix
-        self._border = np.empty(0)
+        self._border: Array = np.empty(0)
 
     def solve(self, border: Array, right_side: Array) -> Array:
         """Solution, (M,), with the last row `border`, (M,), and the right-hand side `right_side`, (M,);

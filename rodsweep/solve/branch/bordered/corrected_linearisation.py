@@ -90,8 +90,9 @@ def corrected_linearisation(
     if subspace is None:
         return None
     first = nearby.branch_tangent(border)
-    tangent = first / (nearby.scale.directional_derivative(orbit, first) @ border)
-    errors = changes = np.full(2, np.inf)
+    tangent: Array = first / (nearby.scale.directional_derivative(orbit, first) @ border)
+    changes: Array = np.full(2, np.inf)
+    errors = changes
     for number in range(CORRECTION_SETTINGS.max_passes):
         columns, ends = nearby.residual_variations(orbit, np.vstack([tangent, subspace.increments]))
         corrected = corrected_tangent(nearby, orbit, border, tangent, (columns[:, :, :1], ends[:1]))

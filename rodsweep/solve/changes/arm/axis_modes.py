@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ....arrays import Complex
+from ....arrays import Complex, list_of
 from ...spectrum.search import Spectrum, SpectrumRequest
 from ...spectrum.status import SpectrumStatus
 from ...unsolvable import Unsolvable
@@ -33,7 +33,7 @@ class ArmModes:
         """All growing pairs if `growing`, otherwise all decaying pairs; the pair nearest to the imaginary
         axis comes first."""
         sign = 1.0 if growing else -1.0
-        known = zip(self.w.tolist(), self.slopes.tolist(), strict=True)
+        known = zip(list_of(self.w), list_of(self.slopes), strict=True)
         return sorted(
             AxisPair(sign * w.real, sign * slope.real, w.imag, slope.imag)
             for w, slope in known
@@ -105,7 +105,7 @@ class ModesAlongPath:
         the count is undecided. guesses: approximate eigenvalues of these modes, (n,), if available."""
         if guesses is None:
             guesses = self.eigenvalues_near_axis(p, math.inf, NO_EIGENVALUES)
-        refined_roots = [self.problem.eigenvalue(guess, p) for guess in guesses.tolist()]
+        refined_roots = [self.problem.eigenvalue(guess, p) for guess in list_of(guesses)]
         w = np.array([root[0] for root in refined_roots], complex)
         count = self.problem.counted_unstable_modes(p, w, np.array([root[2] for root in refined_roots]))
         slopes = np.array([root[1] for root in refined_roots], complex)
@@ -139,7 +139,7 @@ class ModesAlongPath:
                 f"{AXIS_MODE_SETTINGS.max_computed_modes} modes are computed; shorten the range"
             )
         slopes = spectrum.eigenvalues.copy()
-        for i, w in enumerate(spectrum.eigenvalues.tolist()):
+        for i, w in enumerate(list_of(spectrum.eigenvalues)):
             # The lower member of a pair follows the upper one in the list.
             slopes[i] = self.problem.eigenvalue(w, p)[1] if w.imag >= 0 else slopes[i - 1].conjugate()
         return ArmModes(p, spectrum.eigenvalues, slopes, spectrum.unstable_count)

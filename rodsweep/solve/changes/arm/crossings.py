@@ -190,7 +190,7 @@ class CrossingSearch:
         # The pairs that cross are stable on one side and unstable on the other; pairs near the axis are
         # tried first.
         for start, growing in ((left, not becomes_unstable), (right, becomes_unstable)):
-            pairs = [i for i, w in enumerate(start.w.tolist()) if w.imag > 0 and (w.real > 0) == growing]
+            pairs = [i for i, w in enumerate(start.w) if w.imag > 0 and (w.real > 0) == growing]
             for i in sorted(pairs, key=lambda i: abs(start.w[i].real)):
                 crossing = self._newton_crossing(start, i, (left.p, right.p), becomes_unstable)
                 if crossing is not None and not any(

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ....arrays import Array, Complex
+from ....arrays import Array, Complex, list_of
 from ....determinant.arm.arm_family import ArmFamily, interpolated_family
 from ....determinant.arm.count.modes_near_axis import modes_near_axis
 from ....determinant.arm.determinant import arm_determinant
@@ -109,7 +109,7 @@ class ArmPath(PathProblem):
             self._followed_arms = FollowedArms(
                 self.path, points, ARM_PATH_SETTINGS.followed_count_beyond_unstable
             )
-        return edges.tolist()
+        return list_of(edges)
 
     def expected_unstable_count(self, p: float) -> float:
         """Estimate of the number of unstable modes at p."""

@@ -7,7 +7,7 @@ a row along F then begins at a smaller pull.
 from dataclasses import replace
 from typing import NamedTuple
 
-from ....arrays import Array
+from ....arrays import Array, list_of
 from ....determinant.parameter_path import ParameterPath
 from ....model.rod import Rod
 from ...unsolvable import Unsolvable
@@ -38,7 +38,7 @@ def thresholds_of_solvable_part(
         return first_search.result
     later_starts: list[float] = []
     if name == "F":
-        later_starts = [*inner_values[inner_values < 0].tolist(), *([0.0] if start < 0 < stop else [])]
+        later_starts = [*list_of(inner_values[inner_values < 0]), *([0.0] if start < 0 < stop else [])]
     # If even the latest start fails, no part of the row can be searched.
     last_search = _search(rod, name, (later_starts[-1], stop), certify) if later_starts else first_search
     if last_search.result is None:

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ....arrays import Array
+from ....arrays import Array, list_of
 from ....determinant.exponents import EXPONENT_SETTINGS
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh
@@ -167,7 +167,7 @@ class Calibration:
         errors[2] += CALIBRATION_SETTINGS.extrema_error_per_last_harmonics * max(
             self.last_harmonics_change, 0.0
         )
-        return CycleErrors(*errors.tolist())
+        return CycleErrors(*list_of(errors))
 
 
 def calibration_of(mesh: OrbitMesh, errors: Array, orbit: Orbit, nearby: Calibration | None) -> Calibration:
@@ -180,7 +180,9 @@ def calibration_of(mesh: OrbitMesh, errors: Array, orbit: Orbit, nearby: Calibra
     if nearby is None:
         decay = CALIBRATION_SETTINGS.error_to_coefficient_decay_ratio * tails_of(orbit).space_decay
         space_decay = _limited_space_decay(np.full(ERROR_COUNT, decay))
-        time_order = np.full(ERROR_COUNT, CALIBRATION_SETTINGS.time_order_per_stage * orbit.stage_count)
+        time_order: Array = np.full(
+            ERROR_COUNT, CALIBRATION_SETTINGS.time_order_per_stage * orbit.stage_count
+        )
         return Calibration(mesh, errors, space_decay, time_order, tails, 0.0)
     previous_mesh = nearby.mesh
     space_decay = nearby.space_decay

@@ -6,6 +6,7 @@ motion decays and its steps grow; quintic interpolation has smaller errors than 
 """
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ....arrays import Array
 from ....discretization.explicit_system import ExplicitSystem
@@ -115,7 +116,9 @@ def interpolated_between_steps(steps: Array, values: Array, rates: Array, times:
     return np.where(h <= MAX_STEP_RATIO * shortest, quintic, cubic)
 
 
-def _second_derivatives(steps: Array, values: Array, rates: Array, step_indices: Array) -> Array:
+def _second_derivatives(
+    steps: Array, values: Array, rates: Array, step_indices: NDArray[np.integer]
+) -> Array:
     """Second derivatives at the times steps[step_indices], (m, used), of the quintic polynomials through
     values and rates at each of these times and its two neighbours (at an end of the run, the two nearest
     times).

@@ -108,7 +108,7 @@ class NewtonWorkspace:
     unknowns, which is proportional to their computing time on every machine."""
 
     def __init__(self) -> None:
-        self._buffer = np.empty(0)
+        self._buffer: Array = np.empty(0)
         self._reservation = 0
         self._max_work = inf
         self._work = 0.0

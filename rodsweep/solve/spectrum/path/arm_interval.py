@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ....arrays import Array, Complex
+from ....arrays import Array, Complex, list_of
 from ....determinant.arm.arm_family import ArmFamily, has_smooth_coefficients, interpolated_family
 from ....determinant.arm.completeness import (
     COMPLETENESS_SETTINGS,
@@ -201,7 +201,7 @@ def family_with_proofs(path: ParameterPath, hulls: PathHulls, W: float, line: fl
     """The family of all arms of `hulls`, for |w| <= W and for the proofs without a count of its worst arm, if
     these need hardly larger |w|; None if the arms are not smooth in p. line: Re w of the line of the proofs.
     Raises ValueError at a p without a valid arm, and FloatingPointError if no elements resolve an arm."""
-    largest_hull = max(zip(hulls.a.tolist(), hulls.c.tolist(), strict=True))
+    largest_hull = max(zip(list_of(hulls.a), list_of(hulls.c), strict=True))
     proof_w = [
         points[-1]
         for point_count in COMPLETENESS_SETTINGS.point_counts

@@ -10,7 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ....arrays import Array, Complex
+from ....arrays import Array, Complex, list_of
 from ....determinant.arm.count.count import count_right_of
 from ....determinant.arm.count.no_crossing import proves_no_crossing_of_arms, sampled_point_indices
 from ....determinant.arm.count.settings import NO_CROSSING_SETTINGS
@@ -54,7 +54,7 @@ def confirmed_line(
         return None
     determinant = ArmDeterminant(path.rod_at(p), propagators_at(interval.family, p))
     hull = hull_at(interval.hulls, p)
-    lines = [line for line in lines_for_count(w.tolist(), mode_count) if line <= rightmost]
+    lines = [line for line in lines_for_count(list_of(w), mode_count) if line <= rightmost]
     for line in [*lines, rightmost] if rightmost < math.inf else lines:
         number = count_right_of(line, determinant, hull, w, error).number
         if number is not None:
@@ -145,7 +145,7 @@ class ArmCountCarrier:
         points = sampled_point_indices(first, last)
         known_w = interval.track.w[points], interval.track.error[points]
         p = interval.p[points]
-        rods = [self.path.rod_at(value) for value in p.tolist()]
+        rods = [self.path.rod_at(value) for value in list_of(p)]
         return proves_no_crossing_of_arms(line, rods, p, known_w, interval.family, interval.hulls)
 
     def _store_proved_counts_between(self, points: list[int], lines: list[float]) -> None:

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ....arrays import Array
+from ....arrays import Array, list_of
 from ....determinant.arm.arm_family import ArmFamily
 from ....determinant.parameter_path import ParameterPath
 from ..spectrum import Spectrum, SpectrumRequest
@@ -68,7 +68,7 @@ class FollowedArms:
         """Returns (dw/dp, error of w) for an eigenvalue w that `spectrum` returned at p; None for any other
         w."""
         for eigenvalues in self._proved_by_p.get(p, []):
-            for k in np.flatnonzero(eigenvalues.track.w[0] == w).tolist():
+            for k in list_of(np.flatnonzero(eigenvalues.track.w[0] == w)):
                 return complex(eigenvalues.track.slope[0, k]), float(eigenvalues.track.error[0, k])
         return None
 

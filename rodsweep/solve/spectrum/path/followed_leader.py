@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ....arrays import Array, Complex
+from ....arrays import Array, Complex, list_of
 from ....determinant.arm.completeness import largest_w_of_proof, prove_complete
 from ....determinant.arm.count.count import count_right_of as count_of_arm
 from ....determinant.arm.count.count import largest_w_of_count
@@ -136,7 +136,7 @@ def _refined_eigenvalues(
     if not is_lost.any():
         return w, error
     # Two eigenvalues close to a double root are those of a parabola about it.
-    middles = guesses[is_lost & (guesses.imag != 0)].real.tolist()
+    middles = list_of(guesses[is_lost & (guesses.imag != 0)].real)
     real_guesses = guesses[is_lost & (guesses.imag == 0)].real
     if len(real_guesses):
         middles.append(float(real_guesses.mean()))
@@ -149,7 +149,7 @@ def _refined_eigenvalues(
 def _refined(guesses: Complex, determinant: ArmDeterminant) -> tuple[Complex, Array]:
     """Returns (w, errors): the roots of D found by Newton's method from each of `guesses`, and their absolute
     errors; (n,) each."""
-    roots = refine_eigenvalues_and_errors(guesses.tolist(), determinant, [inf] * len(guesses))
+    roots = refine_eigenvalues_and_errors(list_of(guesses), determinant, [inf] * len(guesses))
     return np.array([root for root, _ in roots]), np.array([error for _, error in roots])
 
 

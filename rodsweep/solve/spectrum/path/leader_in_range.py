@@ -14,7 +14,7 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from ....arrays import Array, Complex
+from ....arrays import Array, Complex, list_of
 from ....determinant.arm.arm_family import ArmFamily
 from ....determinant.arm.hull.hull import hulls_along
 from ....determinant.arm.hull.region import PathHulls
@@ -114,7 +114,7 @@ def leader_in_range(
     )
     if family_data is None:
         return None
-    upper_w = guesses.tolist()
+    upper_w = list_of(guesses)
     first_w = upper_w + [w.conjugate() for w in upper_w if w.imag]
     first_w.sort(key=lambda w: (-w.real, -w.imag))
     track = new_track(np.array(first_w, complex), 1)

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ....arrays import COMPLEX_NAN, Array, Complex
+from ....arrays import COMPLEX_NAN, Array, Complex, list_of
 from ....determinant.arm.hull.hull import hulls_along
 from ....determinant.certificate.winding_number import count_right_of
 from ....determinant.parameter_path import ParameterPath
@@ -168,7 +168,7 @@ def follow_spectra_of_arms(path: ParameterPath, p: Array, request: SpectrumReque
         hulls = hulls_along(path, interval.family.p_low, interval.family.p_high, hull_count)
         interval = interval._replace(hulls=hulls)
     ArmCountCarrier(path, interval, request.modes).carry_counts()
-    for i in np.flatnonzero(interval.proved_counts < request.modes).tolist():
+    for i in list_of(np.flatnonzero(interval.proved_counts < request.modes)):
         point_track = slice_track(interval.track, i, i + 1)
         interval.proved_counts[i] = confirmed_count_at(
             path, interval, float(interval.p[i]), request.modes, point_track

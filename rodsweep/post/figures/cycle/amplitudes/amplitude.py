@@ -8,7 +8,7 @@ from matplotlib import rcParams
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .....arrays import Array
+from .....arrays import Array, list_of
 from .....config.arm.axes import PARAMETER_CHANGED_ALONG
 from .....config.task.limit_cycle import LONGEST_AXIS
 from .....errors import InputError
@@ -106,7 +106,7 @@ def _mark_unknown_amplitudes(axes: Axes, series: AmplitudeSeries, colour: str) -
         "ms": 5,
         "clip_on": False,
     }
-    for word in np.unique(series.status_names).tolist():
+    for word in list_of(np.unique(series.status_names)):
         if word not in (*CYCLE_STATUSES, "straight", "missing"):
             x = series.x[series.status_names == word]
             axes.plot(x, np.ones(len(x)), "x", label=f"{word.replace('_', ' ')} (at the top)", **look)

@@ -67,7 +67,8 @@ class FoldTestFunction:
         self.border = border
         self.has_small_cycles = has_small_cycles
         tangent = matrix.branch_tangent(border)
-        self.null_vectors = tangent / (matrix.scale.directional_derivative(matrix.orbit, tangent) @ border)
+        rates = matrix.scale.directional_derivative(matrix.orbit, tangent)
+        self.null_vectors: Array = tangent / (rates @ border)
 
     def value(self, orbit: Orbit) -> float:
         """The test function at an orbit, from the last corrected tangent."""
