@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.floating]
 """NumPy array of floating-point numbers, of any shape."""
-Complex = NDArray[np.complex128]
+Complex = NDArray[np.complexfloating]
 """NumPy array of complex numbers, of any shape."""
 COMPLEX_NAN = complex(np.nan, np.nan)
 """Unknown complex number. In `nan + 0j` only the real part would be unknown."""

@@ -126,7 +126,7 @@ class StoredThresholds:
     def _stored_between(self, line: ParameterLine, low: float) -> list[LocatedThreshold]:
         """Located thresholds between the parameter value `low` and the largest parameter value of a line."""
         rod = tuple(line.parameters[other_parameter] for other_parameter in self.other_parameters)
-        high = line.x.max(initial=-inf)
+        high = float(line.x.max(initial=-inf))
         return [point for point in self.thresholds_by_rod.get(rod, []) if _lies_between(point, low, high)]
 
     def thresholds_on(self, line: ParameterLine) -> list[LocatedThreshold | UnlocatedThreshold]:
@@ -138,7 +138,7 @@ class StoredThresholds:
         """
         if not len(line.x):
             return []
-        stored_thresholds = self._stored_between(line, line.x.min())
+        stored_thresholds = self._stored_between(line, float(line.x.min()))
         thresholds: list[LocatedThreshold | UnlocatedThreshold] = [*stored_thresholds]
         changes = [point for point in stored_thresholds if point.changes_stability]
         finite_indices = np.flatnonzero(np.isfinite(self.growth_rates[line.indices]))

@@ -197,7 +197,7 @@ def refined_roots(raw: Complex, coefficients: Coefficients, sqrt_bound: float, m
     )
     # An eigenvalue in the box that leads all roots is spurious, or the trace of a root that was missed.
     spurious_count = (inside & ~is_near & (raw.real > (w[0].real if len(w) else -math.inf))).sum()
-    return Roots(indices, w, error, displacement, wave, axis, spurious_count)
+    return Roots(indices, w, error, displacement, wave, axis, int(spurious_count))
 
 
 @compiled

@@ -56,7 +56,7 @@ def branch_summary(points: Selection) -> SummaryLines:
         counted(int(points.values(f"{name}_count").clip(min=0).sum()), noun)
         for name, noun in (("branch", "branch"), ("point", "cycle"))
     )
-    line = f"{branches_text} at {count_of_total((counts > 0).sum(), len(rods), 'rod')}, {cycles_text}"
+    line = f"{branches_text} at {count_of_total(int((counts > 0).sum()), len(rods), 'rod')}, {cycles_text}"
     if np.isfinite(points.values("period")).any():
         line += points.sentence(CYCLE_RANGES_CLAUSE)
     parameter = followed_parameter(view)

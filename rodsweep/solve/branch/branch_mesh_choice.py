@@ -222,13 +222,12 @@ def _with_interpolated_errors(
     if mesh_of(start.orbit) != mesh_of(point.orbit):
         start = end
         fraction = 1.0
-    growth = np.min(
+    growth = np.array(
         [
             measured.calibration.at_equal_parameter.scaled_on_branch(point.orbit).space_time_error_growth
             for measured in (start, end)
-        ],
-        axis=0,
-    )
+        ]
+    ).min(axis=0)
     # Near a fold, errors at equal parameter grow with 1/rate; interpolation over a long step misses this.
     is_slow = abs(point.parameter_rate) < BRANCH_MESH_SETTINGS.min_rate_ratio_for_interpolation * min(
         abs(measured.parameter_rate) for measured in (start, end)

@@ -61,9 +61,9 @@ def tails_of(orbit: Orbit) -> CoefficientTails:
     end_norms = np.max([np.hypot(c[:, -1], c[:, -2]) for c in coefficients], axis=0)
     last_coefficients = end_norms / np.maximum(scales, EXPONENT_SETTINGS.min_divisor)
     # Only elements of the full order have coefficients of all orders.
-    highest_order_coefficients = np.max(
-        [c for c in coefficients if c.shape[1] == orbit.form.mesh.order + 1], axis=0
-    )
+    highest_order_coefficients = np.array(
+        [c for c in coefficients if c.shape[1] == orbit.form.mesh.order + 1]
+    ).max(axis=0)
     return CoefficientTails(
         float(last_coefficients.max()),
         float(tails_of_intervals(orbit).max()),

@@ -18,7 +18,7 @@ from .shift_invert import KRYLOV_SETTINGS, CurrentPencil, ShiftInvertSolver
 @compiled
 def _sum_of_entries(A: Array, B: Array) -> float:
     """Sum of all entries of both arrays, (n,) and (m,)."""
-    return A.sum() + B.sum()
+    return float(A.sum() + B.sum())
 
 
 @compiled

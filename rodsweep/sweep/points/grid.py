@@ -134,7 +134,7 @@ def refuse_invalid_axes(
         return
     tapers = axes.get("taper", np.ones(1))
     try:
-        material.refuse_extreme_load(axes["F"], axes["k1"].min(), tapers.min())
+        material.refuse_extreme_load(axes["F"], float(axes["k1"].min()), float(tapers.min()))
     except ValueError as error:
         raise InputError(f"parameters.{error}") from None
     crushing_forces = material.relative_crushing_forces(tapers)

@@ -169,8 +169,8 @@ def _smallest_common_region(
             smallest = _smaller_region(smallest, (sqrt(square), 0.0), max_c)
     for trial in range(averaged.shape[1]):
         # With the largest a and the largest c of all arms, the region contains the region of every arm.
-        c = (1 + HULL_SETTINGS.enlargement_fraction) * averaged[:, trial, 1].max()
-        smallest = _smaller_region(smallest, (averaged[:, trial, 0].max(), c), max_c)
+        c = (1 + HULL_SETTINGS.enlargement_fraction) * float(averaged[:, trial, 1].max())
+        smallest = _smaller_region(smallest, (float(averaged[:, trial, 0].max()), c), max_c)
     # Where c2 = 0, g equals nu: only alpha = 1 keeps (g - alpha nu)^2/c2 finite.
     if not (c2 > 0).all():
         alphas = np.ones(1)

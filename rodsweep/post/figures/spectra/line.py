@@ -170,7 +170,7 @@ def _draw_direction_arrow(axes: Axes, w: Complex, colour: str) -> None:
     gaps, the part with the most points is used."""
     unbroken_parts = np.split(w, np.flatnonzero(~np.isfinite(w)))
     path = max((unbroken_part[np.isfinite(unbroken_part)] for unbroken_part in unbroken_parts), key=len)
-    ranges = max(np.ptp(path.real), 1e-300), max(np.ptp(path.imag), 1e-300)
+    ranges = max(float(np.ptp(path.real)), 1e-300), max(float(np.ptp(path.imag)), 1e-300)
     lengths = np.hypot(np.diff(path.real) / ranges[0], np.diff(path.imag) / ranges[1])
     if not lengths.sum() > 0:
         return
