@@ -18,7 +18,7 @@ from ...determinant.value import distance_to_next_root
 from ...discretization.elements.resolution import mesh_accuracy
 from ...discretization.straight.transverse_mesh import mesh_for, pencil_on
 from ...model.rod import Rod
-from .inverse_iteration import ModeVectors, mode_vectors
+from .inverse_iteration import ModeVectors, largest_relative_change, mode_vectors
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -84,22 +84,8 @@ def converged_modes(
 
 
 def _with_errors_from_coarse(coarse: ModeVectors, fine: ModeVectors, separations: Array) -> ModeVectors:
-    """`fine` with their differences from `coarse` as errors; rounding errors are added to the
-    errors of the condition numbers. separations: distance to the nearest other eigenvalue, (modes,)."""
-    mode_error = np.zeros(len(fine.condition))
-    pairs = (
-        (coarse.right_modes, fine.right_modes),
-        (coarse.mode_strains, fine.mode_strains),
-        (coarse.left_modes, fine.left_modes),
-    )
-    for coarse_field, fine_field in pairs:
-        field_size = np.abs(fine_field).max(axis=2)
-        field_change = np.abs(fine_field - coarse_field).max(axis=2)
-        # The inner where keeps the quotient that is not used from being 0/0.
-        relative_change = np.where(
-            field_size > 0, field_change / np.where(field_size > 0, field_size, 1.0), field_change
-        )
-        mode_error = np.maximum(mode_error, relative_change.max(axis=0))
+    """`fine` with their differences from `coarse` added to their rounding errors. separations: distance to
+    the nearest other eigenvalue, (modes,)."""
     # Rounding does not turn the eigenvectors of a normal operator, whose condition numbers are 1.
     rotation_by_rounding = (
         MODE_MESH_SETTINGS.condition_rounding_per_separation
@@ -108,7 +94,11 @@ def _with_errors_from_coarse(coarse: ModeVectors, fine: ModeVectors, separations
         / np.maximum(separations, EXPONENT_SETTINGS.min_divisor)
     )
     condition_change = np.abs(coarse.condition / fine.condition - 1)
-    return replace(fine, mode_error=mode_error, condition_error=condition_change + rotation_by_rounding)
+    return replace(
+        fine,
+        mode_error=fine.mode_error + largest_relative_change(coarse, fine),
+        condition_error=fine.condition_error + condition_change + rotation_by_rounding,
+    )
 
 
 def eigenvalue_separation(rod: Rod, w: complex) -> float:

@@ -11,6 +11,7 @@ from ...discretization.straight.dense_eigenproblem import AnyPencil, dense_eigen
 from ...discretization.straight.tip_layer import tip_angle_moment_ratio
 from ...model.adjoint import hermitian_tip_coefficients
 from ...model.rod import Rod
+from .inverse_iteration import eigenvalue_rounding
 from .propagator import symmetrised_shifted_inverse
 
 
@@ -33,9 +34,9 @@ class NumericalAbscissaSettings:
 NUMERICAL_ABSCISSA_SETTINGS = NumericalAbscissaSettings()
 
 
-def numerical_abscissa(rod: Rod, pencil: AnyPencil) -> float:
-    """sup Re (xi, L xi)/(xi, xi) over the domain of the operator L, in 1/tau2: the largest growth rate at t =
-    0+, on the mesh of `pencil`.
+def numerical_abscissa(rod: Rod, pencil: AnyPencil) -> tuple[float, float]:
+    """Returns (abscissa, rounding error), in 1/tau2. abscissa: sup Re (xi, L xi)/(xi, xi) over the domain of
+    the operator L, the largest growth rate at t = 0+, on the mesh of `pencil`.
 
     The largest eigenvalue of the Hermitian part (`rodsweep.model.adjoint`), approached by shifts from above.
     nan if no shift lies above this eigenvalue, which is possible only for a rod without rotational drag and
@@ -51,7 +52,7 @@ def numerical_abscissa(rod: Rod, pencil: AnyPencil) -> float:
     for _ in range(settings.max_shifts):
         H = symmetrised_shifted_inverse(A, B, shift)
         # H is symmetric but for rounding errors, and `eigvalsh` would read only one of its triangles.
-        eigenvalues = np.linalg.eigvalsh((H + H.T) / 2)
+        eigenvalues, vectors = np.linalg.eigh((H + H.T) / 2)
         # A positive eigenvalue: an eigenvalue of the operator lies above the shift.
         if eigenvalues[-1] > -settings.min_positive_ratio * eigenvalues[0]:
             shift = 2 * abs(shift) + 1
@@ -65,8 +66,12 @@ def numerical_abscissa(rod: Rod, pencil: AnyPencil) -> float:
             + settings.relative_shift_distance_above_abscissa
         )
         if shift - abscissa <= 2 * (is_close - abscissa):
-            return abscissa
+            right_side = np.zeros(len(B))
+            right_side[B > 0] = np.sqrt(B[B > 0]) * vectors[:, 0]
+            x = np.linalg.solve(A - np.diag(shift * B), right_side)[:, None]
+            rounding = eigenvalue_rounding(A, B, x, x)
+            return abscissa, float(rounding[0])
         # A shift far above the abscissa cancels in shift + 1/value: one more solve close to it restores the
         # digits.
         shift = is_close
-    return nan
+    return nan, nan

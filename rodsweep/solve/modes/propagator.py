@@ -43,9 +43,9 @@ def symmetrised_shifted_inverse(A: Array, B: Array, shift: float) -> Array:
     """B^1/2 (A - shift B)^-1 B^1/2 on the n unknowns with a time derivative, (n, n). A: (unknowns, unknowns).
     B: diagonal matrix, as (unknowns,); 0 for an unknown without time derivative.
 
-    For shift = 0 this matrix is G, the inverse of L in coordinates with a Euclidean Gamma norm. G exists for
-    every rod, also for c2 = 0 or gamma3 = 0; its zero eigenvalues are the infinite eigenvalues of L. For
-    gamma3 = 0 state and norm contain y alone.
+    This matrix is G, the inverse of L - shift in coordinates with a Euclidean Gamma norm. G exists for every
+    rod, also for c2 = 0 or gamma3 = 0, unless shift is an eigenvalue; its zero eigenvalues are the infinite
+    eigenvalues of L. For gamma3 = 0 state and norm contain y alone.
     """
     has_derivative = B > 0
     sqrt_B = np.sqrt(B[has_derivative])
@@ -54,7 +54,8 @@ def symmetrised_shifted_inverse(A: Array, B: Array, shift: float) -> Array:
 
 
 class Propagator:
-    """exp(L t) from the spectral decomposition of G = L^-1 on one mesh, for any number k of leading modes.
+    """exp(L t) from the spectral decomposition of G = (L - shift)^-1 on one mesh, for any number k of leading
+    modes.
 
     w: finite eigenvalues of the mesh, by descending real part. right, left: right and left eigenvectors of G
     as columns. generator, overlap: L_k and Z^T Q of `use_leading_modes`, (k, k); (0, 0) before its first
@@ -62,15 +63,16 @@ class Propagator:
     represent the remaining spectrum.
     """
 
-    def __init__(self, G: Array):
+    def __init__(self, G: Array, shift: float):
         self.G = G
+        self.shift = shift
         values, right_vectors = np.linalg.eig(G)
         finite = np.nonzero(
             np.abs(values) > PROPAGATOR_SETTINGS.zero_inverse_eigenvalue_ratio * np.abs(values).max()
         )[0]
-        # G is the inverse of L: its eigenvalues near 0 are the infinite eigenvalues of the pencil, which
-        # carry no dynamics.
-        w = 1 / values[finite]
+        # G is an inverse: its eigenvalues near 0 are the infinite eigenvalues of the pencil, which carry no
+        # dynamics.
+        w = shift + 1 / values[finite]
         # `lexsort` sorts by its last key first.
         order = np.lexsort((-w.imag, -w.real))
         self.w: Complex = w[order].astype(complex)
@@ -97,7 +99,7 @@ class Propagator:
         Z = _orthonormal_basis(self.left[:, :k], self.w[:k])
         # In the basis of nested invariant subspaces G is block triangular: entries below are rounding errors.
         mask = np.tri(k, dtype=bool).T | np.diag(self.w[: k - 1].imag > 0, -1)
-        self.generator = np.linalg.inv(np.where(mask, Q.T @ self.G @ Q, 0.0))
+        self.generator = np.linalg.inv(np.where(mask, Q.T @ self.G @ Q, 0.0)) + self.shift * np.eye(k)
         self.overlap = Z.T @ Q
         return k
 

@@ -133,6 +133,20 @@ class ClosedForm:
         q = np.array([complex(x) for x in self.q])
         return (a[:, None] * v).T @ np.exp(np.outer(q, points) - np.maximum(q.real, 0)[:, None])
 
+    def exact_fields(self, points):
+        """(y, theta, s, m), shape (4, points), summed in many digits."""
+        waves = [
+            [a * mp.exp(q * mp.mpf(float(u))) for u in points] for a, q in zip(self.a, self.q, strict=True)
+        ]
+        sums = [
+            [
+                mp.fsum(v[i] * wave[j] for v, wave in zip(self.v, waves, strict=True))
+                for j in range(len(points))
+            ]
+            for i in range(4)
+        ]
+        return np.array([[complex(x) for x in row] for row in sums])
+
     def product(self, other):
         total = mp.mpf(0)
         for a, q, v in zip(self.a, self.q, self.v, strict=True):
@@ -224,6 +238,35 @@ def test_modes_are_those_of_appendix_c(parameters):
         assert relative(result.vectors.left_modes[0, n], y) < 1e-11
         assert relative(result.vectors.left_modes[1, n], theta) < 1e-11
         assert result.vectors.condition[n] == pytest.approx(reference_condition(rod, w), rel=1e-11)
+
+
+@pytest.mark.kernel
+@pytest.mark.parametrize(
+    "parameters",
+    few([(-54.29, 22670.0, 1152.0, 0.00529), (23.72, 181.2, 4075.0, 0.429), (-1.88, INF, 6.187, 0.00293)], 1),
+)
+def test_errors_of_modes_include_rounding(parameters):
+    """Two meshes that share rounding errors differ by less than their errors, up to a factor of five."""
+    rod = rod_of(*parameters)
+    result = solve_modes(rod, ModesRequest(6, 1e-10, 9, computes_growth=False))
+    assert result.status == SpectrumStatus.ok
+    vectors, points = result.vectors, lobatto_points(9)
+    for n, w in enumerate(result.spectrum.eigenvalues):
+        y, theta, s, m = ClosedForm(rod, w).exact_fields(points)
+        left_y, left_theta, *_ = ClosedForm(rod, w, 1).exact_fields(points)
+        assert relative(vectors.right_modes[:, n], np.array([y, theta])) < 1e-11
+        for found, exact in (
+            (vectors.right_modes[0, n], y),
+            (vectors.right_modes[1, n], theta),
+            (vectors.mode_strains[0, n], rod.c2 * s),
+            (vectors.mode_strains[1, n], m),
+            (vectors.left_modes[0, n], left_y),
+            (vectors.left_modes[1, n], left_theta),
+        ):
+            assert relative(found, exact) < vectors.mode_error[n] < 1e-10
+        assert vectors.condition[n] == pytest.approx(
+            reference_condition(rod, w), rel=vectors.condition_error[n]
+        )
 
 
 def test_printed_form_of_appendix_c():
@@ -336,16 +379,35 @@ def test_a_decaying_rod_may_grow_at_first():
 @pytest.mark.parametrize("parameters", RODS)
 def test_abscissa_is_the_largest_root_of_the_averaged_ends(parameters):
     rod = rod_of(*parameters)
-    found = numerical_abscissa(rod, assemble_pencil(1, 24))
+    found = numerical_abscissa(rod, assemble_pencil(1, 24))[0]
     exact = ClosedForm(rod, found, 0.5).w
     assert found == pytest.approx(float(mp.re(exact)), rel=1e-11, abs=1e-10)
     assert ClosedForm(rod, found, 0.5)._root(mp.mpf(found)) == pytest.approx(exact)
 
 
+@pytest.mark.kernel
+@pytest.mark.parametrize(
+    ("parameters", "exact"),
+    few(
+        [
+            # Legendre-Galerkin matrices in 60 digits, two sizes.
+            ((5.754, INF, 115.1, 0.00017), -8.6598132112994469),
+            ((-5.193, 66.98, 584.4, 1.22e-5), -0.42042419948722422),
+            ((21.67, 6.214e5, INF, 0.00108), 64.645769861566285),
+        ],
+        2,
+    ),
+)
+def test_the_error_of_the_abscissa_includes_rounding(parameters, exact):
+    growth = solve_modes(rod_of(*parameters), ModesRequest(1, 1e-8, 3, computes_growth=True)).growth
+    assert growth.numerical_abscissa == pytest.approx(exact, abs=growth.abscissa_error, rel=0)
+    assert growth.abscissa_error < 1e-10
+
+
 def test_abscissa_is_found_where_no_bound_is_known():
     """A soft rod without rotational drag, pulled beyond its shear stiffness (g < 0)."""
     rod = Rod(F=-48.0, k1=1e6, k2=3.5, gamma3=0.0)
-    found = numerical_abscissa(rod, assemble_pencil(2, 32))
+    found = numerical_abscissa(rod, assemble_pencil(2, 32))[0]
     leading = solve_modes(
         rod, ModesRequest(1, 1e-8, 9, computes_growth=False, certify=False)
     ).spectrum.eigenvalues[0]
@@ -394,7 +456,7 @@ def polynomial_suprema(rod, degree):
 def test_abscissa_is_the_supremum_over_the_domain(parameters):
     """The form domain reaches it at once; fields with the ends of L only in the limit, like 1/degree^2."""
     rod = rod_of(*parameters)
-    exact = numerical_abscissa(rod, assemble_pencil(1, 24))
+    exact = numerical_abscissa(rod, assemble_pencil(1, 24))[0]
     over_form, over_domain = np.array([polynomial_suprema(rod, degree) for degree in (14, 28)]).T
     assert over_form == pytest.approx(exact, rel=1e-7)
     assert (over_domain < exact).all()
@@ -439,14 +501,14 @@ def test_without_rotational_drag_only_the_abscissa_jumps():
 
 def test_abscissa_is_continuous_where_theta_is_no_state_of_its_own():
     """c2 = 0, gamma3 -> 0 at first order; and c2 -> 0 at gamma3 = 0 like the layer's thickness, sqrt(c2)."""
-    limit = numerical_abscissa(Rod(F=15.0, k1=1e4, k2=INF, gamma3=0.0), assemble_pencil(1, 24))
+    limit = numerical_abscissa(Rod(F=15.0, k1=1e4, k2=INF, gamma3=0.0), assemble_pencil(1, 24))[0]
     drags = [
-        abs(numerical_abscissa(Rod(F=15.0, k1=1e4, k2=INF, gamma3=x), assemble_pencil(1, 24)) - limit)
+        abs(numerical_abscissa(Rod(F=15.0, k1=1e4, k2=INF, gamma3=x), assemble_pencil(1, 24))[0] - limit)
         for x in (1e-4, 1e-5)
     ]
     assert drags[0] / drags[1] == pytest.approx(10, rel=0.02)
     shears = [
-        abs(numerical_abscissa(Rod(F=15.0, k1=1e4, k2=x, gamma3=0.0), assemble_pencil(1, 24)) - limit)
+        abs(numerical_abscissa(Rod(F=15.0, k1=1e4, k2=x, gamma3=0.0), assemble_pencil(1, 24))[0] - limit)
         for x in (1e6, 1e8)
     ]
     assert shears[0] / shears[1] == pytest.approx(10, rel=0.02)
@@ -488,7 +550,7 @@ def test_transient_growth_is_the_largest_norm_of_the_exact_propagator(parameters
 
 def toy(generator):
     """exp(L t) of a small matrix L, all modes kept."""
-    propagator = Propagator(np.linalg.inv(np.array(generator, dtype=float)))
+    propagator = Propagator(np.linalg.inv(np.array(generator, dtype=float)), 0.0)
     assert propagator.use_leading_modes(len(generator)) == len(generator)
     return propagator
 
@@ -523,7 +585,9 @@ def test_no_pair_is_cut():
 
 def test_all_modes_of_a_mesh_say_the_same_as_few():
     """Most have decayed by 1e-100 then, and must not cost digits: w t is up to 1e6."""
-    propagator = growth_module.propagator_of(Rod(F=12.0, k1=INF, k2=INF, gamma3=0.0), assemble_pencil(1, 32))
+    propagator = growth_module.propagator_of(
+        Rod(F=12.0, k1=INF, k2=INF, gamma3=0.0), assemble_pencil(1, 32), 0.0
+    )
     norms = []
     for k in (12, 18, 32):
         assert propagator.use_leading_modes(k) == k
@@ -721,14 +785,27 @@ def test_growth_lies_between_one_and_what_the_abscissa_allows():
         assert result.growth.transient_time == 0 or result.growth.numerical_abscissa > 0
 
 
-def test_growth_under_a_strong_pull_is_not_known():
-    """The leading eigenvalue is -4e-38: rounding hides all others in the inverse of the operator."""
-    request = ModesRequest(4, 1e-8, 9, computes_growth=True)
-    result = solve_modes(Rod(F=-1e4, k1=1e4, k2=1e4, gamma3=1e-4), request)
-    assert result.status == SpectrumStatus.accuracy_not_reached
-    assert "no digit of the transient growth is known" in result.message
-    assert np.isnan(result.growth.transient_growth)
-    assert -1e-37 < result.spectrum.eigenvalues[0].real < 0
+@pytest.mark.kernel
+@pytest.mark.parametrize(
+    ("parameters", "exact"),
+    few(
+        [
+            # Legendre-Galerkin matrices in 60 digits, two sizes.
+            ((-300.0, 200.0, 1e4, 1e-4), 2.186180108731386),
+            ((-349.2, 1554.0, 19520.0, 0.0733), 4.534631091713965),
+            ((-1000.0, INF, INF, 1e-3), None),
+            ((-1e4, 1e4, 1e4, 1e-4), None),
+        ],
+        2,
+    ),
+)
+def test_growth_under_a_strong_pull_is_the_condition_of_the_leading_mode(parameters, exact):
+    """The leading eigenvalue is of order exp(F), from -1e-5 to -4e-38: a state stays at its part in the
+    leading mode once all other modes have decayed. Without a shift rounding hides all other modes."""
+    result = solve_modes(rod_of(*parameters), ModesRequest(1, 1e-7, 9, computes_growth=True))
+    assert result.status == SpectrumStatus.ok
+    growth, condition = result.growth, result.vectors.condition[0]
+    assert growth.transient_growth == pytest.approx(exact or condition, rel=growth.growth_error)
 
 
 def test_growth_is_computed_only_where_asked_for():
@@ -832,7 +909,7 @@ def test_the_distance_to_the_next_eigenvalue_is_sharp_where_it_is_small():
 def test_growth_on_a_coarse_mesh_is_refined_until_meshes_agree():
     rod = rod_of(*FIG_2A)
     exact = solve_modes(rod, TIGHT)
-    coarse, fine = (growth_module.propagator_of(rod, assemble_pencil(1, order)) for order in (4, 6))
+    coarse, fine = (growth_module.propagator_of(rod, assemble_pencil(1, order), 0.0) for order in (4, 6))
     first = growth_module.transient_growth(coarse, fine, 23.0, 1e-10)
     assert 1e-9 < abs(first.transient_growth / exact.growth.transient_growth - 1) < first.growth_error
     growth = growth_module.converged_transient_growth(rod, Resolution(1, 4), 1e-10, True, 45.0)
