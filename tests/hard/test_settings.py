@@ -88,6 +88,7 @@ WITH_FOLD = Rod(F=0.0, k1=149.9, k2=1e4, gamma3=1e-4)
 ANOTHER_START = {
     ("INTEGRATOR_SETTINGS", "relaxation_duration_ratio"),
     ("INTEGRATOR_SETTINGS", "relaxation_steps_per_period"),
+    ("INTEGRATOR_SETTINGS", "stored_relaxation_shortening"),
     ("INTEGRATOR_SETTINGS", "relaxation_tolerance"),
 }
 """Fields that define the state from which a motion starts: another value is another motion."""

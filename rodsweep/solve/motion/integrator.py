@@ -45,6 +45,8 @@ class IntegratorSettings:
     relaxation_steps_per_period: float = 1e5
     """Period divided by the first time step in `relax_fast_components`; fast components decay within ten
     steps."""
+    stored_relaxation_shortening: float = 100.0
+    """Shortening of both times if the motion is stored: 1e-3 periods cause errors of 1e-6 to 1e-5."""
     relaxation_tolerance: float = 1e-3
     """Relative local error per time step in `relax_fast_components`."""
     max_pooled_integrators: int = 8
@@ -233,15 +235,15 @@ def destroy_integrators() -> None:
     _integrators.destroy_all()
 
 
-def relax_fast_components(system: ExplicitSystem, z: Array, period: float) -> Array:
-    """The state, (unknowns,), a thousandth of `period` after the state z, (unknowns,), when the fast
-    components of z have decayed.
+def relax_fast_components(system: ExplicitSystem, z: Array, period: float, shortening: float = 1.0) -> Array:
+    """The state, (unknowns,), a thousandth of `period`/shortening after the state z, (unknowns,), when the
+    fast components of z have decayed.
 
     A scaled or interpolated state has rates of 1e10/tau2 in the components with the fast relaxation due to
     k1, k2 and 1/gamma3. The explicit first stage of ARKIMEX does not damp these components at any step
     length; backward Euler damps these components within ten steps. If the run fails, z itself is returned.
     """
-    duration = INTEGRATOR_SETTINGS.relaxation_duration_ratio * period
-    step = period / INTEGRATOR_SETTINGS.relaxation_steps_per_period
+    duration = INTEGRATOR_SETTINGS.relaxation_duration_ratio * period / shortening
+    step = period / shortening / INTEGRATOR_SETTINGS.relaxation_steps_per_period
     trajectory = integrator(system.mesh, RELAXATION_SCHEME).run(system, z, duration, step)
     return trajectory.states[-1] if trajectory.ending == EndReason.reached else z

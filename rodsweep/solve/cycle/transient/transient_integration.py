@@ -150,8 +150,7 @@ class TransientIntegration:
         return self._cycle_near(run, float(times[-1] - times[-2]), 1)
 
     def _record_returns(self, run: Trajectory, times: Array, states: Array) -> None:
-        """Counts returns and time steps of a run, and records the bending moments at its returns. times,
-        states: times and states of the returns, (k,) and (k, unknowns)."""
+        """Counts returns at `times`, (k,), and time steps, and records moments of `states`, (k, unknowns)."""
         self.returns += max(len(times), 1)
         self.steps += len(run.times) - 1
         moments = self.system.layout.stress_field(states, "m3")
@@ -182,11 +181,12 @@ class TransientIntegration:
         return bool(size >= RETURN_SETTINGS.max_straight_norm)
 
     def _state_after_fast_decay(self, z: Array) -> Array:
-        """The state, (unknowns,), after the decay of the fast components of the start z, (unknowns,). A
-        record of the motion, if any, begins at z."""
-        relaxed_state = relax_fast_components(self.system, z, self.leading_mode.period)
+        """The state, (unknowns,), after the fast decay from z, (unknowns,); a record begins at z."""
+        period, settings = self.leading_mode.period, INTEGRATOR_SETTINGS
+        shortening = settings.stored_relaxation_shortening if self.record else 1.0
+        relaxed_state = relax_fast_components(self.system, z, period, shortening)
         if self.record:
-            self.elapsed_time = INTEGRATOR_SETTINGS.relaxation_duration_ratio * self.leading_mode.period
+            self.elapsed_time = settings.relaxation_duration_ratio * period / shortening
             self.record.begin_with_relaxation(z, relaxed_state, self.elapsed_time)
         return relaxed_state
 
