@@ -140,7 +140,8 @@ def propagator_of(rod: Rod, pencil: AnyPencil, abscissa: float) -> Propagator:
     other modes. A shift of sqrt(a), of order |F|, is comparable with the decay rates of the other modes.
     """
     form = dense_eigenproblem(rod, pencil)
-    shift = sqrt(max(abscissa, 0.0))
+    # In this order `max` returns 0 for an abscissa that is not known, NaN.
+    shift = sqrt(max(0.0, abscissa))
     return Propagator(symmetrised_shifted_inverse(form.A, form.B, shift), shift)
 
 

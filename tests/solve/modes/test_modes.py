@@ -601,6 +601,15 @@ def test_a_mesh_that_makes_an_unstable_eigenvalue_up_is_refused():
     assert growth_module.transient_growth(made_up, made_up, 0.2, 1e-8).growth_error == INF
 
 
+@pytest.mark.parametrize(("abscissa", "shift"), [(float("nan"), 0.0), (-2.0, 0.0), (9.0, 3.0)])
+def test_the_inverse_of_the_operator_is_shifted_only_above_its_spectrum(abscissa, shift):
+    rod = Rod(F=-10.0, k1=1e4, k2=1e3, gamma3=0.0)
+    propagator = growth_module.propagator_of(rod, assemble_pencil(1, 16), abscissa)
+    exact = solve_spectrum(rod, SpectrumRequest(2, 1e-10, False)).eigenvalues
+    assert propagator.shift == shift
+    assert propagator.w[:2] == pytest.approx(exact, rel=1e-8)
+
+
 def test_where_nothing_can_grow_no_propagator_is_needed(monkeypatch):
     monkeypatch.setattr(growth_module, "propagator_of", None)
     result = solve_modes(Rod(F=9.8, k1=1e4, k2=1e4, gamma3=1e-4), TIGHT)
