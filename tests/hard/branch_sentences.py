@@ -32,7 +32,7 @@ LEADS_TO = {
     "a cycle that crushes a section of the rod": "left_the_model",
     "the end of the range": "range_end",
     "a force that almost crushes the rod": "crushed",
-    "a cycle beyond which no further cycle was found": "no_cycle_found",
+    "a cycle beyond which the branch was not followed": "no_cycle_found",
 }
 FARTHEST = 1.5 * (1 + 1e-12)
 """Largest ratio of the force up to which branches are followed to the end of the range."""

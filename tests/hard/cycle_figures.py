@@ -414,7 +414,7 @@ BRANCH_WORDS = {
     "symmetry breaking": "symmetry_breaking",
     "period doubling": "period_doubling",
     "section crushed (h1 = 0)": "left_the_model",
-    "no further cycle found": "no_cycle_found",
+    "not followed further": "no_cycle_found",
     "last stored cycle": "list_full",
 }
 STYLE_OF_STABILITY = {"-": 1, "--": 0, ":": -1}

@@ -88,8 +88,16 @@ def test_show_names_the_branch_that_could_not_be_followed(command):
     reasons = view.variables["special_reason"]
     reasons[reasons > 0] = END_REASONS.index("no_cycle_found")
     told = summary.branch_summary(Selection(view, np.ones((2, 1, 1, 1), bool))).answer
-    assert "1 branch ends at a cycle beyond which no further cycle was found: F = 80" in told
+    assert "1 branch ends at a cycle beyond which the branch was not followed: F = 80" in told
     assert "  k1 = 150: branch 1, at F = 80" in told
+
+
+def test_show_gives_the_limit_on_the_work_as_the_reason_of_an_end(command):
+    command.write("c.yaml", CONFIG.format(k1=150, stop="80, work: 0.1"))
+    command("run", "c.yaml")
+    page = command("show", "c.h5").stdout
+    assert "the last cycle within the limits branch.cycles and branch.work, F = " in page
+    assert "found" not in page.split("status")[0]
 
 
 def test_file_has_the_branches_in_order_and_nothing_behind_them(command):

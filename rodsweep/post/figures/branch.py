@@ -30,7 +30,7 @@ SPECIAL_POINT_MARKS = {
     "symmetry_breaking": ("^", "symmetry breaking"),
     "period_doubling": ("v", "period doubling"),
     "left_the_model": ("X", "section crushed ($h_1 = 0$)"),
-    "no_cycle_found": ("x", "no further cycle found"),
+    "no_cycle_found": ("x", "not followed further"),
     "list_full": ("|", "last stored cycle"),
 }
 """(marker, legend entry) of a special point, by kind, or by reason for the end of a branch. Other ends are

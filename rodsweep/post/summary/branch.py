@@ -36,8 +36,8 @@ BRANCH_END_WORDS = {
     "left_the_model": "a cycle that crushes a section of the rod",
     "range_end": "the end of the range",
     "crushed": "a force that almost crushes the rod",
-    "no_cycle_found": "a cycle beyond which no further cycle was found",
-    "list_full": "the last cycle for which the file has room",
+    "no_cycle_found": "a cycle beyond which the branch was not followed",
+    "list_full": "the last cycle within the limits branch.cycles and branch.work",
     "none": "an end for an unknown reason",
 }
 """Phrase for the end of a branch, by reason of the end."""
@@ -158,7 +158,7 @@ def _ends_phrase(curve: StoredBranch, parameter_name: str) -> str:
 
 def _special_lines(rods: Sequence[RodBranches], parameter_name: str) -> Iterator[str]:
     """Yields lines on the number and range of special points of each kind, and of branch ends, over all rods;
-    then a line for each branch that stopped because no further cycle was found."""
+    then a line for each branch that was not followed to its end."""
     points: dict[str, list[tuple[float, float]]] = {w: [] for w in (*SPECIAL_POINT_WORDS, *BRANCH_END_WORDS)}
     rods_and_curves = [(rod, number, curve) for rod in rods for number, curve in enumerate(rod.curves, 1)]
     entries = [curve.special[0] for _, _, curve in rods_and_curves if curve.enters_range]

@@ -179,7 +179,7 @@ def _append_next_cycle(
         is_measured = range_end is not None or is_measurement_due(end, limits.accuracy)
         last = record.assign_errors(range_end) if is_measured else end
     except Unsolvable as reason:
-        message = f"no further cycle of the branch is found: {reason}"
+        message = f"the next cycle is not solved: {reason}"
         return BranchEnd(branch_end_point(start, reason_of_failure(reason), message), complete=False)
     if range_end is None:
         return last

@@ -129,7 +129,7 @@ def _first_cycle(orbit: Orbit, name: str, limits: BranchLimits) -> BranchCycle:
             raise
         except Unsolvable as error:
             reason = error
-    raise Unsolvable(f"no cycle is found near this point: {reason}") from reason
+    raise Unsolvable(f"no cycle is solved near this point: {reason}") from reason
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -37,8 +37,8 @@ class BranchStatus(PointStatus):
     )
     stopped = (
         1,
-        "a branch was not followed to its end, because no further cycle was found, the next cycles need a "
-        "finer mesh than allowed, or the limit on the work was reached; the message says where; all other "
+        "a branch was not followed to its end, because the next cycle was not found or needs a finer mesh "
+        "than allowed, or because the limit on the work was reached; the message says where; all other "
         "branches are complete; raise the option `work` if the limit was reached, use a larger number for "
         "the accuracy if no mesh reaches it, otherwise a smaller or larger number, or shorten the range",
     )

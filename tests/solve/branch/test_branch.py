@@ -267,7 +267,7 @@ def test_branch_that_cannot_be_followed_says_where_and_why(monkeypatch):
     assert found.status == BranchStatus.stopped
     assert first.special_points[-1].kind == SpecialKind.end
     assert first.special_points[-1].reason == BranchEndReason.no_cycle_found
-    said = "no further cycle of the branch is found: there is no cycle near on the branch at F = "
+    said = "the next cycle is not solved: there is no cycle near on the branch at F = "
     assert f"branch 1: {said}{first.points[-1].parameter_value:.9g}; branch 2: {said}" in found.message
     assert first.points[-1].parameter_value > 75
     assert second.start_hopf == 1  # the other end is tried by itself
@@ -379,3 +379,4 @@ def test_a_branch_that_needs_too_fine_a_mesh_ends_with_the_limits_of_meshes(monk
     assert found.status == BranchStatus.stopped
     limits = "no mesh of at most 45 unknowns and 256 time intervals, with at most 2.1 GB for its matrix"
     assert f"{limits}, reaches the requested accuracy at F = " in found.message
+    assert "found" not in found.message

@@ -94,7 +94,7 @@ def first_asymmetric_cycle(
             return cycles.first_cycle(allowed_distance), cycles.accuracy
         except Unsolvable as error:
             reason = error
-    raise Unsolvable(f"no cycle is found near the symmetry breaking: {reason}") from reason
+    raise Unsolvable(f"no cycle is solved near the symmetry breaking: {reason}") from reason
 
 
 def _require_asymmetry(orbit: Orbit, predicted: Orbit) -> None:

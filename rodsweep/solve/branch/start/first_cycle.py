@@ -77,7 +77,7 @@ def _cycle_near_hopf_point(
                 )
             except Unsolvable as error:
                 reason = error
-    raise Unsolvable(f"no cycle is found near the Hopf point: {reason}") from reason
+    raise Unsolvable(f"no cycle is solved near the Hopf point: {reason}") from reason
 
 
 def _cycle_of_amplitude(
