@@ -497,6 +497,11 @@ def test_a_key_without_value_is_refused_without_the_word_of_a_language(tmp_path,
     [
         ("task: spectrum\nparameters: {<<: {F: 1}}\n", (), "merge keys (<<) are not allowed in a config"),
         (
+            "task: spectrum\nparameters: {F: 1e400}\n",
+            (),
+            "c.yaml, line 2, column 17: '1e400' is too large for a floating-point number",
+        ),
+        (
             "Task: spectrum\nparameters: {F: 1}\n",
             (),
             "unknown key Task; did you mean task? Its value should be ",

@@ -76,10 +76,9 @@ def parsed_yaml(text: str, source: str) -> Any:
     try:
         return yaml.load(text)
     except InputError as error:
-        raise InputError(f"{source}: {error}") from None
+        raise InputError(f"{source}{error}") from None
     except YAMLError as error:
-        position = getattr(error, "problem_mark", None)
-        location = f", line {position.line + 1}, column {position.column + 1}" if position else ""
+        location = _location_clause(getattr(error, "problem_mark", None))
         context, problem = (getattr(error, name, None) or "" for name in ("context", "problem"))
         message = printable_name(" ".join(f"{context} {problem}".split()) or " ".join(str(error).split()))
         raise InputError(f"{source}{location}: not valid YAML: {message}") from None
@@ -87,13 +86,27 @@ def parsed_yaml(text: str, source: str) -> Any:
         raise InputError(f"{source}: not valid YAML: {printable_name(error)}") from None
 
 
+def _location_clause(mark: Any) -> str:
+    """Line and column of a mark of the YAML reader, as ", line 2, column 5"; "" without a mark."""
+    return f", line {mark.line + 1}, column {mark.column + 1}" if mark else ""
+
+
 class _PlainDataParser(Parser):
-    """YAML parser that raises InputError for an anchor, an alias, a tag, or too deep nesting."""
+    """YAML parser that raises InputError for an anchor, an alias, a tag, too deep nesting, or a refused
+    scalar; the message begins with the location."""
 
     depth = 0
 
     def get_event(self) -> Event:
         event = super().get_event()
+        try:
+            self._refuse(event)
+        except InputError as error:
+            raise InputError(f"{_location_clause(event.start_mark)}: {error}") from None
+        return event
+
+    def _refuse(self, event: Any) -> None:
+        """Raises InputError for an event of the parser that is not allowed."""
         if getattr(event, "anchor", None):
             text = printable_name(("*" if isinstance(event, AliasEvent) else "&") + event.anchor)
             raise InputError(f"anchors and aliases ({text}) are not allowed in a config; write the value out")
@@ -105,7 +118,6 @@ class _PlainDataParser(Parser):
         self.depth += name.endswith("StartEvent") - name.endswith("EndEvent")
         if self.depth > MAX_KEY_DEPTH:
             raise InputError(f"keys are nested more than {MAX_KEY_DEPTH} levels deep, the limit for a config")
-        return event
 
 
 def _refuse_scalar(event: ScalarEvent) -> None:
