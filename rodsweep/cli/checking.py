@@ -54,7 +54,7 @@ def print_job_check(job: Job) -> None:
     if cost.underestimated_rods:
         console.print(
             f"this estimate is uncertain: {cost.underestimated_rods} may take a hundred times as long, and "
-            "several GB of memory; try a single point or row first"
+            "more memory; try a single point or row first"
         )
     if cost.too_large_mesh_count:
         sampled = min(MAX_SAMPLED_POINTS, job.points.count)

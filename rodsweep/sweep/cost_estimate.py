@@ -59,6 +59,9 @@ PULLED_MS_PER_LAYER_WAVE_NUMBER = 0.4
 0.8 for nine rods under pulls of 1e3 to 1e6, some unresolved; 0.02 for a rod without compliances under 1e3."""
 MIN_WAVE_NUMBER_OF_LAYERS = 25.0
 """Wave number, in 1/L, below which the first mesh of a pulled rod resolves the layers at its ends."""
+BEYOND_SHEAR_STIFFNESS_TEXT = "rods under a pull beyond the shear stiffness"
+"""Kind of rods whose spectra are not estimated reliably: of 13 rods under pulls F < -k2 nu nine took 4 to 60
+times as long as estimated, one 800 times; the time grows as gamma3 decreases."""
 MAX_SQUARED_WAVE_NUMBER = 1e8
 """Squared wave number, in 1/L^2, above which a spectrum takes no longer: no allowed mesh resolves it."""
 TWO_MESHES_TO_ROOTS_TIME = 8.0
@@ -71,29 +74,14 @@ FINER_MESH_RATIO = 4 / 3
 MODES_MS = 0.4
 """Time of the eigenvectors at one point divided by the square of the number of modes, in ms: mean over 24
 rods with 4, 8 and 12 modes each. The time is quadratic because the mesh grows with the number of modes."""
+PULLED_MODES_MS_PER_SQUARED_LAYER_WAVE_NUMBER = 0.012
+"""Further time of the eigenvectors of a pulled rod, whose mesh resolves the layers at its ends, divided by
+the squared wave number of the layers, in ms L^2: 0.009 to 0.022 for nine rods with wave numbers from 27 to
+714, 0.004 and 0.008 for two cones."""
+MAX_RESOLVED_WAVE_NUMBER = 1000.0
+"""Wave number of layers, in 1/L, above which modes take no longer: already the spectrum is not resolved."""
 GROWTH_MS = 55.0
 """Time of the transient growth of one rod, in ms: mean over the 24 rods, 52 to 75 ms with 2 to 12 modes."""
-CYCLE_FROM_MODE_SECONDS = 0.1
-"""Time of a limit cycle computed from the leading mode, in s, similar to the benchmark."""
-MIN_PULL_OF_SLOW_MOTION = 500.0
-"""Pull, in k3/L^2, from which on the motion of a rod returns to the straight state so slowly that it is
-followed to its end: at 100 it takes 0.1 s, at 1000 7 s."""
-PULLED_MOTION_SECONDS = 8.0
-"""Time of the motion of a rod under such a pull, in s: 6.5 to 9 s for pulls of 1e3 to 1e4."""
-MAX_FORCE_OF_MEASURED_CYCLES = 350.0
-"""Largest force, in k3/L^2, at which CYCLE_FROM_MODE_SECONDS holds: eight random rods under 60 to 300 took
-0.04 to 0.17 s. A rod under 400 took 2 s, one under 1500 25 s, because their motion does not repeat."""
-UNDERESTIMATED_CYCLES_TEXT = "rods far above flutter, whose motion may not repeat,"
-"""Kind of rods whose cycles may take many times as long as estimated."""
-CHAINED_CYCLE_SECONDS = 0.01
-"""Time of a limit cycle computed from the cycle of a neighbouring point, in s, similar to the benchmark."""
-MARCHED_CYCLE_SECONDS = 0.25
-"""Time of a limit cycle by time integration to a relative accuracy of 1e-5, in s: mean over 40 rods."""
-MARCHED_ACCURACY = 1e-5
-"""Relative accuracy at which MARCHED_CYCLE_SECONDS was measured."""
-MARCHED_ACCURACY_EXPONENT = 0.35
-"""Exponent of MARCHED_ACCURACY/accuracy in the time of a limit cycle by time integration, for smaller
-accuracies: three rods took nine times as long at 1e-8."""
 MEMORY_PER_UNKNOWN = 40_000
 """Memory of a rank per unknown of its largest mesh, in bytes."""
 BASE_MEMORY = 200_000_000
@@ -126,11 +114,16 @@ def with_arm_code_loading_time(cost: CostEstimate) -> CostEstimate:
 
 
 def modes_cost(
-    spectra_estimate: CostEstimate, point_count: int, mode_count: int, includes_growth: bool
+    spectra_estimate: CostEstimate, points: Points, mode_count: int, includes_growth: bool
 ) -> CostEstimate:
-    """Cost of `mode_count` eigenvectors at each of `point_count` points, from the cost `spectra_estimate` of
-    the eigenvalues. includes_growth: whether the transient growth is computed too."""
-    extra_seconds = point_count * 1e-3 * (MODES_MS * mode_count**2 + (GROWTH_MS if includes_growth else 0))
+    """Cost of `mode_count` eigenvectors at each of the `points`, from the cost `spectra_estimate` of the
+    eigenvalues. includes_growth: whether the transient growth is computed too."""
+    rods = [points.rod(int(index)) for index in sampled_points_with_rod(points)]
+    waves = np.array([_layer_wave_number(_squared_wave_number(rod)) for rod in rods] or [0.0])
+    resolved = waves[waves <= MAX_RESOLVED_WAVE_NUMBER]
+    layers_ms = PULLED_MODES_MS_PER_SQUARED_LAYER_WAVE_NUMBER * float((resolved**2).sum()) / waves.size
+    point_ms = MODES_MS * mode_count**2 + layers_ms + (GROWTH_MS if includes_growth else 0)
+    extra_seconds = points.count * 1e-3 * point_ms
     return replace(spectra_estimate, seconds=spectra_estimate.seconds + extra_seconds, unknowns=None)
 
 
@@ -187,9 +180,9 @@ def spectra_cost(points: Points, mode_count: int, accuracy: float, certify: bool
     memory = BASE_MEMORY + int(n.max()) * MEMORY_PER_UNKNOWN
     # Counted before the limit is applied, so that the user learns of rods that will not be solved.
     too_large = int((np.array(counts) > RESOLUTION_SETTINGS.max_unknowns).sum())
-    return CostEstimate(
-        float(point_ms.mean()) * 1e-3 * points.count, memory, (min(counts), max(counts)), too_large
-    )
+    doubt = BEYOND_SHEAR_STIFFNESS_TEXT if any(map(_is_beyond_shear_stiffness, rods)) else ""
+    seconds = float(point_ms.mean()) * 1e-3 * points.count
+    return CostEstimate(seconds, memory, (min(counts), max(counts)), too_large, doubt)
 
 
 def _unstable_counts_of_arms(rods: list[Rod]) -> NDArray[np.float64]:
@@ -201,18 +194,34 @@ def _unstable_counts_of_arms(rods: list[Rod]) -> NDArray[np.float64]:
 def _soft_or_pulled_rod_ms(rod: Rod) -> float:
     """Additional time of the spectrum of a uniform rod with many unstable modes, or of any rod with thin
     layers under a strong pull, in ms; 0 for all other rods."""
-    if rod.is_uniform_and_linear:
-        squared_wave_number = rod.F * rod.g
-    else:  # the unstable modes of arms are counted in `spectra_cost`
-        local = sampled_arm(rod).local
-        # Only the pull is counted here; compressed arms are in the term of unstable modes.
-        squared_wave_number = min(rod.F, 0.0) * float(np.max(local.c3 * np.maximum(local.g, 0.0)))
-    # Under pushes it is the shortest growing wave, under pulls the thickness of the layers at the ends.
-    wave_number = math.sqrt(min(abs(squared_wave_number), MAX_SQUARED_WAVE_NUMBER))
+    squared_wave_number = _squared_wave_number(rod)
     if squared_wave_number > 0:
-        count = wave_number / math.pi
+        count = math.sqrt(min(squared_wave_number, MAX_SQUARED_WAVE_NUMBER)) / math.pi
         return ROD_MS_PER_SQUARED_UNSTABLE_MODE * count**2 * (1 + (count / QUARTIC_TIME_MODES) ** 2)
-    return PULLED_MS_PER_LAYER_WAVE_NUMBER * wave_number * (wave_number > MIN_WAVE_NUMBER_OF_LAYERS)
+    return PULLED_MS_PER_LAYER_WAVE_NUMBER * _layer_wave_number(squared_wave_number)
+
+
+def _squared_wave_number(rod: Rod) -> float:
+    """Squared wave number in 1/L^2, of the shortest growing wave of a uniform rod under a push; negative for
+    the layers at the ends of any rod under a pull."""
+    if rod.is_uniform_and_linear:
+        return rod.F * rod.g
+    # The unstable modes of arms are counted in `spectra_cost`.
+    local = sampled_arm(rod).local
+    return min(rod.F, 0.0) * float(np.max(local.c3 * np.maximum(local.g, 0.0)))
+
+
+def _layer_wave_number(squared_wave_number: float) -> float:
+    """Wave number of the layers at the ends of a pulled rod, in 1/L; 0 where its first mesh resolves them.
+    squared_wave_number: as from `_squared_wave_number`."""
+    wave_number = math.sqrt(min(max(-squared_wave_number, 0.0), MAX_SQUARED_WAVE_NUMBER))
+    return wave_number if wave_number > MIN_WAVE_NUMBER_OF_LAYERS else 0.0
+
+
+def _is_beyond_shear_stiffness(rod: Rod) -> bool:
+    """Whether the pull on a rod exceeds its shear stiffness somewhere: g = nu + F c2 < 0."""
+    g = rod.g if rod.is_uniform_and_linear else float(np.min(sampled_arm(rod).local.g))
+    return rod.F < 0 and g < 0
 
 
 def _unknown_count(rod: Rod, mode_count: int, accuracy: float) -> int:
@@ -230,21 +239,3 @@ def sampled_points_with_rod(points: Points, max_count: int = MAX_SAMPLED_POINTS)
     # Rounding gives the same index twice if there are few points.
     indices = np.unique(np.linspace(0, points.count - 1, min(max_count, points.count)).astype(np.int64))
     return indices[[points.is_in_model(int(index)) for index in indices]]
-
-
-def cycles_cost(points: Points, first_count: int) -> CostEstimate:
-    """Estimated cost of the limit cycles of `points`. first_count: number of cycles computed from the leading
-    mode; all other cycles are computed from a neighbour's cycle."""
-    indices = sampled_points_with_rod(points)
-    # Without any rod in the model nothing is pulled, as for F = 0.
-    F = np.asarray(points.values_of(indices)["F"]) if indices.size else np.zeros(1)
-    pulled_count = points.count * float(np.mean(-MIN_PULL_OF_SLOW_MOTION >= F))
-    seconds = first_count * CYCLE_FROM_MODE_SECONDS + (points.count - first_count) * CHAINED_CYCLE_SECONDS
-    doubt = UNDERESTIMATED_CYCLES_TEXT if bool((F > MAX_FORCE_OF_MEASURED_CYCLES).any()) else ""
-    return CostEstimate(seconds + pulled_count * PULLED_MOTION_SECONDS, underestimated_rods=doubt)
-
-
-def marched_cycles_cost(cycle_count: int, accuracy: float) -> CostEstimate:
-    """Estimated cost of `cycle_count` limit cycles by time integration to a relative accuracy."""
-    accuracy_factor = max(1.0, MARCHED_ACCURACY / accuracy) ** MARCHED_ACCURACY_EXPONENT
-    return CostEstimate(cycle_count * MARCHED_CYCLE_SECONDS * accuracy_factor)

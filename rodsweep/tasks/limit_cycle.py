@@ -24,7 +24,8 @@ from ..results.layouts.limit_cycle import (
 )
 from ..results.layouts.variables import FilledVariable, Variable, outcome_values
 from ..solve.backend.availability import require_solvers
-from ..sweep.cost_estimate import CostEstimate, cycles_cost, marched_cycles_cost
+from ..sweep.cost_estimate import CostEstimate
+from ..sweep.cycle_cost import cycles_cost, marched_cycles_cost
 from ..sweep.first_mesh import largest_first_mesh
 from ..sweep.points.chains import Chains, SweepChains
 from ..sweep.points.grid import require_in_range

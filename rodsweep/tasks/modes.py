@@ -55,7 +55,7 @@ class ModesTask(ModesOfPointsTask):
         options = self.config.modes
         accuracy = mesh_accuracy(self.config.accuracy, needs_vectors=False)
         spectra_estimate = spectra_cost(self.points, options.modes, accuracy, options.certify)
-        return modes_cost(spectra_estimate, self.points.count, options.modes, options.growth)
+        return modes_cost(spectra_estimate, self.points, options.modes, options.growth)
 
     def solver(self) -> Solver:
         from ..solve.modes.leading_modes import ModesRequest, solve_modes

@@ -42,6 +42,10 @@ def test_cost_of_thresholds_is_finite_without_a_warning(F_max):
         ("phase_diagram", {"F": [-500, 0, 100], "k1": [2e3, 1e4], "k2": 100}, 0.5),
         ("modes", {"F": [10, 60], "k1": [1e2, 1e3, 1e4], "k2": [30, 1e4], "modes": 12}, 0.65),
         ("modes", {"F": [10, 60], "k1": [1e2, 1e3, 1e4], "k2": [30, 1e4], "modes": 2, "growth": True}, 0.75),
+        ("modes", {"F": -1e3, "k1": 200, "k2": 1e4}, 0.075),
+        ("modes", {"F": -3e3, "k1": 200, "k2": [1e4, 1e5]}, 1.3),
+        ("modes", {"F": -1e4, "k1": 200, "k2": 1e5}, 11.0),
+        ("modes", {"F": -500, "k1": 200, "k2": 1e4, "taper": 0.6}, 0.24),
         ("limit_cycle", {"F": -1e4, "k2": 1e4}, 6.5),
         ("limit_cycle", {"F": -100, "k2": 1e4}, 0.1),
         ("limit_cycle", {"F": [30, 40, 60], "k2": 100, "gamma3": 1e-2, "method": "integration"}, 5.2),
@@ -59,6 +63,15 @@ def test_the_cost_of_rows_pulled_beyond_the_shear_stiffness_is_said_to_be_uncert
     keywords = {"F": [-2e4, 0.0, 100.0], "k1": [3e5, 1e6], "k2": k2, "gamma3": 1e-4}
     doubt = job_of_tree(config_tree("phase_diagram", keywords)).task.cost().underestimated_rods
     assert doubt == ("rows that begin at a pull beyond the shear stiffness" if doubtful else "")
+
+
+@pytest.mark.parametrize(("task", "taper"), [("spectrum", 1.0), ("spectrum", 0.8), ("modes", 1.0)])
+@pytest.mark.parametrize(("F", "doubtful"), [(-100, True), (-10, False), (10, False)])
+def test_the_cost_of_spectra_beyond_the_shear_stiffness_is_said_to_be_uncertain(task, taper, F, doubtful):
+    """A rod with gamma3 = 2e-5 took 800 times as long as estimated."""
+    keywords = {"F": F, "k1": 400, "k2": 20, "gamma3": 2e-5} | ({"taper": taper} if taper < 1 else {})
+    doubt = job_of_tree(config_tree(task, keywords)).task.cost().underestimated_rods
+    assert doubt == ("rods under a pull beyond the shear stiffness" if doubtful else "")
 
 
 @pytest.mark.parametrize(("taper", "seconds"), [(0.5, (0.15, 1.0)), (1.0, (0.0, 0.02))])
