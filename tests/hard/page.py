@@ -25,7 +25,7 @@ BOOKKEEPING = (
     "time of the",
     "cost of a search",
     "unknowns of the mesh",
-    "no mesh was needed",
+    "no mesh is stored",
     "last run",
     "the ranks were busy",
     "the rank was busy",

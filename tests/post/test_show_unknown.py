@@ -240,3 +240,12 @@ def test_a_failed_search_is_not_told_as_a_search_without_thresholds(command, tas
     failed = getattr(rs.Rod(k1=1e300, k2=1e-300, gamma3=1e300), task)()
     assert (str(failed.status), failed.crossing_count) == ("failed", None)
     assert "up to" not in str(failed)
+
+
+def test_show_claims_no_mesh_only_where_the_file_stores_none(command):
+    command.write("c.yaml", "task: spectrum\nparameters: {F: -1.0e+5, k1: 146, k2: 1.0e+6, gamma3: 1.0e-4}\n")
+    command("run", "c.yaml")
+    page = command("show", "c.h5").stdout
+    assert "meshes with fewer than" in page
+    assert "no mesh is stored: eigenvalues were continued from a neighbouring point, or not found" in page
+    assert "needed" not in page

@@ -98,7 +98,7 @@ def mesh_line(points: Selection) -> str:
     unknowns = 3 * points.values("elements").astype(int) * points.values("order")
     meshless_count = int((unknowns == 0).sum())
     if meshless_count == unknowns.size:
-        return "no mesh was needed: eigenvalues were continued from a neighbouring point, or not found"
+        return "no mesh is stored: eigenvalues were continued from a neighbouring point, or not found"
     text = f"unknowns of the mesh per point: {span_text(unknowns[unknowns > 0])}"
     if meshless_count:
         text += f"; none at {counted(meshless_count, 'point')}, continued from a neighbouring point or failed"

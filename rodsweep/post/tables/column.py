@@ -114,13 +114,13 @@ def coordinate_column(name: str, unit: str, meaning: str, values: NDArray) -> Co
 
 
 def _without_rounding_error(value: float, text: str) -> str:
-    """Text of a coordinate, without rounding error if this text is much shorter: 2500 for 2500.0000000000005.
-    text: the value with all digits."""
+    """Text of a coordinate, without rounding error if this text is less than half as long: 2500 for
+    2500.0000000000005. A number typed with 17 digits keeps all of them. text: the value with all digits."""
     if not np.isfinite(value):
         return text
     rounded = f"{value:.15g}"
     is_close = abs(float(rounded) - value) <= MAX_RELATIVE_COORDINATE_ROUNDING * abs(value)
-    return rounded if is_close and len(rounded) + 2 < len(text) else text
+    return rounded if is_close and 2 * len(rounded) < len(text) else text
 
 
 def missing_values_mask(variable: Variable, values: NDArray) -> NDArray[np.bool_]:
