@@ -10,9 +10,19 @@ software or resources are missing, 70 for a bug, 75 if a run was asked to stop a
 import errno
 import io
 import os
+import signal
 import sys
+import threading
 import traceback
 from contextlib import suppress
+
+# Ctrl-C while the modules below are loaded ends the program without the traceback of an import.
+_ends_quietly = (
+    signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    and threading.current_thread() is threading.main_thread()
+)
+if _ends_quietly:
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 # Each rank is one process on one core: threads inside its BLAS would compete with the other ranks.
 # BLAS reads these variables when NumPy is imported.
@@ -27,6 +37,9 @@ from .command_line import commands  # noqa: E402 - after the environment is set
 from .launchers import prints_messages  # noqa: E402 - after the environment is set
 from .output_commands import explore, export, plot, portrait, report  # noqa: E402 - after the environment is set
 from .usage_errors import usage_error_text  # noqa: E402 - after the environment is set
+
+if _ends_quietly:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 __all__ = ["commands", "main"]
 

@@ -1,6 +1,9 @@
 """The command started afresh, as users start it, beside the loaded one from which other tests fork it."""
 
 import re
+import signal
+import subprocess
+import sys
 
 import pytest
 from contents import content, same
@@ -46,3 +49,28 @@ def test_every_command_does_the_same_started_afresh_and_loaded(command, task):
         return
     pictures = [path.with_name("c.png").read_bytes() for path in files]
     assert pictures[0] == pictures[1]
+
+
+CTRL_C_DURING_AN_IMPORT = """
+import os, signal, sys
+
+class Interrupting:
+    def find_spec(self, name, path, target=None):
+        if name == sys.argv[1]:
+            os.kill(os.getpid(), signal.SIGINT)
+
+sys.meta_path.insert(0, Interrupting())
+import rodsweep.cli
+print(signal.getsignal(signal.SIGINT) is signal.default_int_handler)
+"""
+
+
+@pytest.mark.parametrize("module", ["click", "rodsweep.cli.command_line", "no module"])
+def test_ctrl_c_while_the_program_is_loaded_ends_it_without_a_traceback(module):
+    done = subprocess.run(
+        [sys.executable, "-c", CTRL_C_DURING_AN_IMPORT, module], capture_output=True, text=True, check=False
+    )
+    assert done.stderr == ""
+    assert (done.returncode, done.stdout) == (
+        (0, "True\n") if module == "no module" else (-signal.SIGINT, "")
+    )
