@@ -15,6 +15,7 @@ import sys
 import threading
 import traceback
 from contextlib import suppress
+from typing import Any
 
 # Ctrl-C while the modules below are loaded ends the program without the traceback of an import.
 _ends_quietly = (
@@ -107,11 +108,34 @@ def _prepare_streams() -> None:
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         if getattr(sys, name) is None:
             setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_RDWR), mode))
-    for stream in (sys.stdout, sys.stderr):
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")  # a file's name may be any bytes
+            if stream is getattr(sys, f"__{name}__"):  # which stays open, as Python keeps it
+                setattr(sys, name, _with_optional_reader(stream))
     if os.environ.get("COLUMNS") == "0":  # some launchers say so where there is no window
         del os.environ["COLUMNS"]
+
+
+class _OptionalReaderFile(io.FileIO):
+    """Standard stream that discards its output after the program that read it has ended, as `head` does; the
+    command goes on, and its exit status states its own success."""
+
+    def write(self, data: Any) -> int:
+        try:
+            return super().write(data)
+        except BrokenPipeError:
+            os.dup2(os.open(os.devnull, os.O_WRONLY), self.fileno())
+            return len(data)
+
+
+def _with_optional_reader(stream: io.TextIOWrapper) -> io.TextIOWrapper:
+    """The standard stream `stream`, which discards its output after its reader has ended."""
+    stream.flush()
+    file = _OptionalReaderFile(stream.fileno(), "w", closefd=False)
+    is_flushed = stream.line_buffering or stream.write_through
+    return io.TextIOWrapper(io.BufferedWriter(file), stream.encoding, stream.errors, None, is_flushed)
 
 
 def _drop_unwritable_streams() -> None:

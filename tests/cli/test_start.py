@@ -1,5 +1,6 @@
 """The command started afresh, as users start it, beside the loaded one from which other tests fork it."""
 
+import os
 import re
 import signal
 import subprocess
@@ -74,3 +75,22 @@ def test_ctrl_c_while_the_program_is_loaded_ends_it_without_a_traceback(module):
     assert (done.returncode, done.stdout) == (
         (0, "True\n") if module == "no module" else (-signal.SIGINT, "")
     )
+
+
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+def test_a_run_whose_output_nobody_reads_is_complete_and_says_so_by_its_status(tmp_path, unbuffered):
+    (tmp_path / "c.yaml").write_text(small.CONFIGS["spectrum"])
+    reader, writer = os.pipe()
+    os.close(reader)
+    for words in (("run", "c.yaml"), ("show", "c.h5")):
+        done = subprocess.run(
+            [sys.executable, "-m", "rodsweep", *words],
+            cwd=tmp_path,
+            stdout=writer,
+            stderr=writer,
+            env=os.environ | {"PYTHONUNBUFFERED": unbuffered},
+            check=False,
+        )
+        assert done.returncode == 0
+    os.close(writer)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["c.h5", "c.yaml"]
