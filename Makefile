@@ -172,7 +172,7 @@ endef
 	warm_up() { $(BIN)/python -c "from rodsweep.solve.$$1 import warm_up; warm_up()"; }
 	warm_up cycle.reference_rod & cycle=$$!
 	warm_up spectrum.path.neighbouring_rods
-	warm_up seldom_used_kernels
+	warm_up seldom_used_functions
 	wait $$cycle
 	touch $@
 	echo 'Installed. Next: . .venv/bin/activate'

@@ -21,14 +21,21 @@ from rodsweep.config.document.refusals import allowed_values_text
 from rodsweep.config.json_schema import key_docstrings
 from rodsweep.config.material import MaterialConfig, ProfileTable
 from rodsweep.config.task.phase_diagram import PhaseDiagramConfig
-from rodsweep.config.tasks import CONFIGS
-from rodsweep.model.arm.quantities import ALL_QUANTITIES
+from rodsweep.config.tasks import CONFIG_CLASSES_BY_TASK
+from rodsweep.model.arm.quantities import ARM_FILE_VARIABLES
 from rodsweep.model.parameters import PARAMETERS
-from rodsweep.results.file.validation import FORMAT
-from rodsweep.results.layouts.detached_branches import CURVES_LOST_BEYOND, DETACHED_ROW_VARIABLES_BY_NAME
-from rodsweep.results.layouts.fold_curve_extrema import EXTREMA_UNLOCATED, fold_curve_extremum_variables
+from rodsweep.results.file.validation import FORMAT_NUMBER
+from rodsweep.results.layouts.detached_branches import (
+    DETACHED_ROW_VARIABLES_BY_NAME,
+    LOST_CURVE_ENDS_VARIABLE,
+)
+from rodsweep.results.layouts.dimensions import UNIT_AND_LONG_NAME_OF_DIMENSION
+from rodsweep.results.layouts.fold_curve_extrema import (
+    UNLOCATED_EXTREMA_VARIABLE,
+    fold_curve_extremum_variables,
+)
 from rodsweep.results.layouts.phase_diagram import (
-    CYCLE_CURVE_ENDS,
+    CYCLE_CURVE_END_REASONS,
     STABILITY_CLASSES,
     STABLE_STATES,
     bautin_curve_variables,
@@ -37,10 +44,10 @@ from rodsweep.results.layouts.phase_diagram import (
     cycle_curve_variables,
 )
 from rodsweep.results.layouts.si_variables import VALIDITY_VARIABLES
-from rodsweep.results.layouts.spectrum import FORCE_CHANGE_VARIABLES
+from rodsweep.results.layouts.spectrum import FORCE_THRESHOLD_VARIABLES
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
-from rodsweep.results.layouts.variables import DIMENSIONS, MISSING_STATUS, Variable
-from rodsweep.tasks.arm.point_solver import OutsideModelStatus
+from rodsweep.results.layouts.variables import MISSING_STATUS, Variable
+from rodsweep.tasks.arm.arm_points import OutsideModelStatus
 from rodsweep.tasks.running.job import Job, job_of_file
 
 DOCS = Path(__file__).parent
@@ -124,7 +131,8 @@ ATTRIBUTES = {
     "config": "text of the config of the last run, with its comments; changes by `--set` are at its end",
     "config_resolved": "the config with all defaults, as JSON",
     "snapshot": "time at which `rodsweep snapshot` wrote the file; empty once a run has continued it",
-    "format": f"version of the layout, {FORMAT}; see [which version reads what](#which-version-reads-what)",
+    "format": f"version of the layout, {FORMAT_NUMBER}; "
+    "see [which version reads what](#which-version-reads-what)",
     "seal": "a digest of every variable and attribute; see [the seal](#the-seal)",
     "fingerprint": "digest of the meaning of the config and of all points; a run continues a file of its own "
     "fingerprint only",
@@ -208,8 +216,8 @@ the file stays valid.
 VERSIONS = f"""
 ### Which version reads what
 
-The attribute `format` is a whole number, now {FORMAT}, that grows when a variable is added or changes its
-meaning.
+The attribute `format` is a whole number, now {FORMAT_NUMBER}, that grows when a variable is added or changes
+its meaning.
 
 - A file of a higher format is refused in one sentence that names the version of the program that wrote the
   file.
@@ -249,27 +257,27 @@ def task_path(task: str) -> Path:
 
 def parameters() -> str:
     """Table of the parameters and their tasks."""
-    tasks = {task: whole(task).config.parameters for task in CONFIGS}
+    tasks = {task: whole(task).config.parameters for task in CONFIG_CLASSES_BY_TASK}
     rows = []
     for name, p in PARAMETERS.items():
         having = [task for task, given in tasks.items() if getattr(given, name) is not None]
         default = "" if p.default is None else f"{p.default:g} as an axis; none for a spectrum"
-        if p.optional:
-            having = list(CONFIGS)
+        if p.is_optional:
+            having = list(CONFIG_CLASSES_BY_TASK)
             default = f"{p.default:g}; a dimension of the file only if given"
-        key, allowed = f"`parameters.{name}`", p.allowed.description
-        where = "all" if having == list(CONFIGS) else code(", ".join(having))
+        key, allowed = f"`parameters.{name}`", p.allowed_range.description
+        where = "all" if having == list(CONFIG_CLASSES_BY_TASK) else code(", ".join(having))
         rows.append([key, allowed, default, p.unit, p.long_name, where])
     return table(("key", "allowed", "default", "unit", "meaning", "tasks"), rows)
 
 
 def common_keys() -> str:
     """Table of the keys of every task."""
-    config = CONFIGS["spectrum"]
+    config = CONFIG_CLASSES_BY_TASK["spectrum"]
     meanings = key_docstrings(config)
     points = config.model_fields["parameters"].annotation
     assert isinstance(points, type)
-    rows = [["`task`", code(", ".join(CONFIGS)), "", "What is computed."]]
+    rows = [["`task`", code(", ".join(CONFIG_CLASSES_BY_TASK)), "", "What is computed."]]
     rows += [key_row(name, config.model_fields[name], meanings[name]) for name in ("title", "accuracy")]
     for name in ("points", "columns", "arm"):
         rows.append(key_row(f"parameters.{name}", points.model_fields[name], key_docstrings(points)[name]))
@@ -294,9 +302,12 @@ KEYS_OF_ALL = "Further keys: [parameters and keys of every task](../file-format.
 
 def task_keys(task: str) -> str:
     """Keys of one task: options, and the accuracy if the task has a different default."""
-    config = CONFIGS[task]
+    config = CONFIG_CLASSES_BY_TASK[task]
     rows = []
-    if config.model_fields["accuracy"].default != CONFIGS["spectrum"].model_fields["accuracy"].default:
+    if (
+        config.model_fields["accuracy"].default
+        != CONFIG_CLASSES_BY_TASK["spectrum"].model_fields["accuracy"].default
+    ):
         rows.append(key_row("accuracy", config.model_fields["accuracy"], key_docstrings(config)["accuracy"]))
     section = config.model_fields[task].annotation
     assert isinstance(section, type)
@@ -328,7 +339,7 @@ def dimensions() -> str:
     """Table of all dimensions except the parameters."""
     rows = [
         [f"`{name}`", LENGTHS[name], meaning]
-        for name, (_, meaning) in DIMENSIONS.items()
+        for name, (_, meaning) in UNIT_AND_LONG_NAME_OF_DIMENSION.items()
         if name not in PARAMETERS
     ]
     return table(("dimension", "length", "its coordinate"), rows)
@@ -361,13 +372,13 @@ At a point of a grid whose arm is outside the model nothing is computed, and `st
 def validity() -> str:
     """Variables on the validity of the model, and statuses of arms without a rod."""
     statuses = [[str(int(s)), f"`{s.name}`", s.sentence] for s in sorted(OutsideModelStatus)]
-    variables = variable_table(variable_row(v, ["...", *v.extra]) for v in VALIDITY_VARIABLES)
+    variables = variable_table(variable_row(v, ["...", *v.extra_dimensions]) for v in VALIDITY_VARIABLES)
     return variables + UNCOVERED + table(("value", "word", "meaning"), statuses)
 
 
 def quantities() -> str:
     """Table of the coordinates of an arm."""
-    rows = [[f"`{name}`", each.unit, each.meaning] for name, each in ALL_QUANTITIES.items()]
+    rows = [[f"`{name}`", each.unit, each.meaning] for name, each in ARM_FILE_VARIABLES.items()]
     return table(("coordinate", "unit", "meaning"), rows)
 
 
@@ -410,11 +421,11 @@ def task_variables(task: str) -> str:
 
 def words_of_diagrams() -> list[str]:
     """Tables of the words in the file of a phase diagram."""
-    ends = tuple(enumerate(CYCLE_CURVE_ENDS))
+    ends = tuple(enumerate(CYCLE_CURVE_END_REASONS))
     return [
         words("Classes", MOTIONS, STABILITY_CLASSES),
         words("Stable states with cycles", STATES, STABLE_STATES),
-        words("Ends of curves of folds and torus points", CYCLE_CURVE_ENDS, ends),
+        words("Ends of curves of folds and torus points", CYCLE_CURVE_END_REASONS, ends),
     ]
 
 
@@ -432,26 +443,29 @@ def curve_rows(job: Job) -> Iterator[tuple[str, list[str]]]:
     line, row = job.config.plane_parameters
     for variable in curve_variables(line, row).values():
         is_of_limit = variable.name.startswith(("partial_beam", "filament"))
-        yield "diagrams over F and k1" if is_of_limit else "", variable_row(variable, list(variable.extra))
+        yield (
+            "diagrams over F and k1" if is_of_limit else "",
+            variable_row(variable, list(variable.extra_dimensions)),
+        )
     for variable in criticality_variables(line, row).values():
-        yield "phase_diagram.criticality: true", variable_row(variable, list(variable.extra))
+        yield "phase_diagram.criticality: true", variable_row(variable, list(variable.extra_dimensions))
     cycle_curves = cycle_curve_variables(line, row) | fold_curve_extremum_variables(line, row)
-    counts = EXTREMA_UNLOCATED, CURVES_LOST_BEYOND
+    counts = UNLOCATED_EXTREMA_VARIABLE, LOST_CURVE_ENDS_VARIABLE
     for variable in (*(cycle_curves | DETACHED_ROW_VARIABLES_BY_NAME).values(), *counts):
-        yield "phase_diagram.cycles: true", variable_row(variable, list(variable.extra))
+        yield "phase_diagram.cycles: true", variable_row(variable, list(variable.extra_dimensions))
     third = job.config.phase_diagram.bautin_parameter
     assert third is not None
     for variable in bautin_curve_variables(line, row, third[0]).values():
-        yield "phase_diagram.bautin_along", variable_row(variable, list(variable.extra))
+        yield "phase_diagram.bautin_along", variable_row(variable, list(variable.extra_dimensions))
 
 
 def variables_of(job: Job) -> dict[str, tuple[Variable, list[str]]]:
     """The variables of a job's file by name, each with its dimensions."""
-    found = {v.name: (v, ["...", *v.extra]) for v in job.layout.variables}
+    found = {v.name: (v, ["...", *v.extra_dimensions]) for v in job.layout.variables}
     beside = [v for v, _ in job.task.variables_from_config()]
     if job.config.task in ("spectrum", "modes"):
-        beside += FORCE_CHANGE_VARIABLES
-    return found | {v.name: (v, list(v.extra)) for v in beside}
+        beside += FORCE_THRESHOLD_VARIABLES
+    return found | {v.name: (v, list(v.extra_dimensions)) for v in beside}
 
 
 def variable_row(variable: Variable, dims: list[str]) -> list[str]:
@@ -461,7 +475,7 @@ def variable_row(variable: Variable, dims: list[str]) -> list[str]:
         meaning += ": 1 yes, 0 no"
     if variable.flags:
         meaning += ": " + ", ".join(f"{value} {word}" for value, word in variable.flags)
-    fill = "NaN" if np.isnan(variable.fill) else f"{variable.fill:g}"
+    fill = "NaN" if np.isnan(variable.fill_value) else f"{variable.fill_value:g}"
     shape = f"({', '.join(dims)})" if dims else "one number"
     return [f"`{variable.name}`", shape, np.dtype(variable.dtype).name, fill, variable.units, meaning]
 
@@ -505,7 +519,9 @@ def code(names: str) -> str:
 
 def pages() -> dict[Path, str]:
     """Text of every page with tables, by its path."""
-    return {DOCS / "file-format.md": text()} | {task_path(task): task_page(task) for task in CONFIGS}
+    return {DOCS / "file-format.md": text()} | {
+        task_path(task): task_page(task) for task in CONFIG_CLASSES_BY_TASK
+    }
 
 
 if __name__ == "__main__":

@@ -8,24 +8,24 @@ the sweep continues. Any other exception is a bug.
 from datetime import date
 from typing import Any, Self
 
-BUG_STATUS = 70
+BUG_EXIT_STATUS = 70
 """Exit status of a bug: EX_SOFTWARE of sysexits.h, "internal software error"."""
-STOPPED_STATUS = 75
+STOPPED_EXIT_STATUS = 75
 """Exit status of a run stopped by a signal (EX_TEMPFAIL of sysexits.h); the same command continues the
 run."""
-MAX_VALUE_LENGTH = 60
+MAX_QUOTED_VALUE_LENGTH = 60
 """Maximum length of a quoted value in a message, in characters; longer values lose their end."""
 
 
 def short_repr(value: Any) -> str:
-    """`repr` of a value for messages, on one line, cut to `MAX_VALUE_LENGTH` characters; a phrase if `repr`
-    fails because the value is too large. A date of YAML, 2024-01-01, is shown as text."""
+    """`repr` of a value for messages, on one line, cut to `MAX_QUOTED_VALUE_LENGTH` characters; a phrase if
+    `repr` fails because the value is too large. A date of YAML, 2024-01-01, is shown as text."""
     try:
         text = " ".join((str(value) if isinstance(value, date) else repr(value)).split())
     except (ValueError, RecursionError):  # an integer of thousands of digits, or a tree too deep
         article = "an" if isinstance(value, int) else "a"
         return f"{article} {type(value).__name__} too large to be shown"
-    return text if len(text) <= MAX_VALUE_LENGTH else text[: MAX_VALUE_LENGTH - 3] + "..."
+    return text if len(text) <= MAX_QUOTED_VALUE_LENGTH else text[: MAX_QUOTED_VALUE_LENGTH - 3] + "..."
 
 
 class UserError(Exception):
@@ -34,8 +34,8 @@ class UserError(Exception):
     collective: whether every MPI rank of a run raises the error at the same statement.
     """
 
-    collective = False
-    exit_status = BUG_STATUS
+    is_collective = False
+    exit_status = BUG_EXIT_STATUS
 
     def __str__(self) -> str:
         """The message on one line: control characters, as in the name of a file, are escaped."""
@@ -43,7 +43,7 @@ class UserError(Exception):
 
     def marked_collective(self) -> Self:
         """Marks this error as collective, which means that every MPI rank raises a copy, and returns it."""
-        self.collective = True
+        self.is_collective = True
         return self
 
 

@@ -36,18 +36,18 @@ class SolveStopped(BaseException):
 class _SolvePart(NamedTuple):
     """Named part of a solve. name: prefix of the texts of reports from the part.
 
-    fractions: completed fractions of the work of the whole solve at the start and at the end of the part;
-    None if unknown.
+    completed_fractions: completed fractions of the work of the whole solve at the start and at the end of the
+    part; None if unknown.
     """
 
     name: str
-    fractions: tuple[float, float] | None
+    completed_fractions: tuple[float, float] | None
 
     def position_in_whole(self, inner: SolvePosition) -> SolvePosition:
         """Converts a position within this part into a position within the whole solve."""
         fraction = None
-        if self.fractions is not None:
-            start, end = self.fractions
+        if self.completed_fractions is not None:
+            start, end = self.completed_fractions
             fraction = start + (end - start) * (inner.completed_fraction or 0.0)
         return SolvePosition(": ".join(filter(None, (self.name, inner.text))), fraction)
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 SIBILANT_ENDINGS = ("s", "x", "z", "ch", "sh")
 """Endings of nouns whose plural ends in "es"."""
 
-SHORTEST_IN_SECONDS = 0.9995
+SHORTEST_DURATION_IN_SECONDS = 0.9995
 """`duration` writes durations of at least this many seconds in seconds; in milliseconds, three digits would
 round such a duration to 1000 ms or more."""
 
@@ -46,9 +46,9 @@ def enumeration(parts: Sequence[str], conjunction: str = "and") -> str:
 
 def duration(seconds: float) -> str:
     """A duration with three digits: in milliseconds below one second, else in seconds."""
-    return f"{1e3 * seconds:.3g} ms" if seconds < SHORTEST_IN_SECONDS else f"{seconds:.3g} s"
+    return f"{1e3 * seconds:.3g} ms" if seconds < SHORTEST_DURATION_IN_SECONDS else f"{seconds:.3g} s"
 
 
-def two_digits(value: float) -> str:
+def two_significant_digits(value: float) -> str:
     """`value` as text with two significant digits; with an exponent only from a million and below 1e-4."""
     return f"{float(f'{value:.2g}'):g}"

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from benchmarks.lapack import inverse_spectrum, whole_matrices
-from rodsweep.determinant.certificate.box import eigenvalue_box
+from rodsweep.determinant.certificate.eigenvalue_box import eigenvalue_box
 from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.discretization.elements.resolution import expected_wave_number, resolution_for
 from rodsweep.model.dispersion import largest_growth_and_wave_number
@@ -32,7 +32,7 @@ def line(name: str, values, **others: float) -> NeighbouringRods:
 def parts(whole: NeighbouringRods) -> list[NeighbouringRods]:
     """A line cut as a sweep cuts it."""
     return [
-        NeighbouringRods(whole.path, whole.values[at : at + MAX_GROUP_POINTS])
+        NeighbouringRods(whole.path, whole.parameter_values[at : at + MAX_GROUP_POINTS])
         for at in range(0, len(whole), MAX_GROUP_POINTS)
     ]
 

@@ -124,7 +124,7 @@ def store(view, path, **options):
     parameters = {name: {"values": np.unique(view.variables[name]).tolist()} for name in NAMES}
     parameters = parameters if view.is_grid else {"points": "points.csv"}
     config = {"task": "limit_cycle", "parameters": parameters, "limit_cycle": OPTIONS | options}
-    flags = tuple(item for item in view.flags.items() if item[0] >= 0)
+    flags = tuple(item for item in view.status_flags.items() if item[0] >= 0)
     layout = layout_of(config)
     columns = tuple(np.asarray(view.variables[name], float) for name in layout.parameters)
     points = Points(layout.parameters, columns, view.is_grid)

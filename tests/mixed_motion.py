@@ -26,12 +26,12 @@ def along(constant, field):
 
 def rate(form, X):
     """M dX/dt = A X + B(X, X)/2, shape (..., unknowns)."""
-    return X @ whole_A(form).T + form.bilinear(X, X) / 2
+    return X @ whole_A(form).T + form.bilinear_form(X, X) / 2
 
 
 def jacobian(form, X):
     """A + B(X, .) of one X, shape (unknowns, unknowns)."""
-    return whole_A(form) + form.bilinear(X[None], np.eye(form.unknown_count)).T
+    return whole_A(form) + form.bilinear_form(X[None], np.eye(form.unknown_count)).T
 
 
 def reaction(form, X):
@@ -40,9 +40,10 @@ def reaction(form, X):
     F r1 is the power of the force: dU/dt = F r1 - <Gamma V, V> holds to rounding on every mesh.
     """
     _, V = form.stresses_and_velocities(X)
-    WD = -form.mesh.matrices.weak_derivative.T
+    WD = -form.mesh.node_matrices.weak_derivative_matrix.T
     return (
-        form.mesh.quadrature[-1] * ad(along(form.rod.balance_coefficients.rest_strain, V), V)[..., -1]
+        form.mesh.quadrature_weights[-1]
+        * ad(along(form.rod.balance_coefficients.straight_state_strain, V), V)[..., -1]
         - V @ WD[:, -1]
     )
 
@@ -54,7 +55,7 @@ def energy(form, X):
         energy_per_length(
             form.rod.balance_coefficients, S + along(form.rod.balance_coefficients.tip_stress, S)
         )
-        @ form.mesh.quadrature
+        @ form.mesh.quadrature_weights
     )
 
 
@@ -62,5 +63,5 @@ def dissipation(form, X):
     """<Gamma V, V>, the power lost to the fluid in k3/(L tau2), shape (...)."""
     return (
         dissipated_power_per_length(form.rod.balance_coefficients, form.stresses_and_velocities(X)[1])
-        @ form.mesh.quadrature
+        @ form.mesh.quadrature_weights
     )

@@ -17,8 +17,8 @@ import click
 import rodsweep as rs
 from rodsweep import errors
 from rodsweep.cli import commands
-from rodsweep.config.tasks import CONFIGS
-from rodsweep.errors import STOPPED_STATUS
+from rodsweep.config.tasks import CONFIG_CLASSES_BY_TASK
+from rodsweep.errors import STOPPED_EXIT_STATUS
 from rodsweep.model.parameters import PARAMETERS
 from rodsweep.post.tables.table_names import DEFAULT_TABLE, TABLE_NAMES
 
@@ -68,19 +68,19 @@ def variables(page, task: str) -> dict[str, str]:
 def promised() -> dict[str, dict[str, dict[str, str]]]:
     """Every promised name of today with what it stands for: kind, section, name, meaning."""
     page = reference()
-    statuses = {task: page.whole(task).task.solver().statuses for task in CONFIGS}
+    statuses = {task: page.whole(task).task.solver().statuses for task in CONFIG_CLASSES_BY_TASK}
     return {
-        "config keys": {task: keys_of(config) for task, config in CONFIGS.items()},
+        "config keys": {task: keys_of(config) for task, config in CONFIG_CLASSES_BY_TASK.items()},
         "parameters": {"": {name: p.unit for name, p in PARAMETERS.items()}},
-        "variables": {task: variables(page, task) for task in CONFIGS},
+        "variables": {task: variables(page, task) for task in CONFIG_CLASSES_BY_TASK},
         "attributes": {"": {name: "" for names in page.ATTRIBUTES for name in names.split(", ")}},
         "statuses": {task: {s.name: str(int(s)) for s in found} for task, found in statuses.items()},
         "exit statuses": {
             "": {
-                "bug": str(errors.BUG_STATUS),
+                "bug": str(errors.BUG_EXIT_STATUS),
                 "bad input": str(errors.InputError.exit_status),
                 "incomplete environment": str(errors.EnvironmentIncomplete.exit_status),
-                "to be continued": str(STOPPED_STATUS),
+                "to be continued": str(STOPPED_EXIT_STATUS),
             }
         },
         "tables": {"": dict.fromkeys(TABLE_NAMES.values(), ""), "first": dict(DEFAULT_TABLE)},

@@ -21,7 +21,7 @@ from surveyed import RODS
 from rodsweep.cli import commands
 from rodsweep.config import read_config
 from rodsweep.config.document.parsing import parsed_yaml
-from rodsweep.config.tasks import CONFIGS
+from rodsweep.config.tasks import CONFIG_CLASSES_BY_TASK
 from rodsweep.errors import InputError
 
 DOCS = ROOT / "docs"
@@ -32,7 +32,7 @@ MOST_LINES = 150
 """Lines of the README."""
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
 PLACE = re.compile(r"(rodsweep|tests|docs|configs|jobs|install|\.ci)/[\w./*-]*")
-TASKS = "|".join(CONFIGS)
+TASKS = "|".join(CONFIG_CLASSES_BY_TASK)
 NOT_OURS = "--array"
 """An option of another program."""
 SOMETIMES = {"failure_reasons", "snapshot", "gamma1", "coordinates"}
@@ -102,7 +102,7 @@ def test_readme_is_short():
 
 def test_readme_names_every_task_and_the_site():
     text = (ROOT / "README.md").read_text()
-    assert all(f"`{task}`" in text for task in CONFIGS)
+    assert all(f"`{task}`" in text for task in CONFIG_CLASSES_BY_TASK)
     assert "`make docs`" in text and "(docs/index.md)" in text
 
 
@@ -177,7 +177,11 @@ def test_keys_exist(page):
         found = re.fullmatch(rf"(parameters|{TASKS})\.(\w+)([:=> ].*)?", text)
         if found:
             section, key = found.group(1, 2)
-            owners = CONFIGS.values() if section == "parameters" else [CONFIGS[section]]
+            owners = (
+                CONFIG_CLASSES_BY_TASK.values()
+                if section == "parameters"
+                else [CONFIG_CLASSES_BY_TASK[section]]
+            )
             assert any(key in owner.model_fields[section].annotation.model_fields for owner in owners), text
 
 
@@ -248,7 +252,7 @@ def test_reference_is_that_of_the_code():
         assert page.read_text() == text, "write it anew: python docs/reference.py"
 
 
-@pytest.mark.parametrize("task", CONFIGS)
+@pytest.mark.parametrize("task", CONFIG_CLASSES_BY_TASK)
 def test_other_parameters_are_refused(task, tmp_path):
     """What the table of parameters does not list for a task its config does not take."""
     config = reference().whole(task).config

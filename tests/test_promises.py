@@ -5,7 +5,7 @@ import json
 from conftest import ROOT
 from promised import STORED, broken, joined, promised
 
-from rodsweep.results.file.validation import FORMAT
+from rodsweep.results.file.validation import FORMAT_NUMBER
 
 
 def test_every_promised_name_means_what_it_meant():
@@ -31,4 +31,4 @@ def test_a_name_that_goes_or_changes_is_seen():
 def test_the_page_names_every_kind_of_promise_and_the_format():
     page = (ROOT / "docs" / "promises.md").read_text()
     assert all(f"**{kind.capitalize()}**" in page for kind in json.loads(STORED.read_text()))
-    assert f"`format` {FORMAT}" in page
+    assert f"`format` {FORMAT_NUMBER}" in page

@@ -5,11 +5,11 @@ import pytest
 
 from rodsweep.post.summary.number_texts import (
     error_text,
-    number_with_error,
-    ranges_text,
+    number_with_error_text,
+    parameter_ranges_text,
     rounded_number_and_total_error,
     rounded_text,
-    span_text,
+    value_range_text,
 )
 from rodsweep.wording import count_of_total, counted, duration, is_or_are
 
@@ -60,7 +60,7 @@ def test_a_part_is_named_by_its_whole():
     ],
 )
 def test_a_range_has_no_digit_that_its_errors_do_not_leave(values, errors, text):
-    assert span_text(np.array(values), None if errors is None else np.array(errors)) == text
+    assert value_range_text(np.array(values), None if errors is None else np.array(errors)) == text
 
 
 def test_a_number_and_its_error_contain_the_true_number():
@@ -70,7 +70,7 @@ def test_a_number_and_its_error_contain_the_true_number():
         value, error = float(random.normal() * 10 ** random.uniform(-9, 9)), 10 ** random.uniform(-12, 0)
         error *= abs(value)
         true = value + error * random.choice([-1, 1])
-        text, _, stated = number_with_error(value, error).partition(" (+- ")
+        text, _, stated = number_with_error_text(value, error).partition(" (+- ")
         assert abs(float(text) - true) <= float(stated.rstrip(")")) * (1 + 1e-12) + 1e-15 * abs(value)
         assert rounded_number_and_total_error(value, error)[0] == text
         end = rounded_text(value, error)
@@ -90,7 +90,7 @@ def test_an_error_is_rounded_up():
 
 
 def test_ends_of_ranges_have_the_digits_of_their_own_errors():
-    assert ranges_text([(1.23456789123, 2.3456789), (5.0, 7.125)], {2.3456789: 1e-3}) == (
+    assert parameter_ranges_text([(1.23456789123, 2.3456789), (5.0, 7.125)], {2.3456789: 1e-3}) == (
         "1.23456789 to 2.35, 5 to 7.125"
     )
-    assert ranges_text([], {}) == "none"
+    assert parameter_ranges_text([], {}) == "none"

@@ -12,9 +12,11 @@ ENTRY = """
             symbol=r"r",
             unit="1",
             meaning="factor of rotational drag",
-            allowed=Range(lambda value: 0 < value < inf, "a finite number above 0", {"exclusiveMinimum": 0}),
+            allowed_range=Range(
+                lambda value: 0 < value < inf, "a finite number above 0", {"exclusiveMinimum": 0}
+            ),
             default=1.0,
-            scaled_names=("gamma3",),
+            scaled_coefficient_names=("gamma3",),
         ),
 """
 END = '    )\n}\n"""All parameters of the rod by name'

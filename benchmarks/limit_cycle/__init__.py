@@ -3,7 +3,7 @@
 from functools import partial
 from pathlib import Path
 
-from rodsweep.bench.limit_cycle.study import FOLLOWING_RACE, WAITING_RACE
+from rodsweep.bench.limit_cycle.study import CYCLE_FOLLOWING_RACE, SETTLING_TO_CYCLE_RACE
 from rodsweep.bench.peers import PeerContribution
 
 from ..auto import AUTO_SKIPPED, auto_program
@@ -18,9 +18,13 @@ def peers(quick: bool, folder: Path) -> PeerContribution:
     skipped = [] if CVODE in [family.name for family in every] else [CVODE_SKIPPED]
     return PeerContribution(
         contenders={
-            FOLLOWING_RACE: [contender for family in every for contender in family.following_contenders()],
-            WAITING_RACE: [contender for family in every for contender in family.settling_contenders()],
+            CYCLE_FOLLOWING_RACE: [
+                contender for family in every for contender in family.following_contenders()
+            ],
+            SETTLING_TO_CYCLE_RACE: [
+                contender for family in every for contender in family.settling_contenders()
+            ],
         },
-        sections=(partial(compare_with_auto, program, quick),) if program else (),
-        skipped=skipped if program else [*skipped, AUTO_SKIPPED],
+        section_functions=(partial(compare_with_auto, program, quick),) if program else (),
+        skipped_peer_sentences=skipped if program else [*skipped, AUTO_SKIPPED],
     )

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from rodsweep.arrays import Array, Complex
-from rodsweep.bench.limit_cycle.tracking import largest_y_near, state_on_cycle
+from rodsweep.bench.limit_cycle.tracking import system_and_state_on_cycle, tip_y_max_near_step
 from rodsweep.discretization.explicit_system import ExplicitSystem
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.solve.motion.integrator import EndReason, Trajectory
@@ -101,9 +101,14 @@ def continue_cycles(program: Path, first: Orbit, setting: AutoSetting, step: flo
 
 def rod_file(form: StressForm) -> bytes:
     """Content of the file `rod`, from which AUTO's equations read the mesh in space and the parameters."""
-    rod, matrices = form.rod, form.mesh.matrices
+    rod, matrices = form.rod, form.mesh.node_matrices
     numbers = np.array([rod.c1, rod.c2, rod.axial_drag, rod.rotational_drag])
-    parts = (np.int32(form.mesh.node_count), matrices.D_transposed, matrices.weights, numbers)
+    parts = (
+        np.int32(form.mesh.node_count),
+        matrices.transposed_differentiation_matrix,
+        matrices.quadrature_weights,
+        numbers,
+    )
     return b"".join(part.tobytes() for part in parts)
 
 
@@ -113,8 +118,8 @@ def start_file(orbit: Orbit, pieces: int) -> bytes:
     The file has F, the period in tau2, and the states z at `pieces` + 1 equidistant times of one period, both
     ends included.
     """
-    system, _ = state_on_cycle(orbit)
-    turns = np.arange(pieces + 1) / pieces * orbit.symmetry.period_parts
+    system, _ = system_and_state_on_cycle(orbit)
+    turns = np.arange(pieces + 1) / pieces * orbit.symmetry.solved_parts_per_period
     states = orbit.states_at_time_fractions(np.where(turns > 1, turns - 1, turns))
     states[turns > 1] = orbit.symmetry.apply(states[turns > 1], orbit.form.layout)
     z = states * system.sqrt_compliance[:, :-1].ravel()
@@ -149,4 +154,4 @@ def largest_y(form: StressForm, times: Array, states: Array) -> float:
     system = ExplicitSystem(form.rod, form.mesh)
     twice = np.concatenate([times, times[-1] + times[1:]]), np.concatenate([states, states[1:]])
     y = system.tip_coordinates(twice[1])[1]
-    return largest_y_near(system, Trajectory(EndReason.reached, *twice), 1 + int(np.argmax(y[1:-1])))
+    return tip_y_max_near_step(system, Trajectory(EndReason.reached, *twice), 1 + int(np.argmax(y[1:-1])))

@@ -15,16 +15,16 @@ import numpy as np
 
 from rodsweep.bench.limit_cycle.sweeping import (
     TIMED_POINT_COUNT,
-    AccurateCycle,
+    MeshConvergedCycle,
     solve_timed_points,
     swept_rod,
 )
 from rodsweep.bench.limit_cycle.swept_rods import RODS, rod_label
 from rodsweep.bench.limit_cycle.tracking import (
+    PERIODICITY_TOLERANCE,
     REFERENCE_INTERVALS,
     REFERENCE_NEWTON_TOLERANCE,
     REFERENCE_STAGES,
-    SETTLING_TOLERANCE,
     cycle_request,
     orbit_of,
 )
@@ -34,7 +34,7 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
 from rodsweep.solve.orbit.matrix.linearisation import Linearisation
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
-from rodsweep.solve.orbit.newton import newton
+from rodsweep.solve.orbit.newton import solve_by_newton
 from rodsweep.solve.orbit.orbit import Orbit
 
 from ..auto import AUTO
@@ -101,11 +101,13 @@ def measure_continuation(
         run = partial(continue_cycles, program, starts[setting.order], setting, step)
         runs += [partial(result_or_error, run, cycles) for cycles in (SHORT_RUN_CYCLES, LONG_RUN_CYCLES)]
     raced = time_runs(runs, [rounds] * len(runs))
-    ours, exact = len(REQUESTED_ACCURACIES), rods[-1].exact_cycle
+    ours, exact = len(REQUESTED_ACCURACIES), rods[-1].reference_cycle
     own = [
         judged_measurement(
             exact,
-            Measurement(rod_label(point), RODSWEEP, f"{accuracy:.0e}", timed.median / TIMED_POINT_COUNT, inf),
+            Measurement(
+                rod_label(point), RODSWEEP, f"{accuracy:.0e}", timed.median_seconds / TIMED_POINT_COUNT, inf
+            ),
             timed.outcome,
         )
         for accuracy, timed in zip(REQUESTED_ACCURACIES, raced[:ours], strict=True)
@@ -124,23 +126,23 @@ def measure_continuation(
 
 def first_cycles(point: Rod, settings: Sequence[AutoSetting]) -> dict[int, Orbit]:
     """First cycle of AUTO's runs, by the order of the single element in space."""
-    near = orbit_of(solve_cycle(point, cycle_request(SETTLING_TOLERANCE), parameter_name="F"))
+    near = orbit_of(solve_cycle(point, cycle_request(PERIODICITY_TOLERANCE), parameter_name="F"))
     orders = {setting.order for setting in settings}
     moved = {
         order: near.on_mesh(uniform_mesh(1, order), REFERENCE_INTERVALS, REFERENCE_STAGES) for order in orders
     }
     return {
-        order: newton(orbit, REFERENCE_NEWTON_TOLERANCE, NewtonWorkspace()).orbit
+        order: solve_by_newton(orbit, REFERENCE_NEWTON_TOLERANCE, NewtonWorkspace()).orbit
         for order, orbit in moved.items()
     }
 
 
 def seconds_per_cycle(short: TimedRuns, long: TimedRuns) -> float:
     """AUTO's time per cycle in seconds, from its short and its long run."""
-    return (long.median - short.median) / (LONG_RUN_CYCLES - SHORT_RUN_CYCLES)
+    return (long.median_seconds - short.median_seconds) / (LONG_RUN_CYCLES - SHORT_RUN_CYCLES)
 
 
-def judged_measurement(exact: AccurateCycle, m: Measurement, outcome: Any) -> Measurement:
+def judged_measurement(exact: MeshConvergedCycle, m: Measurement, outcome: Any) -> Measurement:
     """The measurement `m` completed by the errors of its outcome, or by the reason of its failure.
 
     outcome: `AutoCycle` of AUTO, `CycleOutcome` of rodsweep, or the exception raised.
@@ -154,7 +156,7 @@ def judged_measurement(exact: AccurateCycle, m: Measurement, outcome: Any) -> Me
         errors = exact.errors_of(outcome.measures.period, outcome.measures.tip_y_max)
         multipliers = Linearisation(orbit_of(outcome), NewtonWorkspace()).multipliers()
     large = float(np.count_nonzero(np.abs(multipliers) > LARGE_MODULUS))
-    return replace(m, error=max(errors.values()), extra=errors | {"large": large})
+    return replace(m, error=max(errors.values()), extra_columns=errors | {"large": large})
 
 
 def introduction(point: Rod) -> str:
@@ -182,7 +184,7 @@ def cycle_table(measurements: Sequence[Measurement]) -> str:
         [
             {"method": m.method, "setting": m.setting, "failure": m.failure, "ms": 1e3 * m.seconds}
             | nothing
-            | m.extra
+            | m.extra_columns
             for m in measurements
         ],
     )

@@ -9,7 +9,7 @@ import scipy.integrate
 
 from rodsweep.arrays import Array
 from rodsweep.bench.limit_cycle.default_integrator import (
-    WAITING_TOLERANCES,
+    SETTLING_INTEGRATOR_TOLERANCES,
     IntegrationTask,
     IntegratorWithTolerances,
     petsc_trajectory,
@@ -62,7 +62,7 @@ def cvode_run(cvode: Any, tolerance: float, leg: IntegrationTask) -> Trajectory:
     cvode: the module CVODE_MODULE.
     """
     system, z, duration = leg
-    arguments = system.sqrt_compliance, system.nodal_rod, system.mesh.matrices
+    arguments = system.sqrt_compliance, system.nodal_rod, system.mesh.node_matrices
     buffer = np.empty((len(z), len(z)))
 
     def right_side(_: float, x: Array, out: Array) -> None:
@@ -111,13 +111,13 @@ FAMILIES = (
         "SciPy Radau",
         partial(scipy_run, "Radau"),
         RADAU_TOLERANCES,
-        (*RADAU_TOLERANCES[2:5], *WAITING_TOLERANCES[:4]),
+        (*RADAU_TOLERANCES[2:5], *SETTLING_INTEGRATOR_TOLERANCES[:4]),
     ),
     IntegratorWithTolerances(
         "SciPy LSODA",
         partial(scipy_run, "LSODA"),
         (1e-5, 1e-6, 3e-7, 1e-7, 1e-8),
-        WAITING_TOLERANCES,
+        SETTLING_INTEGRATOR_TOLERANCES,
     ),
 )
 """Integrators of PETSc and SciPy with their tolerances. BDF 5 is nearly unstable at loose tolerances."""
@@ -128,7 +128,7 @@ def installed_families() -> tuple[IntegratorWithTolerances, ...]:
     module = optional_module(CVODE_MODULE)
     ladder = (1e-5, 1e-6, 3e-7, 1e-7, 1e-8, 1e-9)
     return FAMILIES + (
-        (IntegratorWithTolerances(CVODE, partial(cvode_run, module), ladder, WAITING_TOLERANCES),)
+        (IntegratorWithTolerances(CVODE, partial(cvode_run, module), ladder, SETTLING_INTEGRATOR_TOLERANCES),)
         if module
         else ()
     )

@@ -14,10 +14,10 @@ import scipy.linalg
 import scipy.sparse.linalg
 
 from rodsweep.arrays import Array
-from rodsweep.bench.spectrum import arm_race
-from rodsweep.bench.spectrum.arm_race import mesh_of_arm, solve_next_arm
-from rodsweep.bench.spectrum.exact import MODE_COUNT, PENCIL_GROUP, leading_eigenvalues
-from rodsweep.bench.spectrum.study import ELEMENT_ORDERS, pencil_mesh
+from rodsweep.bench.spectrum import arm_spectra
+from rodsweep.bench.spectrum.arm_spectra import mesh_of_arm, solve_next_arm
+from rodsweep.bench.spectrum.rodsweep_and_exact_spectra import MODE_COUNT, PENCIL_GROUP, leading_eigenvalues
+from rodsweep.bench.spectrum.study import ELEMENT_ORDERS, mesh_of_total_order
 from rodsweep.bench.study import TimedMethod
 from rodsweep.determinant.roots.newton import refine_eigenvalue
 from rodsweep.discretization.straight.pencil import PENCIL_NORM_SETTINGS, assemble_pencil
@@ -29,7 +29,9 @@ from ..lapack import Eigenvalues, inverse_spectrum, qz_spectrum, whole_matrices
 
 def pencil_matrices(rod: Rod, size: int) -> tuple[Array, Array]:
     """(A, diagonal of B) of rodsweep's pencil of order `size`, shapes (unknowns, unknowns), (unknowns,)."""
-    return whole_matrices(rod, pencil_mesh(size) if rod.is_uniform_and_linear else mesh_of_arm(rod, size))
+    return whole_matrices(
+        rod, mesh_of_total_order(size) if rod.is_uniform_and_linear else mesh_of_arm(rod, size)
+    )
 
 
 def dense_qz(rod: Rod, size: int) -> Eigenvalues:
@@ -85,10 +87,10 @@ def _displacement_pieces(size: int) -> tuple[Array, Array, Array]:
 
     a, b: shape functions. The matrices are taken from rodsweep's pencil.
     """
-    mesh = pencil_mesh(size)
+    mesh = mesh_of_total_order(size)
     pencil = assemble_pencil(mesh.element_count, mesh.order)
     n = pencil.node_count
-    whole = pencil.dense_terms().reshape(6, 3 * n, 3 * n).transpose(0, 2, 1)
+    whole = pencil.dense_constant_matrices().reshape(6, 3 * n, 3 * n).transpose(0, 2, 1)
     tip = np.diag(np.append(np.zeros(n - 1), 1 / pencil.nodal_masses[-1]))
     return -whole[1, n : 2 * n, n : 2 * n], whole[2, :n, n : 2 * n] + tip, tip
 
@@ -204,8 +206,8 @@ def contenders() -> list[TimedMethod]:
 def arm_contenders() -> list[TimedMethod]:
     """The peers that solve arms with properties that vary along the length, at all of their sizes."""
     taken = {
-        dense_inverse: arm_race.ELEMENT_ORDERS,
-        scipy_eigs: arm_race.ELEMENT_ORDERS,
+        dense_inverse: arm_spectra.ELEMENT_ORDERS,
+        scipy_eigs: arm_spectra.ELEMENT_ORDERS,
         chebyshev_first_order: ARM_INTERVALS,
     }
     return [

@@ -38,6 +38,6 @@ def peers(quick: bool, folder: Path) -> PeerContribution:
     names = dict.fromkeys(code.method for code in codes)
     return PeerContribution(
         contenders={ONSET: contenders(ONSET, quick), HOPF: contenders(HOPF, quick) + codes},
-        notes=(SEARCHES, *(CODE_NOTES[name] for name in names)),
-        skipped=tuple(skipped),
+        contender_notes=(SEARCHES, *(CODE_NOTES[name] for name in names)),
+        skipped_peer_sentences=tuple(skipped),
     )

@@ -174,4 +174,4 @@ def hopf_by_pycont(pycont: Any, step: float, case: ThresholdCase) -> FirstThresh
             field, np.zeros(len(M0)), start, step / 1e3, step, step, steps, options, 0
         )
     forces = [float(event.p) for event in found.events if event.kind == "HB"]
-    return FirstThreshold(forces[0] if forces else nan, products=products)
+    return FirstThreshold(forces[0] if forces else nan, matrix_vector_product_count=products)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.optimize import bisect, brentq
 
 from rodsweep.arrays import Array
-from rodsweep.bench.spectrum.exact import leading_eigenvalues
+from rodsweep.bench.spectrum.rodsweep_and_exact_spectra import leading_eigenvalues
 from rodsweep.bench.study import TimedMethod
 from rodsweep.bench.thresholds.study import HOPF, ONSET, FirstThreshold, ThresholdCase
 from rodsweep.discretization.elements.resolution import Resolution, expected_wave_number, resolution_for

@@ -1,6 +1,6 @@
 """Advice on arguments that `rs.Arm` and `rs.Rod` do not have, but other objects or tasks do."""
 
-from ..model.arm.quantities import QUANTITIES
+from ..model.arm.quantities import GIVEN_QUANTITIES
 from ..model.parameters import PARAMETERS
 from .task_keywords import KEYWORDS_OF_TASK
 
@@ -26,19 +26,19 @@ def unknown_arm_argument_hint(name: str) -> str:
         return UNKNOWN_ARM_ARGUMENT_HINTS[name]
     if name in PARAMETERS:
         return f"{name} follows from the quantities of the arm; rs.Rod(arm=arm, {name}=...) replaces it"
-    return _hint_at_methods_with_option(name, "arm")
+    return _methods_with_option_hint(name, "arm")
 
 
 def rod_argument_hint(name: str) -> str:
     """Advice on the argument `name` that `rs.Rod` does not have; empty if nothing is known about it."""
     if name in UNKNOWN_ROD_ARGUMENT_HINTS:
         return UNKNOWN_ROD_ARGUMENT_HINTS[name]
-    if name in QUANTITIES or name == "segments":
+    if name in GIVEN_QUANTITIES or name == "segments":
         return f"{name} belongs to an arm: rs.Rod(arm=rs.Arm({name}=..., ...))"
-    return _hint_at_methods_with_option(name, "rod")
+    return _methods_with_option_hint(name, "rod")
 
 
-def _hint_at_methods_with_option(name: str, owner: str) -> str:
+def _methods_with_option_hint(name: str, owner: str) -> str:
     """Advice on an option of tasks: the methods of `owner` that take it; empty if `name` is no option."""
     tasks = [task for task, options in KEYWORDS_OF_TASK.items() if name in options.__annotations__]
     return f"{name} is an option of tasks, as in {owner}.{tasks[0]}({name}=...)" if tasks else ""

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 from ..config.document.call_arguments import refusing_wrong_arguments
 from ..config.parameters_section import DEFAULT_F_MAX
-from ..config.tasks import CONFIGS
+from ..config.tasks import CONFIG_CLASSES_BY_TASK
 from ..errors import InputError
 from ..model.arm.arm import SlenderArm
-from ..model.arm.quantities import LOADS, SECTION_SIZE_NAMES
+from ..model.arm.quantities import LOAD_NAMES, SECTION_SIZE_NAMES
 from ..model.units import GivenQuantity
 from .answers.answer import Answer
 from .argument_hints import unknown_arm_argument_hint
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 ARM_EXAMPLE = 'rs.Arm(length="10 cm", radius="5 mm", young="100 kPa", viscosity="1.4 Pa s", pressure="2 kPa")'
 EXCLUSIVE_QUANTITIES = (
-    tuple((load,) for load in LOADS),
+    tuple((load,) for load in LOAD_NAMES),
     SECTION_SIZE_NAMES,
     (("segments",), (*SECTION_SIZE_NAMES[0], *SECTION_SIZE_NAMES[1])),
     (("inner_radius",), ("tip_radius",)),
@@ -158,15 +158,15 @@ class Arm(SlenderArm):
         """
         from ..post.rod_portrait.results import DescribedRod
         from ..tasks.rod_portrait import PortraitRequest
-        from .answers.rod_portrait import solved_portrait
+        from .answers.rod_portrait import solve_portrait
 
         default = {field.name: field.default for field in fields(self)}
         section = config_tree("thresholds", {"arm": self})["parameters"]["arm"]
         # `load_kind` is no quantity of the arm; the kind of the loads is given to the portrait as `load`.
         quantities = {name: value for name, value in section.items() if value != default.get(name, value)}
-        description = DescribedRod(arm=quantities, load=self.load or LOADS[0])
+        description = DescribedRod(arm=quantities, load_kind=self.load_name or LOAD_NAMES[0])
         request = PortraitRequest(rod=description, F_max=F_max, accuracy=accuracy)
-        return solved_portrait(repr(self), request, progress)
+        return solve_portrait(repr(self), request, progress)
 
     def _answer(self, task: str, options: Mapping[str, Any]) -> Answer:
         for name in options:
@@ -178,11 +178,11 @@ class Arm(SlenderArm):
         options = dict(options)
         progress = options.pop("progress", None)
         try:
-            CONFIGS[task].refuse_options_of_arm(options)
+            CONFIG_CLASSES_BY_TASK[task].refuse_options_of_arm(options)
         except ValueError as error:
             raise InputError(str(error)) from None
-        needs_load = "F" in CONFIGS[task].rod_parameters_used(options)
-        if needs_load and self.load is None:
+        needs_load = "F" in CONFIG_CLASSES_BY_TASK[task].rod_parameters_used(options)
+        if needs_load and self.load_name is None:
             raise InputError(
                 f"{task} needs a load; give one, such as arm.replace(pressure='2 kPa') or "
                 "arm.replace(pressure='1.2 of flutter')"

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..config.arm.axes import STORAGE_AXIS_OF_QUANTITY
+from ..config.arm.axes import FILE_AXIS_OF_QUANTITY
 from ..config.document.call_arguments import refusing_wrong_arguments
 from ..errors import InputError, short_repr
-from ..model.arm.quantities import ALL_QUANTITIES
+from ..model.arm.quantities import ARM_FILE_VARIABLES
 from ..results.file.content_digests import SEAL_ATTRIBUTE, attribute_digests, variable_digest
 from ..results.file.current_state import (
     insert_records,
@@ -21,14 +21,15 @@ from ..results.file.current_state import (
 )
 from ..results.file.validation import (
     ResultHeader,
-    damage_refusals,
+    damage_as_refusals,
     escape_control_characters,
     one_line_message,
     open_checked,
 )
 from ..results.file.view import ResultView
 from ..results.layouts import layout_of, sweep_wide_variables
-from ..results.layouts.variables import DIMENSIONS, TYPED_UNIT, Layout
+from ..results.layouts.dimensions import UNIT_AND_LONG_NAME_OF_DIMENSION
+from ..results.layouts.variables import TYPED_UNIT_ATTRIBUTE, Layout
 from ..results.run.journal import journal_directory
 from ..solve.solve_lock import one_at_a_time
 
@@ -44,11 +45,11 @@ def open_result(path: str | Path) -> xr.Dataset:
 
     Raises InputError if the file is no result file, is damaged, or was changed by another program.
     """
-    path = named_file_path(path, 'rs.open("RESULT.h5")')
+    path = require_file_path(path, 'rs.open("RESULT.h5")')
     return read_file_and_journals(path, lambda: _open_result_file(path))
 
 
-def named_file_path(argument: object, example: str) -> Path:
+def require_file_path(argument: object, example: str) -> Path:
     """Path of a file named by the user; InputError, with `example`, if `argument` is no file name."""
     if not isinstance(argument, str | os.PathLike) or not isinstance(name := os.fspath(argument), str):
         raise InputError(f"{short_repr(argument)} is not the name of a file; write it as in {example}")
@@ -87,10 +88,10 @@ def with_arm_indexes(data: xr.Dataset) -> xr.Dataset:
     this quantity."""
     for name in (
         coordinate_name
-        for coordinate_name in STORAGE_AXIS_OF_QUANTITY
+        for coordinate_name in FILE_AXIS_OF_QUANTITY
         if coordinate_name in data.coords and coordinate_name not in data.xindexes
     ):
-        if data[name].dims == (STORAGE_AXIS_OF_QUANTITY[name],):
+        if data[name].dims == (FILE_AXIS_OF_QUANTITY[name],):
             data = data.set_xindex(name)
     return data
 
@@ -98,7 +99,11 @@ def with_arm_indexes(data: xr.Dataset) -> xr.Dataset:
 def in_layout_order(data: xr.Dataset, layout: Layout, config: dict[str, Any]) -> xr.Dataset:
     """The Dataset with its variables in the order of the layout, as HDF5 stores variables alphabetically."""
     layout_variables = (*layout.variables, *sweep_wide_variables(config, "point" not in data.dims))
-    ordered_names = (*DIMENSIONS, *ALL_QUANTITIES, *(variable.name for variable in layout_variables))
+    ordered_names = (
+        *UNIT_AND_LONG_NAME_OF_DIMENSION,
+        *ARM_FILE_VARIABLES,
+        *(variable.name for variable in layout_variables),
+    )
     order = {name: i for i, name in enumerate(ordered_names)}
     names = sorted(data.variables, key=lambda name: order.get(str(name), len(order)))
     variables = {name: data.variables[name] for name in names}
@@ -110,7 +115,7 @@ def _load_with_checksums(path: Path, header: ResultHeader) -> xr.Dataset:
     """The Dataset that xarray reads from a result file; InputError if values or dimensions differ from the
     checksums in the file."""
     digests = json.loads(header.attributes[SEAL_ATTRIBUTE])["variables"]
-    with damage_refusals(path):
+    with damage_as_refusals(path):
         try:
             with xr.open_dataset(path, engine=XARRAY_ENGINE, phony_dims="sort") as stored:
                 data = stored.load()
@@ -154,7 +159,7 @@ def view_of_dataset(data: xr.Dataset, path: Path) -> ResultView:
         ) from None
     points = layout.dimensions(is_list="point" in data.dims)
     for variable in layout.variables:
-        dimensions = (*points, *variable.extra)
+        dimensions = (*points, *variable.extra_dimensions)
         if variable.name not in data or data[variable.name].dims != dimensions:
             raise InputError(
                 f"the data are not a complete result: they lack {variable.name} with the dimensions "
@@ -164,8 +169,8 @@ def view_of_dataset(data: xr.Dataset, path: Path) -> ResultView:
     stored = {str(name): variable for name, variable in data.variables.items()}
     values = {name: variable.values for name, variable in stored.items()}
     units = {
-        name: str(stored_variable.attrs[TYPED_UNIT])
+        name: str(stored_variable.attrs[TYPED_UNIT_ATTRIBUTE])
         for name, stored_variable in stored.items()
-        if TYPED_UNIT in stored_variable.attrs
+        if TYPED_UNIT_ATTRIBUTE in stored_variable.attrs
     }
     return ResultView(path, dict(data.attrs), values, layout.parameters, flags, 0, layout.arm_axes, units)

@@ -14,11 +14,11 @@ from ..config.document.call_arguments import refusing_wrong_arguments, unknown_a
 from ..config.document.reading import validated_config, with_file_contents
 from ..config.document.refusals import similar_keys
 from ..config.material import MaterialConfig
-from ..config.tasks import CONFIGS
+from ..config.tasks import CONFIG_CLASSES_BY_TASK
 from ..errors import InputError
 from ..model.arm.arm import SlenderArm
 from ..model.arm.drag import DRAG_ESTIMATE_NAMES
-from ..model.arm.quantities import LOAD_OF_RATIO, LOADS
+from ..model.arm.quantities import LOAD_NAME_BY_RELATIVE_LOAD, LOAD_NAMES
 from ..model.material.rod_material import DEFAULT_MATERIAL
 from ..solve.solve_lock import defer_signals
 from ..tasks.running.job import Job, job_of_config, machine_memory
@@ -43,21 +43,25 @@ def config_tree(task: str, keywords: Mapping[str, Any]) -> ConfigTree:
     complete section may be given as a mapping. Raises InputError for a masked value, and for a key that is
     not similar to any known key, or given twice.
     """
-    task = plain_keyword("task", task)
+    task = keyword_value_of_yaml_types("task", task)
     tree: ConfigTree = {"task": task}
-    if not isinstance(task, str) or task not in CONFIGS:
+    if not isinstance(task, str) or task not in CONFIG_CLASSES_BY_TASK:
         return tree
     sections = _allowed_keys_by_section(task)
     for keyword, value in keywords.items():
-        name = plain_value(keyword)
+        name = value_of_yaml_types(keyword)
         if name in sections and isinstance(value, Mapping):
-            for key, entry in plain_keyword(name, dict(value)).items():
+            for key, entry in keyword_value_of_yaml_types(name, dict(value)).items():
                 _add_key(tree.setdefault(name, {}), key, entry)
             continue
         section = _best_matching_section(name, sections)
         values_of_section = tree.setdefault(section, {}) if section else tree
-        _add_key(values_of_section, name, plain_keyword(f"{section}.{name}" if section else name, value))
-    _write_out_arm(task, tree)
+        _add_key(
+            values_of_section,
+            name,
+            keyword_value_of_yaml_types(f"{section}.{name}" if section else name, value),
+        )
+    _replace_arm_by_quantities(task, tree)
     return tree
 
 
@@ -68,32 +72,32 @@ def _add_key(section: dict[str, Any], key: str, value: Any) -> None:
     section[key] = value
 
 
-def _write_out_arm(task: str, tree: ConfigTree) -> None:
+def _replace_arm_by_quantities(task: str, tree: ConfigTree) -> None:
     """Replaces an `rs.Arm` in the tree by its quantities, in place. The load is included only if the task
     takes a load."""
     parameters = tree.get("parameters", {})
     arm = parameters.get("arm")
     if isinstance(arm, SlenderArm):
-        has_load = "F" in CONFIGS[task].rod_parameters_used(tree.get(task, {}))
-        omitted = (*LOAD_OF_RATIO, "load_kind", *(() if has_load else LOADS))
+        has_load = "F" in CONFIG_CLASSES_BY_TASK[task].rod_parameters_used(tree.get(task, {}))
+        omitted = (*LOAD_NAME_BY_RELATIVE_LOAD, "load_kind", *(() if has_load else LOAD_NAMES))
         names = [name for name in ArmConfig.model_fields if name not in omitted]
         complete_arm = with_load_in_si(arm) if has_load else arm
         quantities = {name: getattr(complete_arm, name) for name in names}
-        if not has_load and arm.load == "force":  # loads at thresholds have the unit of the arm's load
-            quantities["load_kind"] = arm.load
+        if not has_load and arm.load_name == "force":  # loads at thresholds have the unit of the arm's load
+            quantities["load_kind"] = arm.load_name
         given = {name: value for name, value in quantities.items() if value is not None}
         written = {
             quantity_name: quantity
             for quantity_name, quantity in given.items()
             if quantity_name not in ARM_KEY_DEFAULTS or quantity != ARM_KEY_DEFAULTS[quantity_name]
         }
-        parameters["arm"] = {name: plain_value(value) for name, value in written.items()}
+        parameters["arm"] = {name: value_of_yaml_types(value) for name, value in written.items()}
 
 
 def with_load_in_si(arm: ArmKind) -> ArmKind:
     """The arm with its load in SI units. For a load relative to flutter, the flutter threshold is computed
     first."""
-    if arm.share_of_flutter is None:
+    if arm.load_over_flutter is None:
         return arm
     from ..verdict.planes import arm_with_absolute_load
 
@@ -126,14 +130,14 @@ def validated_point_count(tree: ConfigTree) -> int | None:
     which the ranks of the run share; the result is then None.
     """
     arm = validated_config(with_file_contents(tree, Path())).parameters.arm
-    if arm is None or arm.load_key not in LOAD_OF_RATIO:
+    if arm is None or arm.load_key not in LOAD_NAME_BY_RELATIVE_LOAD:
         return job_of_tree(tree).points.count
     return None
 
 
 def _allowed_keys_by_section(task: str) -> dict[str, Collection[str]]:
     """Allowed keys of each section of a task's config, by name of the section; "" is the top level."""
-    fields = CONFIGS[task].model_fields
+    fields = CONFIG_CLASSES_BY_TASK[task].model_fields
     sections: dict[str, Any] = {name: fields[name].annotation for name in (task, "parameters")}
     sections["material"] = MaterialConfig
     top_keys = [name for name in Config.model_fields if name not in ("task", "parameters", "material")]
@@ -194,7 +198,7 @@ def _axis_range(start: float | str, stop: float | str, num: int, spacing: str) -
     return {"start": start, "stop": stop, "num": num, "spacing": spacing}
 
 
-def plain_value(value: Any) -> Any:
+def value_of_yaml_types(value: Any) -> Any:
     """A value in the types of a YAML config. Arrays and tuples become lists. NumPy scalars, also as keys,
     become numbers, booleans or texts of Python, and so do members of an IntEnum or StrEnum. Paths become
     texts.
@@ -205,13 +209,13 @@ def plain_value(value: Any) -> Any:
     if isinstance(value, Enum) and isinstance(value, int | float | str):
         value = value.value
     if isinstance(value, dict):
-        return {plain_value(key): plain_value(item) for key, item in value.items()}
+        return {value_of_yaml_types(key): value_of_yaml_types(item) for key, item in value.items()}
     if isinstance(value, list | tuple | range):
-        return [plain_value(item) for item in value]
+        return [value_of_yaml_types(item) for item in value]
     if isinstance(value, os.PathLike):
         return os.fspath(value)
     if hasattr(value, "to_base_units"):  # a pint quantity; np.asarray would drop its unit
-        return _with_unit(plain_value(value.magnitude), f"{value.units:~C}")
+        return _with_unit(value_of_yaml_types(value.magnitude), f"{value.units:~C}")
     if np.ma.is_masked(value):
         raise ValueError("a value of the array is masked, so it is not a number; leave it out")
     if hasattr(value, "__array__"):
@@ -220,10 +224,10 @@ def plain_value(value: Any) -> Any:
     return value
 
 
-def plain_keyword(key: str, value: Any) -> Any:
+def keyword_value_of_yaml_types(key: str, value: Any) -> Any:
     """`value` in the types of a YAML config; InputError for a masked value."""
     try:
-        return plain_value(value)
+        return value_of_yaml_types(value)
     except ValueError as error:
         raise InputError(f"{key}: {error}") from None
 

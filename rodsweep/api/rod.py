@@ -13,18 +13,24 @@ from ..config.document.call_arguments import refusing_wrong_arguments, unknown_a
 from ..config.document.refusals import message_of_problem, similar_keys, unknown_key_hint
 from ..config.material import MaterialConfig, with_profile_read
 from ..config.parameters_section import DEFAULT_F_MAX, DEFAULT_VALUES_OF_PARAMETERS, REQUIRED_PARAMETERS
-from ..config.tasks import CONFIGS
+from ..config.tasks import CONFIG_CLASSES_BY_TASK
 from ..config.values import as_float
 from ..errors import InputError, short_repr
 from ..model.arm.arm import SlenderArm
 from ..model.arm.as_config import material_config_of, rod_parameters_of
 from ..model.material.rod_material import DEFAULT_MATERIAL
-from ..model.parameters import OPTIONAL_PARAMETERS, PARAMETERS
-from ..sweep.points.grid import refuse_invalid_axes
+from ..model.parameters import OPTIONAL_PARAMETER_NAMES, PARAMETERS
+from ..sweep.points.points_from_config import refuse_invalid_axes
 from ..wording import enumeration
 from .answers.answer import Answer
 from .argument_hints import rod_argument_hint
-from .keyword_arguments import config_tree, job_of_tree, plain_keyword, plain_value, with_load_in_si
+from .keyword_arguments import (
+    config_tree,
+    job_of_tree,
+    keyword_value_of_yaml_types,
+    value_of_yaml_types,
+    with_load_in_si,
+)
 from .solving_in_process import solve_in_process
 from .task_keywords import (
     BranchKeywords,
@@ -72,25 +78,23 @@ class SoftRod:
         material = {"law": law, "section": section, "profile": profile}
         for name in parameters:
             if name not in PARAMETERS:
-                names = (*PARAMETERS, "arm", *material)
-                missing = [known_name for known_name in names if known_name not in given_values]
-                suggestion = unknown_key_hint(name, missing if similar_keys(name, missing) else names)
+                known = (*PARAMETERS, "arm", *material)
+                missing = [key for key in known if key not in given_values]
+                suggestion = unknown_key_hint(name, missing if similar_keys(name, missing) else known)
                 raise InputError(f"a rod has no parameter {name}; {rod_argument_hint(name) or suggestion}")
         if arm is not None:
             if not isinstance(arm, SlenderArm):
                 raise InputError(f"arm = {short_repr(arm)} is not an arm; write it as in {ROD_EXAMPLE}")
             given_values = rod_parameters_of(with_load_in_si(arm)) | given_values
-            material_values = {name: value for name, value in material.items() if value is not None}
-            material = material_config_of(arm) | material_values
+            given_material = {name: value for name, value in material.items() if value is not None}
+            material = material_config_of(arm) | given_material
         for name in REQUIRED_PARAMETERS:
             if name not in given_values:
-                raise InputError(
-                    f"{name} is missing; give {enumeration(REQUIRED_PARAMETERS, 'and')}, or an arm"
-                )
-        values = {name: given_values.get(name, DEFAULT_VALUES_OF_PARAMETERS.get(name)) for name in PARAMETERS}
-        self._values = {
-            name: _parameter_value(name, value) for name, value in values.items() if value is not None
-        }
+                names_text = enumeration(REQUIRED_PARAMETERS, "and")
+                raise InputError(f"{name} is missing; give {names_text}, or an arm")
+        values = DEFAULT_VALUES_OF_PARAMETERS | given_values
+        names = [name for name in PARAMETERS if values.get(name) is not None]
+        self._values = {name: _parameter_value(name, values[name]) for name in names}
         self._material = _material_section(material)
         material_of_rod = DEFAULT_MATERIAL if self._material is None else self._material.rod_material
         if arm is not None and material_of_rod.section == "swelling":
@@ -107,13 +111,12 @@ class SoftRod:
     @refusing_wrong_arguments("rod.replace(F=40)")
     def replace(self, **changed: float) -> "SoftRod":
         """A copy of the rod with new values of some parameters, or of law, section or profile."""
-        values: dict[str, Any] = self._values | self._given_material | changed
+        values: dict[str, Any] = self._values | self._nondefault_material_keys | changed
         return SoftRod(**values)
 
     @property
-    def _given_material(self) -> dict[str, Any]:
-        """The keys of the section `material` that differ from their defaults, with their values; empty if
-        none differs."""
+    def _nondefault_material_keys(self) -> dict[str, Any]:
+        """Values of the keys of the section `material` that differ from their defaults, by key."""
         return {} if self._material is None else self._material.model_dump(exclude_defaults=True)
 
     @refusing_wrong_arguments("rod.spectrum(modes=4)")
@@ -161,68 +164,66 @@ class SoftRod:
         """
         from ..post.rod_portrait.results import DescribedRod
         from ..tasks.rod_portrait import PortraitRequest
-        from .answers.rod_portrait import solved_portrait
+        from .answers.rod_portrait import solve_portrait
 
-        description = DescribedRod(parameters=self._values, material=self._given_material)
+        description = DescribedRod(parameters=self._values, material=self._nondefault_material_keys)
         request = PortraitRequest(rod=description, F_max=F_max, accuracy=accuracy)
-        return solved_portrait(repr(self), request, progress)
+        return solve_portrait(repr(self), request, progress)
 
     if not TYPE_CHECKING:  # hidden from type checkers, which should report a misspelt task
 
         def __getattr__(self, name: str) -> Callable[..., Answer]:
             """Method for a task that this class does not define; AttributeError if `name` is not a task."""
             if name in PARAMETERS:
-                raise AttributeError(
-                    f"a rod has no attribute {name!r}; rod.parameters[{name!r}] is its value, and "
-                    f"rod.replace({name}=...) makes another rod"
-                )
-            if name not in CONFIGS:
-                task_names = [task for task, config in CONFIGS.items() if not config.needs_several_rods]
-                raise AttributeError(f"a rod has no {name!r}; its tasks are {', '.join(task_names)}")
+                hint = f"rod.parameters[{name!r}] is its value, and rod.replace({name}=...) makes another rod"
+                raise AttributeError(f"a rod has no attribute {name!r}; {hint}")
+            if name not in CONFIG_CLASSES_BY_TASK:
+                tasks = CONFIG_CLASSES_BY_TASK.items()
+                names = [task for task, config in tasks if not config.needs_several_rods]
+                raise AttributeError(f"a rod has no {name!r}; its tasks are {', '.join(names)}")
             return lambda **options: self._answer(name, options)
 
     def _answer(self, task: str, options: Mapping[str, Any]) -> Answer:
-        if CONFIGS[task].needs_several_rods:
+        if CONFIG_CLASSES_BY_TASK[task].needs_several_rods:
             raise InputError(f"{task} is a task of several rods; use rs.sweep({task!r}, ...) with two axes")
         for name in options:
             if name in PARAMETERS:
-                raise InputError(
-                    f"{name} is a parameter of the rod, not an option; "
-                    f"rod.replace({name}=...) makes another rod"
-                )
-        section: Any = CONFIGS[task].model_fields[task].annotation
+                hint = f"rod.replace({name}=...) makes another rod"
+                raise InputError(f"{name} is a parameter of the rod, not an option; {hint}")
+        section: Any = CONFIG_CLASSES_BY_TASK[task].model_fields[task].annotation
         allowed = [*section.model_fields, "accuracy", "title", "progress"]
         for name in options:
             if name not in allowed and not similar_keys(name, allowed):
                 raise unknown_argument_error(name, allowed)
         options = dict(options)
         progress = options.pop("progress", None)
-        used_names = CONFIGS[task].rod_parameters_used(options)
-        names = (*used_names, *OPTIONAL_PARAMETERS)
+        names = (*CONFIG_CLASSES_BY_TASK[task].rod_parameters_used(options), *OPTIONAL_PARAMETER_NAMES)
         values: dict[str, Any] = {name: self._values[name] for name in names if name in self._values}
-        tree = config_tree(task, values | self._given_material | options)
+        tree = config_tree(task, values | self._nondefault_material_keys | options)
         solved = solve_in_process(job_of_tree(tree), progress=progress)
         return Answer(repr(self), solved, solved.messages[0])
 
     def __repr__(self) -> str:
         values = [f"{name}={value:.15g}" for name, value in self._values.items()]
-        material = [f"{name}={short_repr(value)}" for name, value in self._given_material.items()]
+        material = [f"{name}={short_repr(value)}" for name, value in self._nondefault_material_keys.items()]
         return f"Rod({', '.join([*values, *material])})"
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, SoftRod):
             return False
-        return self._values == other._values and self._given_material == other._given_material
+        if self._values != other._values:
+            return False
+        return self._nondefault_material_keys == other._nondefault_material_keys
 
     def __hash__(self) -> int:
-        return hash((*self._values.items(), repr(self._given_material)))
+        return hash((*self._values.items(), repr(self._nondefault_material_keys)))
 
 
 def _material_section(values: Mapping[str, Any]) -> MaterialConfig | None:
     """The validated section `material` of a rod; None if all values in `values` are None. Raises InputError
     for invalid values."""
     given = {name: value for name, value in values.items() if value is not None}
-    tree = {name: plain_keyword(f"material.{name}", value) for name, value in given.items()}
+    tree = {name: keyword_value_of_yaml_types(f"material.{name}", value) for name, value in given.items()}
     if not tree:
         return None
     material = with_profile_read({"material": tree}, Path())["material"]
@@ -231,13 +232,13 @@ def _material_section(values: Mapping[str, Any]) -> MaterialConfig | None:
     except ValidationError as error:
         problem: dict[str, Any] = dict(error.errors(include_url=False)[0])
         in_config = problem | {"loc": ("material", *problem["loc"])}
-        raise InputError(message_of_problem(CONFIGS["spectrum"], in_config)) from None
+        raise InputError(message_of_problem(CONFIG_CLASSES_BY_TASK["spectrum"], in_config)) from None
 
 
 def _parameter_value(name: str, value: Any) -> float:
     """Value of the parameter `name` as a float; InputError if the value is no number."""
     try:
-        return as_float(plain_value(value))
+        return as_float(value_of_yaml_types(value))
     except ValueError as error:
         raise InputError(f"parameters.{name}: {error}") from None
 

@@ -17,7 +17,7 @@ from ..solve.backend.availability import require_solvers
 from ..solve.backend.solver_pools import destroy_pooled_solvers
 from ..solve.solve_lock import exclusive_solve
 from ..solve_progress import reporting_to, solve_part
-from ..sweep.points.groups import PointGroups, SolveGroup
+from ..sweep.points.groups import GroupSolveFunction, PointGroups
 from ..sweep.progress import (
     Display,
     ProgressReporter,
@@ -26,24 +26,24 @@ from ..sweep.progress import (
     display_listener,
 )
 from ..tasks.protocol import NamedArrays, Solver, SweepWideResult, SweepWideSolver
-from ..tasks.running.in_memory import blas_pool, view_in_memory
+from ..tasks.running.in_memory import blas_thread_controller, view_in_memory
 from ..tasks.running.job import Job, plan_in_memory
 from ..tasks.running.unforeseen_exceptions import (
     FailureReasons,
-    PointExceptionNote,
-    failure_reasons_of_changed_points,
+    PointExceptionCallback,
+    changed_point_failure_reasons,
     guarded_solver,
 )
-from .keyword_arguments import plain_keyword
-from .solved import SolvedPoints
+from .keyword_arguments import keyword_value_of_yaml_types
+from .task_results import SolvedPoints
 
-_compiled_tasks: set[str] = set()
+_tasks_with_compiled_solvers: set[str] = set()
 """Names of the tasks whose solvers are already compiled in this process."""
 
 
 @exclusive_solve
 def solve_in_process(
-    job: Job, note: PointExceptionNote | None = None, progress: bool | None = None
+    job: Job, note: PointExceptionCallback | None = None, progress: bool | None = None
 ) -> SolvedPoints:
     """Solves all points of a job in this process, and returns the results.
 
@@ -59,20 +59,20 @@ def solve_in_process(
     if note is not None:
         solver = guarded_solver(solver, job.layout, note)
     plan = plan_in_memory(job, solver.statuses)
-    if job.config.task not in _compiled_tasks:
+    if job.config.task not in _tasks_with_compiled_solvers:
         solver.warm_up()
-        _compiled_tasks.add(job.config.task)
+        _tasks_with_compiled_solvers.add(job.config.task)
     # One thread, as in the command: threads change the order of sums.
-    with blas_pool().limit(limits=1, user_api="blas"):
+    with blas_thread_controller().limit(limits=1, user_api="blas"):
         display(0)
         try:
             values, messages, reasons = _solve_points(job, solver, plan, display)
             sweep_wide = SweepWideResult(())
             if solver.sweep_wide_solver:
                 view = view_in_memory(job, plan, values)
-                sweep_wide = _sweep_wide_result(solver.sweep_wide_solver, view, display)
-                _change_points(sweep_wide, job, plan, values, messages)
-                reasons += failure_reasons_of_changed_points(sweep_wide, solver.statuses, job.point_text)
+                sweep_wide = _solve_sweep_wide_variables(solver.sweep_wide_solver, view, display)
+                _replace_changed_points(sweep_wide, job, plan, values, messages)
+                reasons += changed_point_failure_reasons(sweep_wide, solver.statuses, job.point_text)
         except BaseException:  # a solve was interrupted, by Ctrl-C too: cached solvers may be half changed
             destroy_pooled_solvers()
             raise
@@ -82,9 +82,9 @@ def solve_in_process(
     return SolvedPoints(
         job=job,
         plan=plan,
-        statuses=solver.statuses,
+        possible_statuses=solver.statuses,
         values=values,
-        whole_file_variables=(*from_config, *sweep_wide.variables, *from_points),
+        whole_file_variables=(*from_config, *sweep_wide.sweep_wide_variables, *from_points),
         run_attributes=_attributes_of_solve(start_time, reasons),
         messages=messages,
     )
@@ -113,15 +113,18 @@ def _solve_points(
     reasons = FailureReasons(job.point_text)
     point_count = job.points.count
     columns = {
-        name: np.repeat(value[None], point_count, axis=0) for name, value in plan.layout.empty_point.items()
+        name: np.repeat(value[None], point_count, axis=0)
+        for name, value in plan.layout.fill_values_of_point.items()
     }
     messages = [""] * point_count
     unsolved = (
-        range(point_count) if solver.grouped is None else _solve_groups(*solver.grouped, columns, display)
+        range(point_count)
+        if solver.groups_and_group_solver is None
+        else _solve_groups(*solver.groups_and_group_solver, columns, display)
     )
     outcomes = _solve_outcomes(unsolved, point_count, solver, display)
     for solved_count, (index, outcome) in enumerate(outcomes, point_count - len(unsolved) + 1):
-        record = solver.record(index, outcome)
+        record = solver.file_values_of_outcome(index, outcome)
         for name, array in columns.items():
             array[index] = record[name]
         messages[index] = outcome.message
@@ -129,11 +132,11 @@ def _solve_points(
         display(solved_count)
     shape = job.points.shape
     values = {name: array.reshape(*shape, *array.shape[1:]) for name, array in columns.items()}
-    return values, messages, [*reasons.examples.values()]
+    return values, messages, [*reasons.example_by_reason.values()]
 
 
 def _solve_groups(
-    groups: PointGroups, solve_group: SolveGroup, columns: dict[str, np.ndarray], display: Display
+    groups: PointGroups, solve_group: GroupSolveFunction, columns: dict[str, np.ndarray], display: Display
 ) -> Sequence[int]:
     """Fills the variables of all points that are solved together; returns the flat indices of all other
     points. columns: variables by name, (points, ...)."""
@@ -142,7 +145,7 @@ def _solve_groups(
     for indices in map(groups.indices, range(groups.count)):
         result = solve_group(indices)
         solved_indices = np.flatnonzero(result.is_solved)
-        for name, column in result.part_at(solved_indices).values.items():
+        for name, column in result.part_at(solved_indices).variable_values.items():
             columns[name][indices[solved_indices]] = column
         unsolved += list_of(indices[~result.is_solved])
         solved_count += len(solved_indices)
@@ -150,7 +153,9 @@ def _solve_groups(
     return unsolved
 
 
-def _sweep_wide_result(solver: SweepWideSolver, view: ResultView, display: Display) -> SweepWideResult:
+def _solve_sweep_wide_variables(
+    solver: SweepWideSolver, view: ResultView, display: Display
+) -> SweepWideResult:
     """Variables that depend on all points, for example curves, and points that change. view: the solved
     points."""
     results = dict[int, NamedArrays]()
@@ -161,7 +166,7 @@ def _sweep_wide_result(solver: SweepWideSolver, view: ResultView, display: Displ
     return solver.result(view, results)
 
 
-def _change_points(
+def _replace_changed_points(
     result: SweepWideResult, job: Job, plan: FilePlan, values: dict[str, np.ndarray], messages: list[str]
 ) -> None:
     """Replaces variables and messages of the points that change. values: variables by name, with the
@@ -188,15 +193,15 @@ def _solve_outcomes(
         with solve_part(name, share), reporting_to(display_listener(display, name)):
             yield
 
-    if solver.chained is None:
+    if solver.sweep_chains is None:
         for index in unsolved:
             with point_progress():
                 outcome = solver.solve(index)
             solved_count += 1
             yield index, outcome
         return
-    chains = solver.chained.chains
-    solve_from = solver.chained.solve_from
+    chains = solver.sweep_chains.chains
+    solve_from = solver.sweep_chains.solve_from
     for chain in range(chains.count):
         state = None
         for index in map(int, chains.indices(chain)):
@@ -212,7 +217,7 @@ def progress_display(progress: bool | None, total: int | None, title: str) -> Di
     progress: whether to display progress; None: only in a terminal or a notebook. total: number of points,
     None if unknown. Raises InputError for any other value of `progress`.
     """
-    progress = plain_keyword("progress", progress)
+    progress = keyword_value_of_yaml_types("progress", progress)
     if not (progress is None or isinstance(progress, bool)):
         raise InputError(f"progress = {progress!r} is not allowed; it should be True, False or None")
     is_shown = sys.stderr.isatty() or can_show_notebook_bar() if progress is None else progress

@@ -17,19 +17,25 @@ from ..config.document.call_arguments import refusing_wrong_arguments
 from ..config.document.reading import tree_yaml
 from ..errors import EnvironmentIncomplete, InputError, short_repr
 from ..sweep.progress import Display
-from ..tasks.running.unforeseen_exceptions import describe_exception, log_file
+from ..tasks.running.unforeseen_exceptions import describe_exception, traceback_log_path
 from ..wording import counted
 from .dataset import open_result
-from .keyword_arguments import ConfigTree, config_tree, job_of_tree, plain_keyword, validated_point_count
+from .keyword_arguments import (
+    ConfigTree,
+    config_tree,
+    job_of_tree,
+    keyword_value_of_yaml_types,
+    validated_point_count,
+)
 from .solving_in_process import progress_display, solve_in_process
 
-COMPLETE_STATUSES = (0, 1)
+EXIT_STATUSES_OF_COMPLETE_RUN = (0, 1)
 """Exit statuses of a complete run: 0 if all points succeeded, 1 if some points failed."""
 EXCEPTION_OF_EXIT_STATUS: dict[int, type[Exception]] = {2: InputError, 3: EnvironmentIncomplete}
 """Class of the exception for each exit status of a run that was refused."""
 RANKS_ALLOWED_FOR_ANY_SWEEP = 64
 """A sweep may have this number of ranks whatever the number of its points."""
-MAX_QUOTED_LENGTH = 2000
+MAX_QUOTED_STDERR_LENGTH = 2000
 """Maximum number of quoted characters of a run's standard error, enough for the last traceback."""
 
 
@@ -59,8 +65,8 @@ def sweep(
     Raises InputError for bad input, with the command line's message, and EnvironmentIncomplete if software is
     missing. A point that fails has a status other than success.
     """
-    ranks = plain_keyword("ranks", ranks)
-    strict = plain_keyword("strict", strict)
+    ranks = keyword_value_of_yaml_types("ranks", ranks)
+    strict = keyword_value_of_yaml_types("strict", strict)
     if not isinstance(strict, bool):
         raise InputError(f"strict = {short_repr(strict)} is not allowed; it should be True or False")
     if ranks is not None and (isinstance(ranks, bool) or not isinstance(ranks, int) or ranks < 1):
@@ -113,9 +119,9 @@ def _solve_on_ranks(task: str, tree: ConfigTree, ranks: int, strict: bool, displ
             status, errors = _run_with_progress(command, folder, display)
         except OSError as error:
             raise EnvironmentIncomplete(f"{command[0]} cannot be started: {error.strerror}") from None
-        if status not in COMPLETE_STATUSES:
+        if status not in EXIT_STATUSES_OF_COMPLETE_RUN:
             raise _run_failure_exception(command[0], status, errors, is_file_created=output.exists())
-        if (log := log_file(output)).exists():
+        if (log := traceback_log_path(output)).exists():
             warnings.warn(log.read_text(encoding="utf-8"), RuntimeWarning, stacklevel=2)
         return open_result(output)
 
@@ -150,9 +156,9 @@ def _run_failure_exception(launcher: str, status: int, errors: str, is_file_crea
     if lines:
         return EXCEPTION_OF_EXIT_STATUS.get(status, RuntimeError)(lines[0].removeprefix("rodsweep: "))
     if is_file_created or "Traceback" in errors:
-        return RuntimeError(errors[-MAX_QUOTED_LENGTH:])
+        return RuntimeError(errors[-MAX_QUOTED_STDERR_LENGTH:])
     output = " ".join(errors.split()) or f"exit status {status}"
-    return EnvironmentIncomplete(f"{launcher} did not start the ranks: {output[-MAX_QUOTED_LENGTH:]}")
+    return EnvironmentIncomplete(f"{launcher} did not start the ranks: {output[-MAX_QUOTED_STDERR_LENGTH:]}")
 
 
 def _mpiexec_path() -> str:

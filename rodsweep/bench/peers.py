@@ -45,14 +45,14 @@ class PeerContribution:
     contenders: Mapping[str, Sequence[TimedMethod]] = field(default_factory=dict)
     """Methods of each race, by the name of the race, with settings from the coarsest to the finest; the study
     defines the races and their cases."""
-    sections: Sequence[MakePeerSection] = ()
+    section_functions: Sequence[MakePeerSection] = ()
     """Functions that make further comparisons, in addition to the races of the study."""
-    notes: Sequence[str] = ()
+    contender_notes: Sequence[str] = ()
     """Sentences on the contenders, for the introduction of the report."""
-    skipped: Sequence[str] = ()
+    skipped_peer_sentences: Sequence[str] = ()
     """A sentence for each peer that is not installed."""
 
-    def of(self, race: str) -> list[TimedMethod]:
+    def contenders_of_race(self, race: str) -> list[TimedMethod]:
         """Contenders of the race with the name `race`; empty if no peer takes part."""
         return list(self.contenders.get(race, ()))
 
@@ -104,7 +104,7 @@ def peers_of_study(package: ModuleType | None, study: str, quick: bool, folder: 
     return peers
 
 
-def peers_left_out(studies: Sequence[str]) -> str:
+def left_out_peers_sentence(studies: Sequence[str]) -> str:
     """Sentence that names the missing peers of `studies`, for a run without the folder of peers; "" if these
     studies have no peers."""
     missing = "; ".join(

@@ -17,7 +17,7 @@ from ..results.file.benchmark_file import Table
 
 Outcome = TypeVar("Outcome")
 """Type of the result of a timed function."""
-Item = TypeVar("Item", "TimedMethod", "Measurement")
+MethodOrMeasurement = TypeVar("MethodOrMeasurement", "TimedMethod", "Measurement")
 MAX_CACHE_SENSITIVE_SECONDS = 0.02
 """If a run takes less than this duration, in s, its time depends on the contents of the processor caches
 after the previous run."""
@@ -45,7 +45,7 @@ class Measurement:
 
     seconds: median time of the rounds. error: relative error; nan if there is no error to measure, inf if the
     method failed. failure: reason for the failure. least_seconds: minimum time of the rounds, which depends
-    less on other programs. extra: further numbers by name.
+    less on other programs. extra_columns: further numbers by name.
     """
 
     case: str
@@ -56,24 +56,25 @@ class Measurement:
     group: str = ""
     failure: str = ""
     least_seconds: float = nan
-    extra: dict[str, float] = field(default_factory=dict)
+    extra_columns: dict[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
 class BenchmarkReport:
     """Report and measurements of one benchmark.
 
-    text: report in Markdown. measurements: measurements in the figure. unit: noun for a run, as in "ms a
-    point". target: error at which methods are compared. undrawn: further measurements, which are only in the
-    file.
+    text: report in Markdown. measurements: measurements in the figure. run_noun: noun for a run, as in "ms a
+    point". target_error: error at which methods are compared. undrawn_measurements: further measurements,
+    which are only in the file.
     """
 
     name: str
+    """Name of the study, as in `rodsweep bench NAME`."""
     text: str
     measurements: Sequence[Measurement]
-    unit: str = "run"
-    target: float | None = None
-    undrawn: Sequence[Measurement] = ()
+    run_noun: str = "run"
+    target_error: float | None = None
+    undrawn_measurements: Sequence[Measurement] = ()
 
     @property
     def is_drawable(self) -> bool:
@@ -82,11 +83,13 @@ class BenchmarkReport:
 
     def draw(self, output: Path) -> None:
         """Writes a figure of errors against time into a file: a panel per case, a curve per method."""
-        draw_work_precision(measurement_columns(self.measurements), f"ms a {self.unit}", self.target, output)
+        draw_work_precision(
+            measurement_columns(self.measurements), f"ms a {self.run_noun}", self.target_error, output
+        )
 
     def table(self) -> Table:
         """All measurements as the columns of a table, for the file."""
-        return measurement_columns([*self.measurements, *self.undrawn])
+        return measurement_columns([*self.measurements, *self.undrawn_measurements])
 
 
 def measurement_columns(measurements: Sequence[Measurement]) -> Table:
@@ -95,8 +98,8 @@ def measurement_columns(measurements: Sequence[Measurement]) -> Table:
         name: [getattr(m, name) for m in measurements]
         for name in ("case", "method", "group", "setting", "seconds", "least_seconds", "error", "failure")
     }
-    for name in dict.fromkeys(name for m in measurements for name in m.extra):
-        columns[name] = [m.extra.get(name, nan) for m in measurements]
+    for name in dict.fromkeys(name for m in measurements for name in m.extra_columns):
+        columns[name] = [m.extra_columns.get(name, nan) for m in measurements]
     return columns
 
 
@@ -108,7 +111,7 @@ class TimedRuns(NamedTuple, Generic[Outcome]):
     seconds: tuple[float, ...]
 
     @property
-    def median(self) -> float:
+    def median_seconds(self) -> float:
         return median(self.seconds)
 
 
@@ -123,7 +126,7 @@ def time_runs(runs: Sequence[Callable[[], Outcome]], rounds: Sequence[int]) -> l
     first = [_time_one_run(run) for run in runs]
     seconds: list[list[float]] = [[] for _ in runs]
     for i in timing_order(rounds):
-        if first[i].median < MAX_CACHE_SENSITIVE_SECONDS:
+        if first[i].median_seconds < MAX_CACHE_SENSITIVE_SECONDS:
             runs[i]()
         seconds[i] += _time_one_run(runs[i]).seconds
     return [
@@ -170,6 +173,7 @@ class CaseWithErrorMeasure(NamedTuple):
     name: str
     case: Any
     measure_error: ErrorMeasure
+    """Function from a method's result on the case to the fields of `Measurement`."""
 
 
 def measure_case(
@@ -193,15 +197,17 @@ def measure_cases(
         failure_fields = {"failure": f"failed ({type(timed.outcome).__name__})"}
         fields = {"error": inf} | (failure_fields if failed else entry.measure_error(timed.outcome))
         names = {"case": entry.name, "method": c.method, "setting": c.setting, "group": c.group}
-        fields |= names | {"seconds": timed.median, "least_seconds": min(timed.seconds)}
+        fields |= names | {"seconds": timed.median_seconds, "least_seconds": min(timed.seconds)}
         measurements.append(Measurement(**fields))
     return measurements
 
 
-def grouped_by_fields(items: Iterable[Item], *names: str) -> dict[tuple[str, ...], list[Item]]:
+def grouped_by_fields(
+    items: Iterable[MethodOrMeasurement], *names: str
+) -> dict[tuple[str, ...], list[MethodOrMeasurement]]:
     """Lists of contenders or measurements with equal values of the fields `names`, by these values, in order
     of first appearance."""
-    groups: dict[tuple[str, ...], list[Item]] = {}
+    groups: dict[tuple[str, ...], list[MethodOrMeasurement]] = {}
     for item in items:
         groups.setdefault(tuple(getattr(item, name) for name in names), []).append(item)
     return groups

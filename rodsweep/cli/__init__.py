@@ -33,7 +33,7 @@ for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 import click  # noqa: E402 - after the environment is set
 
 from ..config.values import printable  # noqa: E402 - after the environment is set
-from ..errors import BUG_STATUS, UserError  # noqa: E402 - after the environment is set
+from ..errors import BUG_EXIT_STATUS, UserError  # noqa: E402 - after the environment is set
 from .command_line import commands  # noqa: E402 - after the environment is set
 from .launchers import prints_messages  # noqa: E402 - after the environment is set
 from .output_commands import explore, export, plot, portrait, report  # noqa: E402 - after the environment is set
@@ -92,7 +92,7 @@ def main() -> None:
         )
     except Exception:
         traceback.print_exc()
-        code = BUG_STATUS
+        code = BUG_EXIT_STATUS
         message = "this is a bug; please report it with the lines above"
     if message and prints_messages():
         with suppress(OSError):  # standard error may also be on the full disk

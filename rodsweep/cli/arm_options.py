@@ -7,9 +7,9 @@ import click
 
 from ..config.values import overflows_float
 from ..errors import short_repr
-from ..model.arm.quantities import QUANTITIES, UNITS
+from ..model.arm.quantities import GIVEN_QUANTITIES, UNITS_AND_EXAMPLES
 from ..model.arm.segments import EXAMPLE_SEGMENT
-from ..model.parameters import NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS
+from ..model.parameters import NONLINEAR_ROD_PARAMETER_NAMES, OPTIONAL_PARAMETER_NAMES, PARAMETERS
 
 HELP_REMARKS = {
     "length": ", by default the sum of the segments",
@@ -65,8 +65,8 @@ def arm_options(omitted: Collection[str] = (), is_required: bool = True) -> Deco
     """
 
     def add_options(command: CommandFunction) -> CommandFunction:
-        for name in reversed([name for name in UNITS if name not in omitted]):
-            command = _quantity_option(name, is_required and QUANTITIES[name].is_required)(command)
+        for name in reversed([name for name in UNITS_AND_EXAMPLES if name not in omitted]):
+            command = _quantity_option(name, is_required and GIVEN_QUANTITIES[name].is_required)(command)
         for option, settings in reversed(MATERIAL_OPTIONS.items()):
             command = click.option(option, **settings)(command)
         return command
@@ -76,7 +76,7 @@ def arm_options(omitted: Collection[str] = (), is_required: bool = True) -> Deco
 
 def _quantity_option(name: str, required: bool) -> Decorator:
     """Decorator that adds the option of one quantity of an arm."""
-    meaning = QUANTITIES[name].meaning
+    meaning = GIVEN_QUANTITIES[name].meaning
     help_text = f"{meaning[0].upper()}{meaning[1:]}{HELP_REMARKS.get(name, '')}."
     option = "--" + name.replace("_", "-")
     return click.option(option, name, metavar="QUANTITY", required=required, help=help_text)
@@ -84,7 +84,9 @@ def _quantity_option(name: str, required: bool) -> Decorator:
 
 def parameter_options(command: CommandFunction) -> CommandFunction:
     """Decorator that adds an option for every parameter of a rod except F. No option is required."""
-    for name in reversed([name for name in (*NONLINEAR_PARAMETERS, *OPTIONAL_PARAMETERS) if name != "F"]):
+    for name in reversed(
+        [name for name in (*NONLINEAR_ROD_PARAMETER_NAMES, *OPTIONAL_PARAMETER_NAMES) if name != "F"]
+    ):
         parameter = PARAMETERS[name]
         meaning = f"{parameter.meaning[0].upper()}{parameter.meaning[1:]}"
         unit = "" if parameter.unit == "1" else f", in {parameter.unit}"

@@ -6,7 +6,7 @@ from typing import Any
 from rich.console import Console
 
 from ..errors import InputError
-from ..model.arm.quantities import UNITS
+from ..model.arm.quantities import UNITS_AND_EXAMPLES
 
 PARAGRAPH_STYLES = {"headline": "bold", "warning": "yellow"}
 """Text styles of the printed lines, by kind of line."""
@@ -31,7 +31,7 @@ def print_arm_report(typed_values: dict[str, str | None], poisson: float, segmen
         console.print(line, markup=False, style=PARAGRAPH_STYLES.get(kind, ""))
 
 
-QUANTITY_NAME_PATTERN = "|".join((*UNITS, "segments"))
+QUANTITY_NAME_PATTERN = "|".join((*UNITS_AND_EXAMPLES, "segments"))
 """Regular expression of all names of quantities."""
 QUANTITY_NAME_IN_SENTENCE_PATTERN = re.compile(
     rf"^({QUANTITY_NAME_PATTERN})"

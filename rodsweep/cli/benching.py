@@ -33,7 +33,7 @@ def run_benchmarks(study_name: str | None, is_quick: bool, output: Path, directo
     """
     try:
         from ..bench.limit_cycle.study import run_limit_cycle_study
-        from ..bench.peers import PeerContribution, peer_package, peers_left_out, peers_of_study
+        from ..bench.peers import PeerContribution, left_out_peers_sentence, peer_package, peers_of_study
         from ..bench.spectrum.study import run_spectrum_study
         from ..bench.study import BenchmarkReport
         from ..bench.sweep.study import run_sweep_study
@@ -53,7 +53,7 @@ def run_benchmarks(study_name: str | None, is_quick: bool, output: Path, directo
     names = [study_name] if study_name else list(studies)
     tables = {}
     blocks = [REPORT_HEADING, machine_and_versions_line(package.versions() if package else {})]
-    if package is None and (sentence := peers_left_out(names)):
+    if package is None and (sentence := left_out_peers_sentence(names)):
         blocks.append(sentence)
     click.echo("\n\n".join(blocks[1:]))
     for name in names:
@@ -73,12 +73,12 @@ def run_benchmarks(study_name: str | None, is_quick: bool, output: Path, directo
 
 def machine_attributes() -> dict[str, str]:
     """Processor, date and versions, as attributes of the file of measurements."""
-    return {"processor": cpu_name(), "created": utc_time()} | provenance() | petsc.versions()
+    return {"processor": cpu_name(), "created": utc_time()} | provenance() | petsc.library_versions()
 
 
 def machine_and_versions_line(peers: Mapping[str, str]) -> str:
     """Processor, date and versions in one line of text. peers: versions of the peers by name."""
-    versions = petsc.versions() | {
+    versions = petsc.library_versions() | {
         package.removesuffix("_version"): package_version for package, package_version in provenance().items()
     }
     versions_to_print = {name: versions[name] for name in ("rodsweep", "petsc", "slepc", "numpy", "python")}

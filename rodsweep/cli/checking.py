@@ -13,11 +13,11 @@ from ..config.arm.status import SLENDER
 from ..discretization.elements.resolution import RESOLUTION_SETTINGS
 from ..model.arm.neglected import wall_flattening_effect
 from ..post.summary import print_lines
-from ..post.summary.arm.validity_sentences import plane_lines, validity_sentence
-from ..post.summary.number_texts import span_text
+from ..post.summary.arm.validity_sentences import bending_plane_warning, validity_sentence
+from ..post.summary.number_texts import value_range_text
 from ..sweep.cost_estimate import MAX_SAMPLED_POINTS, with_arm_code_loading_time
 from ..sweep.points.points import Points
-from ..tasks.arm.point_solver import OutsideModelStatus, rod_numbers
+from ..tasks.arm.arm_points import OutsideModelStatus, numbers_of_distinct_rods
 from ..tasks.arm.validity import ArmValidity
 from ..tasks.running.job import Job
 from ..verdict.checks import tube_flattening_check
@@ -30,7 +30,7 @@ def print_job_check(job: Job) -> None:
     rods that overflow are limited in the estimates."""
     console = Console(highlight=False, markup=False)
     console.print(f"{job.path}: valid. {job.config.title}".rstrip())
-    console.print(job.task.headline())
+    console.print(job.task.check_headline())
     if arms := job.task.arms_line():
         print_lines(console, [arms])
     print_lines(console, _arm_lines(job) if job.quantity_variables else [])
@@ -41,8 +41,8 @@ def print_job_check(job: Job) -> None:
     cost = job.task.cost()
     if not job.config.is_uniform_and_linear:
         cost = with_arm_code_loading_time(cost)
-    if cost.unknowns is not None:
-        low, high = cost.unknowns
+    if cost.unknown_count_range is not None:
+        low, high = cost.unknown_count_range
         console.print(f"expected unknowns of the mesh per point: {low} to {high}, for the requested accuracy")
     console.print(
         f"expected cost: {cost.seconds:.3g} s on one rank (divide by the number of ranks; the first run "
@@ -72,7 +72,7 @@ def _arm_lines(job: Job) -> list[str]:
     assert arm is not None
     quantities = {variable.name: np.asarray(values) for variable, values in job.quantity_variables}
     columns = job.points.columns_by_name | {"tau2": quantities["tau2"]}
-    texts = (f"{name} = {span_text(np.asarray(values))}" for name, values in columns.items())
+    texts = (f"{name} = {value_range_text(np.asarray(values))}" for name, values in columns.items())
     at_rest = ArmValidity(job.config, job.points).variables_at_rest()
     load_clause = ", and compression, by the load that it finds"
     if "F" in job.task.coordinates():  # rows along F
@@ -83,7 +83,7 @@ def _arm_lines(job: Job) -> list[str]:
     return [
         f"the arm: {quantities_as_typed(arm.quantity_axes)}{_material_text(arm)}",
         *_thin_wall_warnings(arm),
-        *plane_lines(quantities),
+        *bending_plane_warning(quantities),
         f"the arm as a rod: {', '.join(texts)} s",
         *_lines_on_points_without_rod(job.points),
         f"{validity_sentence(at_rest, condition=' at rest')}; the run also tests inertia, by the frequency "
@@ -119,7 +119,7 @@ def _lines_on_points_without_rod(points: Points) -> list[str]:
     """Lines with the number of different rods, and with the number of points to which the rod model does not
     apply, by reason."""
     lines = list[str]()
-    rods = rod_numbers(points)
+    rods = numbers_of_distinct_rods(points)
     if rods is not None:
         modelled_rods = rods if points.validity_codes is None else rods[points.validity_codes == SLENDER]
         rods_text = counted(len(np.unique(modelled_rods)), "different rod")

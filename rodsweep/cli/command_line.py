@@ -9,9 +9,9 @@ from .. import __version__
 from ..errors import InputError
 from ..wording import counted, is_or_are
 from .arm_options import NUMBER_TYPE, arm_options
-from .file_names import FILE_TYPE, OUTPUT, link_target, result_file_path, with_suffix_replaced
+from .file_names import FILE_TYPE, OUTPUT_OPTION_NAMES, link_target, result_file_path, with_suffix_replaced
 from .launchers import launcher_rank_values
-from .usage_errors import CommandGroup
+from .usage_errors import CommandGroupWithSuggestions
 
 overrides_option = click.option(
     "--set", "overrides", multiple=True, metavar="KEY=VALUE", help="Override a key, e.g. parameters.F.num=50."
@@ -19,7 +19,9 @@ overrides_option = click.option(
 
 
 @click.group(
-    cls=CommandGroup, context_settings={"help_option_names": ["-h", "--help"]}, invoke_without_command=True
+    cls=CommandGroupWithSuggestions,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    invoke_without_command=True,
 )
 @click.version_option(__version__, prog_name="rodsweep")
 @click.pass_context
@@ -33,7 +35,9 @@ def commands(context: click.Context) -> None:
 @commands.command()
 @click.argument("config", type=FILE_TYPE)
 @click.option(
-    *OUTPUT, type=FILE_TYPE, help="Result file; by default CONFIG's name with .h5, in the working directory."
+    *OUTPUT_OPTION_NAMES,
+    type=FILE_TYPE,
+    help="Result file; by default CONFIG's name with .h5, in the working directory.",
 )
 @overrides_option
 @click.option("--fresh", is_flag=True, help="Replace an existing result file instead of continuing it.")
@@ -50,7 +54,7 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: st
     from ..sweep.stop import StopRequest
 
     stop = StopRequest(acknowledges=not launcher_rank_values())
-    stop.listen()  # first: a launcher's warning signal may come before slow imports are done
+    stop.listen_for_signals()  # first: a launcher's warning signal may come before slow imports are done
     from ..sweep.points.ranges import parsed_shard
     from .run.run_request import RunRequest
     from .run.running import run_config
@@ -62,7 +66,7 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: st
     suffix = f"-{parsed.number}-of-{parsed.shard_count}.h5" if parsed.shard_count > 1 else ".h5"
     output = result_file_path(output or Path(config.stem + suffix))
     code = run_config(config, output, RunRequest(overrides=overrides, shard=parsed, **options), stop)
-    stop.ignore()  # the status is decided
+    stop.ignore_signals()  # the status is decided
     sys.exit(code)
 
 
@@ -71,27 +75,27 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: st
 @click.argument("shards", type=FILE_TYPE, nargs=-1, required=True, metavar="SHARD...")
 def merge(output: Path, shards: tuple[Path, ...]) -> None:
     """Put the points of all SHARD files into OUTPUT: parts of a sweep, or grids that form a larger grid."""
-    from ..errors import STOPPED_STATUS
+    from ..errors import STOPPED_EXIT_STATUS
     from ..results.file.combination.merge import merge as merge_files
     from ..tasks.running.job import plan_without_solver
 
     output = result_file_path(output)
     joined_file = merge_files(output, tuple(map(link_target, shards)), plan_without_solver)
     sources_text = counted(len(shards), "file")
-    points_text = counted(joined_file.point_count, "point")
-    click.echo(f"{output}: {points_text} from {sources_text}, {joined_file.missing_count} missing")
+    points_text = counted(joined_file.computed_point_count, "point")
+    click.echo(f"{output}: {points_text} from {sources_text}, {joined_file.missing_point_count} missing")
     if joined_file.kernel_warning:
         click.echo(f"{output}: {joined_file.kernel_warning}")
-    if joined_file.missing_count:
+    if joined_file.missing_point_count:
         click.echo(f"`rodsweep run CONFIG -o {output}` computes the missing points")
-        sys.exit(STOPPED_STATUS)
+        sys.exit(STOPPED_EXIT_STATUS)
     if not joined_file.is_finished:
         click.echo(f"`rodsweep run CONFIG -o {output}` adds the variables that need all points")
 
 
 @commands.command()
 @click.argument("file", type=FILE_TYPE)
-@click.option(*OUTPUT, type=FILE_TYPE, help="By default FILE's name with -snapshot before .h5.")
+@click.option(*OUTPUT_OPTION_NAMES, type=FILE_TYPE, help="By default FILE's name with -snapshot before .h5.")
 def snapshot(file: Path, output: Path | None) -> None:
     """Write the finished points of the result FILE, without disturbing the run."""
     from ..results.file.current_state import write_snapshot
@@ -137,7 +141,9 @@ def schema() -> None:
 @click.argument("what", type=click.Choice(["spectrum", "thresholds", "limit_cycle", "sweep"]), required=False)
 @click.option("--quick", is_flag=True, help="Fewer rounds, rods and settings, for a first impression.")
 @click.option(
-    *OUTPUT, type=FILE_TYPE, help="Markdown file; the numbers (.h5) and figures go into the same folder."
+    *OUTPUT_OPTION_NAMES,
+    type=FILE_TYPE,
+    help="Markdown file; the numbers (.h5) and figures go into the same folder.",
 )
 @click.option(
     "--peers", "directory", type=FILE_TYPE,

@@ -25,7 +25,7 @@ class FileNameType(click.Path):
 
 FILE_TYPE = FileNameType(path_type=Path)
 """Type of arguments and options that name a file."""
-OUTPUT = ("-o", "--output")
+OUTPUT_OPTION_NAMES = ("-o", "--output")
 """Names of the option for the file that a command writes."""
 
 

@@ -23,7 +23,7 @@ from ..tasks.spectrum import SpectrumTask
 from . import main
 from .launchers import prints_messages
 
-OUTCOME_COUNT = 4096
+RANDOM_OUTCOME_COUNT = 4096
 """Number of different random outcomes. The points use the outcomes in turn. A file's compression detects no
 repetition at this distance."""
 
@@ -34,18 +34,18 @@ class TabulatedSpectra(SpectrumTask):
 
     All eigenvalues are stable, because a sweep would spend time on locating changes of stability.
 
-    kill_directory: directory in which the rank of the last point records its peak memory before the process
-    is killed; None for a run without a kill.
+    memory_directory_before_kill: directory in which the rank of the last point records its peak memory before
+    the process is killed; None for a run without a kill.
     """
 
-    kill_directory: Path | None = None
+    memory_directory_before_kill: Path | None = None
 
     def solver(self) -> Solver:
         from ..solve.spectrum.search import Spectrum
         from ..solve.spectrum.status import SpectrumStatus
 
         points = self.points
-        table_shape = (OUTCOME_COUNT, 3, self.config.spectrum.modes)
+        table_shape = (RANDOM_OUTCOME_COUNT, 3, self.config.spectrum.modes)
         solved = partial(
             Spectrum, status=SpectrumStatus.ok, unstable_count=0, certified=True, elements=1, order=20,
             seconds=1e-7,
@@ -57,12 +57,14 @@ class TabulatedSpectra(SpectrumTask):
 
         def solve(index: int) -> Spectrum:
             points.rod(index)
-            if self.kill_directory and index == points.count - 1:
-                record_memory(self.kill_directory)
+            if self.memory_directory_before_kill and index == points.count - 1:
+                record_memory(self.memory_directory_before_kill)
                 os.kill(os.getpid(), signal.SIGKILL)
-            return outcomes[index % OUTCOME_COUNT]
+            return outcomes[index % RANDOM_OUTCOME_COUNT]
 
-        return replace(SpectrumTask.solver(self), warm_up=lambda: None, solve=solve, grouped=None)
+        return replace(
+            SpectrumTask.solver(self), warm_up=lambda: None, solve=solve, groups_and_group_solver=None
+        )
 
 
 def record_memory(directory: Path) -> None:
@@ -84,12 +86,14 @@ def peak_memory() -> int:
         return 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 
 
-def run_measured() -> None:
+def run_and_record_memory() -> None:
     """Runs `rodsweep` with the arguments of this process, and records the peak memory at the end."""
     directory, kind, *command = sys.argv[1:]
     notes = Path(directory)
     if kind != SOLVED:
-        TASKS["spectrum"] = partial(TabulatedSpectra, kill_directory=notes if kind == KILLED else None)
+        TASKS["spectrum"] = partial(
+            TabulatedSpectra, memory_directory_before_kill=notes if kind == KILLED else None
+        )
     sys.argv = ["rodsweep", *command]
     try:
         main()
@@ -98,4 +102,4 @@ def run_measured() -> None:
 
 
 if __name__ == "__main__":
-    run_measured()
+    run_and_record_memory()

@@ -8,15 +8,15 @@ import click
 from ..config.parameters_section import DEFAULT_F_MAX
 from ..config.values import printable
 from ..errors import InputError
-from ..model.arm.quantities import UNITS
+from ..model.arm.quantities import UNITS_AND_EXAMPLES
 from ..model.parameters import PARAMETERS
 from .arm_options import NUMBER_TYPE, arm_options, parameter_options
-from .file_names import FILE_TYPE, OUTPUT, link_target, with_suffix_replaced
+from .file_names import FILE_TYPE, OUTPUT_OPTION_NAMES, link_target, with_suffix_replaced
 from .portrait_rod import (
     QUANTITIES_WITHOUT_OPTION,
-    naming_portrait_options,
     rod_of_options,
     solve_with_progress,
+    with_portrait_option_names,
 )
 
 PORT_TYPE = click.IntRange(0, 65535)
@@ -26,7 +26,7 @@ PORT_TYPE = click.IntRange(0, 65535)
 @click.command()
 @click.argument("files", type=FILE_TYPE, nargs=-1, required=True, metavar="FILE...")
 @click.option(
-    *OUTPUT, type=FILE_TYPE,
+    *OUTPUT_OPTION_NAMES, type=FILE_TYPE,
     help="Figure file (.png, .pdf, .svg; .gif or .mp4 for an animation); by default FILE's name.",
 )  # fmt: skip
 @click.option(
@@ -94,7 +94,9 @@ def _parsed_at_values(at: tuple[str, ...]) -> dict[str, str]:
 
 @click.command()
 @click.argument("file", type=FILE_TYPE)
-@click.option(*OUTPUT, type=FILE_TYPE, help="A .csv or .tsv file; by default FILE's name with .csv.")
+@click.option(
+    *OUTPUT_OPTION_NAMES, type=FILE_TYPE, help="A .csv or .tsv file; by default FILE's name with .csv."
+)
 @click.option("--table", metavar="NAME", help="Table to write: points, or a list such as crossings.")
 @click.option("--columns", metavar="A,B,C", help="Columns to write, in this order; by default all.")
 @click.option("--units", is_flag=True, help="Put units into the headings: F_onset [k3/L^2].")
@@ -115,15 +117,15 @@ def export(
 
 @click.command()
 @click.argument("files", type=FILE_TYPE, nargs=-1, required=True, metavar="FILE...")
-@click.option(*OUTPUT, type=FILE_TYPE, help="A .html file; by default FILE's name with .html.")
+@click.option(*OUTPUT_OPTION_NAMES, type=FILE_TYPE, help="A .html file; by default FILE's name with .html.")
 def report(files: tuple[Path, ...], output: Path | None) -> None:
     """Write one HTML page about the result FILEs, to share: answer, figures, tables, config, provenance."""
-    from ..post.report import require_page_path, write_report
+    from ..post.report import require_html_path, write_report
     from ..results.file.view import read_view
     from ..tasks.cycle_shapes import with_shapes
 
     output = link_target(output or with_suffix_replaced(files[0], ".html"))
-    require_page_path(output, files)
+    require_html_path(output, files)
     click.echo(write_report([read_view(link_target(file)) for file in files], output, with_shapes))
 
 
@@ -140,7 +142,7 @@ def report(files: tuple[Path, ...], output: Path | None) -> None:
     help="Relative accuracy; by default 1e-5 on branches, and the accuracy of each other task.",
 )  # fmt: skip
 @click.option(
-    *OUTPUT, type=FILE_TYPE, default=Path("portrait.png"), show_default=True,
+    *OUTPUT_OPTION_NAMES, type=FILE_TYPE, default=Path("portrait.png"), show_default=True,
     help="A .png, .pdf or .svg file, or a .html page with tables.",
 )  # fmt: skip
 def portrait(F_max: float, accuracy: float | None, output: Path, **options: Any) -> None:
@@ -150,20 +152,20 @@ def portrait(F_max: float, accuracy: float | None, output: Path, **options: Any)
     --young "100 kPa" --viscosity "12 Pa s".
     """
     from ..post.rod_portrait.paragraph import paragraph
-    from ..post.rod_portrait.writing import require_portrait_path, write_portrait
+    from ..post.rod_portrait.portrait_files import require_portrait_path, write_portrait
     from ..sweep.progress import ProgressReporter
     from ..tasks.rod_portrait import PortraitRequest, solve_rod_results
-    from ..tasks.running.in_memory import solved_view
+    from ..tasks.running.in_memory import solve_job_in_memory
 
     output = link_target(output)
     require_portrait_path(output)
     parameters = {name: value for name, value in options.items() if name in PARAMETERS}
     material = {name: options[name] for name in ("law", "section", "profile")}
-    quantities = {name: value for name, value in options.items() if name in (*UNITS, "poisson")}
+    quantities = {name: value for name, value in options.items() if name in (*UNITS_AND_EXAMPLES, "poisson")}
     quantities["segments"] = options["segment"] or None
     with (
-        naming_portrait_options(),
-        solve_with_progress(ProgressReporter(None, "portrait", "solved"), solved_view) as solve,
+        with_portrait_option_names(),
+        solve_with_progress(ProgressReporter(None, "portrait", "solved"), solve_job_in_memory) as solve,
     ):
         rod = rod_of_options(parameters, quantities, material)
         results = solve_rod_results(PortraitRequest(rod=rod, F_max=F_max, accuracy=accuracy), solve)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
-from ..model.arm.quantities import LOADS
+from ..model.arm.quantities import LOAD_NAMES
 from ..model.parameters import PARAMETERS
 from ..solve_progress import reporting_to
 
@@ -16,10 +16,10 @@ if TYPE_CHECKING:
     from ..post.rod_portrait.results import DescribedRod
     from ..results.file.view import ResultView
     from ..sweep.progress import ProgressReporter
-    from ..tasks.rod_portrait import SolveJob
+    from ..tasks.rod_portrait import SolveJobFunction
     from ..tasks.running.job import Job
 
-QUANTITIES_WITHOUT_OPTION = (*LOADS, "fluid_density", "density_difference")
+QUANTITIES_WITHOUT_OPTION = (*LOAD_NAMES, "fluid_density", "density_difference")
 """Quantities of an arm without an option: the portrait varies the load, and the model does not depend on
 densities."""
 
@@ -46,10 +46,10 @@ def rod_of_options(
 
     parameter_values = _options_that_are_set(parameters)
     for name, value in parameter_values.items():
-        allowed = PARAMETERS[name].allowed
+        allowed = PARAMETERS[name].allowed_range
         if not allowed.contains(value):
             raise InputError(
-                f"--{name} = {value:g} is not allowed; it must be {allowed.description_for(value)}"
+                f"--{name} = {value:g} is not allowed; it must be {allowed.description_for_rejected(value)}"
             )
     material_values = _options_that_are_set(material)
     of_arm = _options_that_are_set(quantities)
@@ -72,7 +72,7 @@ def rod_of_options(
 
 
 @contextmanager
-def naming_portrait_options() -> Iterator[None]:
+def with_portrait_option_names() -> Iterator[None]:
     """Within this context, an InputError names the options of `rodsweep portrait` instead of keys of a
     config."""
     try:
@@ -96,7 +96,9 @@ def _options_that_are_set(options: Mapping[str, Any]) -> dict[str, Any]:
 
 
 @contextmanager
-def solve_with_progress(reporter: "ProgressReporter", solve: "SolveJob") -> "Iterator[SolveJob]":
+def solve_with_progress(
+    reporter: "ProgressReporter", solve: "SolveJobFunction"
+) -> "Iterator[SolveJobFunction]":
     """Yields `solve` with a progress display: number of solved jobs, and position of a long solve."""
     from ..sweep.progress import display_listener
 

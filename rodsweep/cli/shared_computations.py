@@ -10,8 +10,8 @@ import click
 from ..config.base_config import Config
 from ..results.file.creation import FilePlan
 from ..solve.backend.availability import require_solvers, start_solvers
-from ..sweep.points.flutter_forces import FlutterForces, flutter_force_of_rod
-from ..sweep.points.grid import rods_for_flutter_forces
+from ..sweep.points.flutter_forces import FlutterForceByRod, flutter_force_of_rod
+from ..sweep.points.points_from_config import rods_for_flutter_forces
 from ..sweep.ranks import Ranks
 from ..sweep.stop import StopRequest
 from ..tasks.protocol import Task
@@ -41,7 +41,7 @@ class _SharedComputations:
         return any(self.ranks.gather_on_all_ranks(self.has_skipped_items))
 
 
-def with_variables_from_config(
+def plan_with_variables_from_config(
     plan: FilePlan, task: Task, ranks: Ranks, stop: StopRequest
 ) -> FilePlan | None:
     """The plan of a result file, with the variables that do not depend on points, computed by all ranks
@@ -54,7 +54,7 @@ def with_variables_from_config(
     return None if computations.any_rank_stopped else replace(plan, variables_from_config=lambda: variables)
 
 
-def shared_flutter_forces(config: Config, ranks: Ranks, stop: StopRequest) -> FlutterForces | None:
+def shared_flutter_forces(config: Config, ranks: Ranks, stop: StopRequest) -> FlutterForceByRod | None:
     """Flutter force of every rod whose load is relative to flutter, by rod, computed by all ranks together.
 
     None if a stop signal came before the computation ended.

@@ -3,7 +3,7 @@
 import click
 
 
-class CommandGroup(click.Group):
+class CommandGroupWithSuggestions(click.Group):
     """A group of commands that refuses an unknown command with the most similar command, or a list of all
     commands."""
 
@@ -25,10 +25,10 @@ def usage_error_text(error: click.UsageError) -> str:
     """Message of a click error; for an unknown option that is a diameter, with the option of the radius."""
     if not isinstance(error, click.NoSuchOption) or error.ctx is None:
         return error.format_message()
-    from ..model.arm.quantities import radius_of_diameter
+    from ..model.arm.quantities import radius_name_of_diameter
 
     option_names = [parameter.name or "" for parameter in error.ctx.command.params]
-    radius = radius_of_diameter(error.option_name.lstrip("-"), option_names)
+    radius = radius_name_of_diameter(error.option_name.lstrip("-"), option_names)
     if not radius:
         return error.format_message()
     return f"unknown option {error.option_name}; give --{radius.replace('_', '-')}, half of it"

@@ -56,6 +56,7 @@ class Axis(StrictConfigSection):
     stop: float = 0.0
     num: int = 0
     spacing: Literal["linear", "log"] = "linear"
+    """Spacing of the values of a range: linear, or log for equal ratios."""
     factor: Annotated[float, Field(exclude=True)] = 1.0
     """Factor by which all values of a range are multiplied, such as F divided by the pressure in Pa."""
     written: Annotated[Any, Field(exclude=True)] = None

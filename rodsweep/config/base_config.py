@@ -10,7 +10,11 @@ from typing import Annotated, Any, ClassVar
 from pydantic import Field, model_validator
 
 from ..model.material.rod_material import DEFAULT_MATERIAL, RodMaterial
-from ..model.parameters import NON_OPTIONAL_LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS
+from ..model.parameters import (
+    NON_OPTIONAL_LINEAR_PARAMETER_NAMES,
+    NONLINEAR_ROD_PARAMETER_NAMES,
+    OPTIONAL_PARAMETER_NAMES,
+)
 from .arm.shape import MATERIAL_KEYS, SHAPE_KEYS, refuse_compressible, refuse_misused_shape
 from .material import MaterialConfig
 from .parameters_section import LinearParametersSection, ParametersSection
@@ -56,9 +60,9 @@ class Config(StrictConfigSection):
     def optional_parameters_in_use(self) -> tuple[str, ...]:
         """Names of the optional parameters in the config, given by name or implied by the arm's shape."""
         arm = self.parameters.arm
-        cone_parameters = () if arm is None else arm.cone_parameters
+        cone_parameters = () if arm is None else arm.cone_parameter_names
         used_names = {*self.parameters.given_optional_parameters, *cone_parameters}
-        return tuple(name for name in OPTIONAL_PARAMETERS if name in used_names)
+        return tuple(name for name in OPTIONAL_PARAMETER_NAMES if name in used_names)
 
     @property
     def stated_rod_material(self) -> RodMaterial | None:
@@ -88,7 +92,7 @@ class Config(StrictConfigSection):
     @classmethod
     def rod_parameters_used(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
         """Names of the parameters of a rod that the task uses."""
-        return NONLINEAR_PARAMETERS
+        return NONLINEAR_ROD_PARAMETER_NAMES
 
     @property
     def remedies_of_options_without_effect(self) -> dict[str, str]:
@@ -166,13 +170,14 @@ class LinearConfig(Config):
     """Base class of the configs of tasks on the linear problem."""
 
     parameters: LinearParametersSection
+    """Axes of the parameters, a file of points, or an arm."""
 
     nonlinear_parameters_used: ClassVar[tuple[str, ...]] = ()
     """Names of the parameters that only the nonlinear problem has but that some options of the task use."""
 
     @classmethod
     def rod_parameters_used(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
-        return NON_OPTIONAL_LINEAR_PARAMETERS
+        return NON_OPTIONAL_LINEAR_PARAMETER_NAMES
 
     @model_validator(mode="after")
     def _refuse_unused_parameters(self) -> "LinearConfig":

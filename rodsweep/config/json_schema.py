@@ -17,21 +17,30 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from ..model.arm.quantities import LOAD_OF_RATIO, LOADS, QUANTITIES, SECTION_SIZE_NAMES
-from ..model.parameters import NON_OPTIONAL_LINEAR_PARAMETERS, PARAMETERS
+from ..model.arm.quantities import (
+    GIVEN_QUANTITIES,
+    LOAD_NAME_BY_RELATIVE_LOAD,
+    LOAD_NAMES,
+    SECTION_SIZE_NAMES,
+)
+from ..model.parameters import NON_OPTIONAL_LINEAR_PARAMETER_NAMES, PARAMETERS
 from .arm.axes import LOAD_KEYS, NON_LOAD_KEYS
 from .axis import Axis
 from .document.refusals import value_type_of_key
-from .tasks import CONFIGS
+from .tasks import CONFIG_CLASSES_BY_TASK
 from .values import StrictConfigSection
 
 Schema = dict[str, Any]
 QUANTITY_TEXT_PATTERN = r"^\s*{sign}(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[A-Za-z\u00b5\u03bc{percent}]"
 """Template of a regular expression for a number followed by the beginning of a unit."""
 BOUNDS_OF_ARM: dict[str, Schema] = {
-    **{name: {"exclusiveMinimum": 0} for name in NON_LOAD_KEYS if not QUANTITIES[name].may_be_nonpositive},
+    **{
+        name: {"exclusiveMinimum": 0}
+        for name in NON_LOAD_KEYS
+        if not GIVEN_QUANTITIES[name].may_be_nonpositive
+    },
     "poisson": {"exclusiveMinimum": -1, "maximum": 0.5},
-    **{name: {"minimum": 0} for name in LOAD_OF_RATIO},
+    **{name: {"minimum": 0} for name in LOAD_NAME_BY_RELATIVE_LOAD},
 }
 """Bounds of each quantity of an arm, as JSON schema keywords, by name of the quantity."""
 SCHEMA_DIALECT_URL = "http://json-schema.org/draft-07/schema#"
@@ -45,7 +54,7 @@ def json_schema() -> dict[str, Any]:
     """JSON schema of a config of any task."""
     definitions: dict[str, Any] = {}
     tasks = []
-    for config in CONFIGS.values():
+    for config in CONFIG_CLASSES_BY_TASK.values():
         schema = config.model_json_schema(ref_template="#/definitions/{model}")
         definitions |= schema.pop("$defs", {})
         _describe_keys(schema, config)
@@ -114,20 +123,20 @@ def _describe_keys(schema: dict[str, Any], section: type[BaseModel]) -> None:
             key["description"] = meanings[name]
 
 
-def key_is_given(name: str) -> Schema:
+def key_given_condition(name: str) -> Schema:
     """JSON schema of the condition that the key `name` is present and not null."""
     return {"required": [name], "properties": {name: {"not": {"type": "null"}}}}
 
 
-def no_key_given(names: Iterable[str]) -> Schema:
+def no_key_given_condition(names: Iterable[str]) -> Schema:
     """JSON schema of the condition that no key in `names` is given."""
-    return {"not": {"anyOf": [key_is_given(name) for name in names]}}
+    return {"not": {"anyOf": [key_given_condition(name) for name in names]}}
 
 
-def all_keys_given(names: Iterable[str], *conditions: Schema) -> Schema:
+def all_keys_given_condition(names: Iterable[str], *conditions: Schema) -> Schema:
     """JSON schema of the condition that all keys in `names` are given and all schemas in `conditions` are
     satisfied."""
-    return {"allOf": [*map(key_is_given, names), *conditions]}
+    return {"allOf": [*map(key_given_condition, names), *conditions]}
 
 
 def with_axis_bounds(
@@ -156,7 +165,10 @@ def add_parameter_bounds(properties: Schema, axis: Schema) -> None:
             alternatives = [
                 axis if "$ref" in alternative else alternative for alternative in properties[name]["anyOf"]
             ]
-            bounds = parameter.allowed.schema_bounds, ("inf", "+inf") if parameter.rigid_adjective else ()
+            bounds = (
+                parameter.allowed_range.schema_bounds,
+                ("inf", "+inf") if parameter.rigid_adjective else (),
+            )
             properties[name]["anyOf"] = [
                 with_axis_bounds(alternative, *bounds) for alternative in alternatives
             ]
@@ -170,22 +182,28 @@ def add_arm_conditions(section: Schema, axis: Schema) -> None:
         if "anyOf" in key:
             alternatives = [axis if "$ref" in alternative else alternative for alternative in key["anyOf"]]
             key["anyOf"] = [with_axis_bounds(alternative, bound) for alternative in alternatives]
-        if name not in QUANTITIES:
+        if name not in GIVEN_QUANTITIES:
             continue
         sign = "[+]?" if bound else "[+-]?"
-        pattern = QUANTITY_TEXT_PATTERN.format(sign=sign, percent="%" if name in LOADS else "")
+        pattern = QUANTITY_TEXT_PATTERN.format(sign=sign, percent="%" if name in LOAD_NAMES else "")
         for node in iterate_subschemas(key):
             if node.get("type") == "string":
                 node["pattern"] = pattern
     required = ["length", "young"]
     round_sizes, rectangle_sizes = SECTION_SIZE_NAMES
-    circle = all_keys_given([*required, "radius"], no_key_given([*rectangle_sizes, "segments"]))
-    rectangle = all_keys_given([*required, *rectangle_sizes], no_key_given([*round_sizes, "segments"]))
-    in_segments = all_keys_given(["segments"], no_key_given([*round_sizes, *rectangle_sizes]))
+    circle = all_keys_given_condition(
+        [*required, "radius"], no_key_given_condition([*rectangle_sizes, "segments"])
+    )
+    rectangle = all_keys_given_condition(
+        [*required, *rectangle_sizes], no_key_given_condition([*round_sizes, "segments"])
+    )
+    in_segments = all_keys_given_condition(
+        ["segments"], no_key_given_condition([*round_sizes, *rectangle_sizes])
+    )
     section["allOf"] = [
         {"oneOf": [circle, rectangle, in_segments]},
-        {"not": all_keys_given(["inner_radius", "tip_radius"])},
-        *({"not": all_keys_given(pair)} for pair in combinations((*LOAD_KEYS, "load_kind"), 2)),
+        {"not": all_keys_given_condition(["inner_radius", "tip_radius"])},
+        *({"not": all_keys_given_condition(pair)} for pair in combinations((*LOAD_KEYS, "load_kind"), 2)),
     ]
 
 
@@ -196,20 +214,24 @@ def points_condition(parameter_names: Iterable[str], lists: bool) -> Schema:
     otherwise both are forbidden.
     """
     axes = tuple(name for name in parameter_names if PARAMETERS[name].default is None)
-    loads = [all_keys_given([name]) for name in LOAD_KEYS]
+    loads = [all_keys_given_condition([name]) for name in LOAD_KEYS]
     arm_with_load = {"properties": {"arm": {"anyOf": loads}}}
-    unloaded = {"properties": {"arm": no_key_given(LOAD_KEYS)}}
-    load = {"oneOf": [key_is_given("F"), arm_with_load]} if "F" in axes else unloaded
-    none_listed = no_key_given(["points", "columns"])
+    unloaded = {"properties": {"arm": no_key_given_condition(LOAD_KEYS)}}
+    load = {"oneOf": [key_given_condition("F"), arm_with_load]} if "F" in axes else unloaded
+    none_listed = no_key_given_condition(["points", "columns"])
     alternatives = [
-        all_keys_given(axes, no_key_given(["arm"]), none_listed),
-        all_keys_given(["arm"], none_listed, load),
+        all_keys_given_condition(axes, no_key_given_condition(["arm"]), none_listed),
+        all_keys_given_condition(["arm"], none_listed, load),
     ]
     if lists:
         alternatives.append(
-            all_keys_given(["points"], no_key_given(["arm", *NON_OPTIONAL_LINEAR_PARAMETERS]))
+            all_keys_given_condition(
+                ["points"], no_key_given_condition(["arm", *NON_OPTIONAL_LINEAR_PARAMETER_NAMES])
+            )
         )
-    return {"anyOf": alternatives} if "F" in axes else {"anyOf": alternatives, **no_key_given(["F"])}
+    return (
+        {"anyOf": alternatives} if "F" in axes else {"anyOf": alternatives, **no_key_given_condition(["F"])}
+    )
 
 
 def iterate_subschemas(schema: Any) -> Iterable[Schema]:

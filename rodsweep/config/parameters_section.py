@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 from pydantic import Field, create_model, model_validator
 
 from ..model.parameters import (
-    NON_OPTIONAL_LINEAR_PARAMETERS,
-    NONLINEAR_PARAMETERS,
-    OPTIONAL_PARAMETERS,
+    NON_OPTIONAL_LINEAR_PARAMETER_NAMES,
+    NONLINEAR_ROD_PARAMETER_NAMES,
+    OPTIONAL_PARAMETER_NAMES,
     PARAMETERS,
-    TRANSVERSE_PARAMETERS,
+    TRANSVERSE_PARAMETER_NAMES,
 )
 from ..wording import enumeration
 from .arm.axes import LOAD_KEYS, MAX_ARM_GRID_POINTS, grid_axis_names, parameter_of_axis
@@ -39,17 +39,18 @@ def refuse_conflicting_keys(arm: "ArmConfig", needs_force: bool, given_parameter
             "parameters.arm.poisson has several values but changes only k2, and parameters.k2 is given "
             "too; give one of them"
         )
-    if arm.load and not needs_force:
-        unit_clause = "load_kind: force gives the loads in newton, and " if arm.load == "force" else ""
+    if arm.load_name and not needs_force:
+        unit_clause = "load_kind: force gives the loads in newton, and " if arm.load_name == "force" else ""
         raise ValueError(
-            f"parameters.arm.{arm.load} is given, but the task solves for the load; remove it; {unit_clause}"
-            "F_max sets the end of the search (for the task branch, branch.stop)"
+            f"parameters.arm.{arm.load_name} is given, but the task solves for the load; remove it; "
+            f"{unit_clause}F_max sets the end of the search (for the task branch, branch.stop)"
         )
-    if arm.load and arm.load_kind:
+    if arm.load_name and arm.load_kind:
         raise ValueError(
-            f"parameters.arm.load_kind is given, but parameters.arm.{arm.load} is given too; remove load_kind"
+            f"parameters.arm.load_kind is given, but parameters.arm.{arm.load_name} is given too; remove "
+            "load_kind"
         )
-    if needs_force and not (arm.load or "F" in given_parameters):
+    if needs_force and not (arm.load_name or "F" in given_parameters):
         if arm.load_kind:
             raise ValueError(
                 f"parameters.arm.load_kind is given, but the task needs a load; give parameters.arm."
@@ -59,13 +60,13 @@ def refuse_conflicting_keys(arm: "ArmConfig", needs_force: bool, given_parameter
 
 
 NONLINEAR_ONLY_PARAMETERS = tuple(
-    name for name in NONLINEAR_PARAMETERS if name not in NON_OPTIONAL_LINEAR_PARAMETERS
+    name for name in NONLINEAR_ROD_PARAMETER_NAMES if name not in NON_OPTIONAL_LINEAR_PARAMETER_NAMES
 )
 """Names of the parameters on which limit cycles depend but the linear problem does not."""
 REQUIRED_PARAMETERS = tuple(p.name for p in PARAMETERS.values() if p.default is None and p.name != "F")
 """Names of the parameters without a default, except F."""
 DEFAULT_VALUES_OF_PARAMETERS = {
-    p.name: p.default for p in PARAMETERS.values() if p.default is not None and not p.optional
+    p.name: p.default for p in PARAMETERS.values() if p.default is not None and not p.is_optional
 }
 """Default value, by name, of each parameter with a default, without the optional parameters."""
 
@@ -79,24 +80,24 @@ def _section_with_keys(base: type[StrictConfigSection], names: tuple[str, ...], 
     return create_model("Section", __base__=base, **fields)
 
 
-LinearAxes: Any = _section_with_keys(StrictConfigSection, TRANSVERSE_PARAMETERS, ParameterAxis)
+LinearAxesSection: Any = _section_with_keys(StrictConfigSection, TRANSVERSE_PARAMETER_NAMES, ParameterAxis)
 
 
-class ParametersSection(LinearAxes):
+class ParametersSection(LinearAxesSection):
     """The section `parameters`: axes of a grid of parameters, the name of a CSV file of points, or an arm."""
 
     points: Annotated[Text | None, Field(min_length=1, description="the name of a CSV file")] = None
     """CSV file with a list of points, instead of axes. Its header names the parameters."""
     columns: Annotated[
-        list[Literal[OPTIONAL_PARAMETERS]] | None,  # type: ignore[valid-type]  # read at run time, from the table
-        Field(description=f"a list with names of optional parameters: {', '.join(OPTIONAL_PARAMETERS)}"),
+        list[Literal[OPTIONAL_PARAMETER_NAMES]] | None,  # type: ignore[valid-type]  # read at run time, from the table
+        Field(description=f"a list with names of optional parameters: {', '.join(OPTIONAL_PARAMETER_NAMES)}"),
     ] = None
     """Optional parameters among the columns of `points`; by default the optional parameters in the header of
     the file."""
     arm: Annotated[ArmConfig | None, Field(description="a mapping of an arm's quantities to values")] = None
     """An arm in SI units. A parameter given in addition to the arm replaces the arm's value."""
 
-    parameters_taken_from_arm: ClassVar[tuple[str, ...]] = TRANSVERSE_PARAMETERS
+    parameters_taken_from_arm: ClassVar[tuple[str, ...]] = TRANSVERSE_PARAMETER_NAMES
     """Names of the parameters that the task takes from an arm, or from axes given in addition to the arm."""
     in_diagram: ClassVar[bool] = False
     """Whether the points are the rows of a phase diagram, which needs a grid of parameters."""
@@ -124,7 +125,7 @@ class ParametersSection(LinearAxes):
     def given_optional_parameters(self) -> tuple[str, ...]:
         """Names of the optional parameters that are given as an axis or as a column of the file of points."""
         names = (*self.given_axes, *(self.columns or ()))
-        return tuple(name for name in OPTIONAL_PARAMETERS if name in names)
+        return tuple(name for name in OPTIONAL_PARAMETER_NAMES if name in names)
 
     @property
     def axes(self) -> dict[str, Axis]:
@@ -208,11 +209,11 @@ class ParametersSection(LinearAxes):
             arm.dimensionless_axes()
 
 
-AxesAndNumbers: Any = _section_with_keys(ParametersSection, NONLINEAR_ONLY_PARAMETERS, Number)
-AllAxes: Any = _section_with_keys(ParametersSection, NONLINEAR_ONLY_PARAMETERS, ParameterAxis)
+AxesAndNumbersSection: Any = _section_with_keys(ParametersSection, NONLINEAR_ONLY_PARAMETERS, Number)
+AllAxesSection: Any = _section_with_keys(ParametersSection, NONLINEAR_ONLY_PARAMETERS, ParameterAxis)
 
 
-class LinearParametersSection(AxesAndNumbers):
+class LinearParametersSection(AxesAndNumbersSection):
     """Section `parameters` of a task on the linear problem, whose parameters are axes.
 
     A parameter on which only limit cycles depend may be given as a single number.
@@ -223,9 +224,11 @@ class DiagramParametersSection(LinearParametersSection):
     """Section `parameters` of the task phase_diagram."""
 
     in_diagram: ClassVar[bool] = True
+    """True: the points are the rows of a phase diagram."""
 
 
-class NonlinearParametersSection(AllAxes):
+class NonlinearParametersSection(AllAxesSection):
     """Section `parameters` of a task on the nonlinear rod, all of whose parameters may be axes."""
 
     parameters_taken_from_arm: ClassVar[tuple[str, ...]] = tuple(PARAMETERS)
+    """All parameters, including those of the nonlinear rod only."""

@@ -12,7 +12,7 @@ from .task.phase_diagram import PhaseDiagramConfig
 from .task.spectrum import SpectrumConfig
 from .task.thresholds import ThresholdsConfig
 
-CONFIGS: dict[str, type[Config]] = {
+CONFIG_CLASSES_BY_TASK: dict[str, type[Config]] = {
     "spectrum": SpectrumConfig,
     "thresholds": ThresholdsConfig,
     "phase_diagram": PhaseDiagramConfig,
@@ -25,5 +25,5 @@ CONFIGS: dict[str, type[Config]] = {
 
 def makes_diagram(task: str) -> bool:
     """Whether the points of the task named `task` are the rows of a phase diagram over two parameters."""
-    parameters: Any = CONFIGS[task].model_fields["parameters"].annotation
+    parameters: Any = CONFIG_CLASSES_BY_TASK[task].model_fields["parameters"].annotation
     return bool(parameters.in_diagram)

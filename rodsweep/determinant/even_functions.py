@@ -23,24 +23,24 @@ class EvenFunctionSettings(KernelConstants):
 
     series_term_count: int = 13
     """Number of terms of the series of s and d."""
-    series_below: float = 1.5
+    max_size_for_series: float = 1.5
     """If |M| + 2 |P| is below this number, `even_functions_by_series` computes s and d."""
-    squares_below: float = 0.1
+    max_product_ratio_for_squares: float = 0.1
     """Otherwise, if |z+ z-| / (|M|^2 + 4 |P|^2) is at most this number, `even_sum_by_squares` computes s and
     d; else `even_functions_by_roots` does."""
     log_scale_rounding_in_epsilons: float = 3.0
     """Bound of the relative rounding error of S, the logarithm of the scale, divided by
     TWO_MACHINE_EPSILONS."""
-    max_scale_without_rounding: float = 8.0
+    max_log_scale_without_rounding: float = 8.0
     """Up to this S the other rounding errors of D exceed the rounding error of exp(-S). At a larger S only
     the exponentially small eigenvalues of strongly pulled rods depend on exp(-S)."""
 
     def __post_init__(self) -> None:
         n = self.series_term_count
-        if self.series_below**n > MACHINE_EPSILON * math.factorial(2 * n + 2):
+        if self.max_size_for_series**n > MACHINE_EPSILON * math.factorial(2 * n + 2):
             raise ValueError(
-                f"series_term_count = {n} is too small at |M| + 2 |P| = {self.series_below}: the sum is not "
-                "accurate to rounding"
+                f"series_term_count = {n} is too small at |M| + 2 |P| = {self.max_size_for_series}: "
+                "the sum is not accurate to rounding"
             )
 
 
@@ -49,18 +49,18 @@ EVEN_FUNCTION_SETTINGS = EvenFunctionSettings()
 
 class EvenFunctionValues(NamedTuple):
     """The functions s(M, P^2) and d(M, P^2) of this module with their derivatives, all times exp(-S), S =
-    `log_scale`. s_M = ds/dM, d_M = dd/dM, d_P = (dd/dP^2)/4."""
+    `log_scale`. s_M = ds/dM, d_M = dd/dM, d_P_squared_over_4 = (dd/dP^2)/4."""
 
     log_scale: float
     s: complex
     d: complex
     s_M: complex
     d_M: complex
-    d_P: complex
+    d_P_squared_over_4: complex
 
 
 @compiled
-def _rounding_by_roots(
+def _rounding_errors_by_roots(
     squares: tuple[complex, complex, complex, complex],
     difference: complex,
     functions_of_u: HyperbolicFunctions,
@@ -145,7 +145,7 @@ def even_functions_by_roots(
     dd = (M * H_square / 2 - C_square + 4 * d) * per_R / 4
     squares = (M, square, u, v)
     roundings = (scaled_one, rounding_M, rounding_square)
-    error_of_s, error_of_d = _rounding_by_roots(
+    error_of_s, error_of_d = _rounding_errors_by_roots(
         squares, difference, functions_of_u, functions_of_v, (s, d), roundings
     )
     return EvenFunctionValues(S, s, d, s1, d1, dd), error_of_s, error_of_d

@@ -33,6 +33,7 @@ class ExponentSettings(KernelConstants):
     """A modulus |w| below this number is computed without |w|^2, which loses digits below 1e-308 and is 0 at
     the exponentially small eigenvalues of strongly pulled rods, |w| < 1e-162."""
     field_ranges: ClassVar = {"max_exponent": (0.0, 709.0)}
+    """Exclusive bounds (lower, upper) of fields, by name; see `KernelConstants`."""
 
 
 EXPONENT_SETTINGS = ExponentSettings()
@@ -48,7 +49,9 @@ class HyperbolicFunctions(NamedTuple):
 
     cosh: complex
     sinhc: complex
+    """sinh(q)/q times exp(-Re q)."""
     sinhc_slope_over_q: complex
+    """(1/q) d(sinh(q)/q)/dq times exp(-Re q)."""
 
 
 @compiled
@@ -85,7 +88,7 @@ def squared_exponents(w: complex, coefficients: Coefficients) -> tuple[complex, 
 
 
 @compiled
-def entire_cosh(z: complex, root: complex, scale: float) -> tuple[complex, complex]:
+def cosh_minus_one_over_z(z: complex, root: complex, scale: float) -> tuple[complex, complex]:
     """E(z) = (cosh sqrt(z) - 1)/z and dE/dz, both times exp(-scale); root: sqrt(z)."""
     if abs(z) < EXPONENT_SETTINGS.cosh_series_below:
         value = 1 + z / 30 * (1 + z / 56 * (1 + z / 90 * (1 + z / 132 * (1 + z / 182))))

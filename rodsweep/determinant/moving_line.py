@@ -17,22 +17,26 @@ from typing import ClassVar, NamedTuple
 from ..model.compiled.compilation import compiled
 from ..model.compiled.kernel_constants import KernelConstants
 from ..model.rod import Coefficients
-from .certificate.box import BOX_SETTINGS, box_from_sqrt_bound, frequency_bound_between_rods
 from .certificate.covering import (
     distance_from_zero_bound,
     exponent_changes,
-    is_remainder_below,
+    is_taylor_remainder_below,
     mean_exponent_slopes,
 )
 from .certificate.discs import DISC_BOUND_SETTINGS, bidisc_centre
-from .parameter_path import determinant_along_path, dispersion_coefficient_derivatives
+from .certificate.eigenvalue_box import (
+    BOX_SETTINGS,
+    box_from_sqrt_frequency_bound,
+    frequency_bound_between_rods,
+)
+from .parameter_path import determinant_value_on_path, dispersion_coefficient_derivatives
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MovingLineSettings(KernelConstants):
     """Settings for the rectangles that prove that no eigenvalue crosses a moving line."""
 
-    first_half_height_over_depth: float = 0.35
+    first_half_height_over_line_distance: float = 0.35
     """Half-height (in y) of the first rectangle over the distance of the line from the imaginary axis."""
     half_height_growth_factor: float = 1.6
     """After a proved rectangle, the half-height of the next rectangle is larger by this factor."""
@@ -41,13 +45,14 @@ class MovingLineSettings(KernelConstants):
     rectangle must not contain w = 0."""
     overlap_enlargement_fraction: float = 1e-7
     """The half-widths of every rectangle are enlarged by this fraction, so that rounding leaves no gap."""
-    min_fraction: float = 1e-6
+    min_rectangle_fraction: float = 1e-6
     """The proof fails if a rectangle is needed whose width in p is below this fraction of the interval of p,
     or whose half-height is below this fraction of the distance of the line from the imaginary axis."""
     field_ranges: ClassVar = {
         "half_height_growth_factor": (1.0, math.inf),
         "max_half_height_over_w": (0.0, 1.0),
     }
+    """Exclusive bounds (lower, upper) of fields, by name, that the proofs require; see `KernelConstants`."""
 
 
 MOVING_LINE_SETTINGS = MovingLineSettings()
@@ -63,13 +68,14 @@ class IntervalEnd(NamedTuple):
 
 class UnprovedStrip(NamedTuple):
     """The part above y of the strip over a subinterval of p; D may still have zeros in this part. p_start,
-    p_stop: ends of the subinterval, as fractions of the whole interval of p. half_height: half the height of
-    the next rectangle to try, in y."""
+    stop_fraction: ends of the subinterval, as fractions of the whole interval of p.
+    next_rectangle_half_height: half the height of the next rectangle to try, in y."""
 
-    p_start: float
-    p_stop: float
+    start_fraction: float
+    stop_fraction: float
     y_start: float
-    half_height: float
+    """Lower end of the unproved part in y = Im w, in 1/tau2."""
+    next_rectangle_half_height: float
 
 
 @compiled
@@ -105,14 +111,14 @@ def rectangle_proof_and_costs(
     if not (half_y > 0 and half_p > 0):  # negative half-widths would pass the tests and prove nothing
         raise ValueError("the half-widths of a rectangle must be above 0")
     w = complex(centre_end.line, y)
-    D, D_w, D_p, S, rounding_error = determinant_along_path(w, centre_end.coefficients, direction)
+    D, D_w, D_p, S, rounding_error = determinant_value_on_path(w, centre_end.coefficients, direction)
     rounding = DISC_BOUND_SETTINGS.rounding_safety_factor * rounding_error
     centre = bidisc_centre(
         w, centre_end.coefficients, dispersion_coefficient_derivatives(centre_end.coefficients, direction), S
     )
     radii = (math.hypot(half_y, line_slope * half_p), half_p)
     if abs(D) > 2 * rounding:
-        if is_remainder_below(
+        if is_taylor_remainder_below(
             centre, (D_w / D, D_p / D), radii, DISC_BOUND_SETTINGS.max_D_change_ratio * abs(D) - rounding, 1
         ):
             return True, 0.0, 0.0
@@ -124,7 +130,7 @@ def rectangle_proof_and_costs(
             * distance_from_zero_bound(D, 1j * w_slope * half_y, (line_slope * w_slope + p_slope) * half_p)
             - rounding
         )
-        if max_remainder > 0 and is_remainder_below(centre, mean_rates, radii, max_remainder, 1):
+        if max_remainder > 0 and is_taylor_remainder_below(centre, mean_rates, radii, max_remainder, 1):
             return True, 0.0, 0.0
     cost_y, cost_p = exponent_changes(centre, half_widths)
     return False, cost_y, max(cost_p, exponent_changes(centre, (abs(line_slope) * half_p, half_p))[0])
@@ -144,23 +150,22 @@ def proves_no_crossing(
     if first.p > last.p:
         first, last = last, first
     depth = -min(first.line, last.line)
-    a = math.sqrt(
-        (1 + BOX_SETTINGS.bound_excess) * frequency_bound_between_rods(first.coefficients, last.coefficients)
-    )
+    bound = frequency_bound_between_rods(first.coefficients, last.coefficients)
+    a = math.sqrt((1 + BOX_SETTINGS.relative_bound_excess) * bound)
     if not (first.p < last.p and max(first.line, last.line) < 0 and a < math.inf):
         return False, 0
-    top = box_from_sqrt_bound(a, depth)[1]
+    top = box_from_sqrt_frequency_bound(a, depth)[1]
     width = last.p - first.p
     slope = (last.line - first.line) / width
     enlargement = 1 + MOVING_LINE_SETTINGS.overlap_enlargement_fraction
+    min_fraction = MOVING_LINE_SETTINGS.min_rectangle_fraction
     count = 0
-    stack = [UnprovedStrip(0.0, 1.0, 0.0, MOVING_LINE_SETTINGS.first_half_height_over_depth * depth)]
+    stack = [UnprovedStrip(0.0, 1.0, 0.0, MOVING_LINE_SETTINGS.first_half_height_over_line_distance * depth)]
     while len(stack) > 0:
         start, stop, y, half_y = stack.pop()
         middle = interpolate_ends((start + stop) / 2, first, last)
         half_p = width * (stop - start) / 2
         while y < top:
-            min_fraction = MOVING_LINE_SETTINGS.min_fraction
             if count >= max_count or half_y < min_fraction * depth or stop - start < min_fraction:
                 return False, count
             count += 1

@@ -11,8 +11,8 @@ from typing import NamedTuple
 from ..model.compiled.compilation import compiled
 from ..model.parameters import PARAMETERS, Parameter
 from ..model.rod import Coefficients, Rod, coefficients_of
-from .even_parts import even_parts
-from .value import ExponentDerivatives, determinant_from_parts
+from .even_sum import even_sum
+from .value import ExponentDerivatives, determinant_from_even_sum
 
 
 class DispersionCoefficientDerivatives(NamedTuple):
@@ -74,10 +74,10 @@ class ParameterPath:
         return coefficients_of({**self.rod.values, self.name: self.parameter.value(0.0)})
 
     def coordinate(self, value: float) -> float:
-        """The path variable p at which the varying parameter has `value`."""
+        """The path variable p at which the varying parameter has `value_and_error`."""
         return self.parameter.coordinate(value)
 
-    def value(self, p: float, p_error: float) -> tuple[float, float]:
+    def value_and_error(self, p: float, p_error: float) -> tuple[float, float]:
         """Returns (value of the varying parameter at p, error of this value). p_error: error of p."""
         # k = 1/p, so dk = dp/p^2.
         return self.parameter.value(p), p_error / p**2 if self.is_compliance_path else p_error
@@ -124,7 +124,7 @@ def dispersion_coefficient_derivatives(
 
 
 @compiled
-def exponent_slopes(
+def squared_exponent_slopes_by_p(
     w: complex,
     exponents: ExponentDerivatives,
     dispersion_coefficient_derivatives: DispersionCoefficientDerivatives,
@@ -144,14 +144,14 @@ def exponent_slopes(
 
 
 @compiled
-def determinant_along_path(
+def determinant_value_on_path(
     w: complex, coefficients: Coefficients, direction: Coefficients
 ) -> PathDeterminantValue:
     """D, dD/dw and dD/dp of a uniform rod on a path, times exp(-S), at w != 0. direction:
     d(F, nu, c2, gamma3)/dp."""
     F, nu, c2, gamma3 = coefficients
-    parts = even_parts(w, coefficients)
-    D, D_w, S, rounding_error = determinant_from_parts(w, coefficients, parts)
+    parts = even_sum(w, coefficients)
+    D, D_w, S, rounding_error = determinant_from_even_sum(w, coefficients, parts)
     even = parts[0]
     T_p, N_p, _, G_p, _, X_p, _ = dispersion_coefficient_derivatives(coefficients, direction)
     T = c2 + gamma3
@@ -159,5 +159,7 @@ def determinant_along_path(
     M_p = T_p * w - N_p
     square_p = w * (G_p + X_p * w)
     p_derivative = T_p * even.s + 4 * (G_p + 2 * X_p * w) * even.d
-    p_derivative += M_p * (T * even.s_M + 4 * N * even.d_M) + 4 * square_p * (T * even.d_M + 4 * N * even.d_P)
+    p_derivative += M_p * (T * even.s_M + 4 * N * even.d_M) + 4 * square_p * (
+        T * even.d_M + 4 * N * even.d_P_squared_over_4
+    )
     return PathDeterminantValue(D, D_w, w / 2 * p_derivative, S, rounding_error)

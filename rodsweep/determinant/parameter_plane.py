@@ -9,7 +9,7 @@ from ..model.parameters import FORCE_AND_STRETCH_STIFFNESS, PARAMETERS
 from ..model.rod import Rod
 from .arm.determinant import arm_determinant
 from .exponents import MACHINE_EPSILON
-from .parameter_path import PathDeterminantValue, determinant_along_path
+from .parameter_path import PathDeterminantValue, determinant_value_on_path
 from .value import DeterminantValue, scaled_determinant
 
 
@@ -17,7 +17,7 @@ from .value import DeterminantValue, scaled_determinant
 class PlaneDifferenceSettings:
     """Settings for derivatives of D by differences along the scaled axes of a plane."""
 
-    end_tolerance: float = 1e-12
+    axis_end_tolerance: float = 1e-12
     """A coordinate beyond an end of a scaled axis by less than this is moved to the end: it is rounding."""
     max_difference_step: float = 1e-3
     """Largest step of differences along a scaled axis, which has length 1."""
@@ -28,9 +28,9 @@ class PlaneDifferenceSettings:
 PLANE_DIFFERENCE_SETTINGS = PlaneDifferenceSettings()
 
 
-CENTRAL_STENCIL = ((-2, 1 / 12), (-1, -8 / 12), (1, 8 / 12), (2, -1 / 12))
+FOURTH_ORDER_CENTRAL_STENCIL = ((-2, 1 / 12), (-1, -8 / 12), (1, 8 / 12), (2, -1 / 12))
 """Central difference of fourth order for a first derivative: pairs (offset in steps, weight times step)."""
-ONE_SIDED_STENCIL = ((0, -25 / 12), (1, 4.0), (2, -3.0), (3, 4 / 3), (4, -1 / 4))
+FOURTH_ORDER_ONE_SIDED_STENCIL = ((0, -25 / 12), (1, 4.0), (2, -3.0), (3, 4 / 3), (4, -1 / 4))
 """One-sided difference of fourth order for a derivative, as pairs (offset in steps, weight times step)."""
 
 
@@ -41,41 +41,44 @@ class PlaneAxis:
     name: str
     start: float
     stop: float
-    logarithmic: bool = False
+    is_logarithmic: bool = False
 
     def value(self, x: float) -> float:
         """The parameter at the scaled coordinate x: 0 at `start`, 1 at `stop`; clipped just beyond an end."""
         settings = PLANE_DIFFERENCE_SETTINGS
-        if -settings.end_tolerance < x < 0 or 1 < x < 1 + settings.end_tolerance:
+        if -settings.axis_end_tolerance < x < 0 or 1 < x < 1 + settings.axis_end_tolerance:
             x = round(x)
-        if self.logarithmic:
+        if self.is_logarithmic:
             return exp(log(self.start) + x * (log(self.stop) - log(self.start)))
         return self.start + x * (self.stop - self.start)
 
-    def coordinate(self, value: float) -> float:
+    def scaled_coordinate(self, value: float) -> float:
         """The scaled coordinate x at which the parameter has `value`."""
-        if self.logarithmic:
+        if self.is_logarithmic:
             return (log(value) - log(self.start)) / (log(self.stop) - log(self.start))
         return (value - self.start) / (self.stop - self.start)
 
-    def parameter_per_coordinate(self, value: float) -> float:
+    def parameter_per_scaled_coordinate(self, value: float) -> float:
         """d(parameter)/dx where the parameter has `value`."""
-        return value * (log(self.stop) - log(self.start)) if self.logarithmic else self.stop - self.start
+        return value * (log(self.stop) - log(self.start)) if self.is_logarithmic else self.stop - self.start
 
-    def path_variable_per_coordinate(self, value: float) -> float:
+    def path_variable_per_scaled_coordinate(self, value: float) -> float:
         """dp/dx where the parameter has `value`, p: 1/k for a stiffness k, else the parameter."""
-        parameter_rate = self.parameter_per_coordinate(value)
+        parameter_rate = self.parameter_per_scaled_coordinate(value)
         return -parameter_rate / value**2 if PARAMETERS[self.name].has_inverse_coordinate else parameter_rate
 
 
-class ValueOnPlane(NamedTuple):
+class PlaneDeterminantValue(NamedTuple):
     """D and the derivatives of D by w, x and y, all times exp(-S), S = `log_scale`. rounding_error: rounding
     error of D exp(-S), including the effect of rounding in w, x and y."""
 
     D: complex
     D_w: complex
+    """dD/dw exp(-S)."""
     D_x: complex
+    """dD/dx exp(-S), x: scaled coordinate along the first axis of the plane."""
     D_y: complex
+    """dD/dy exp(-S), y: scaled coordinate along the second axis of the plane."""
     log_scale: float
     rounding_error: float
 
@@ -96,7 +99,7 @@ class ParameterPlane:
         """The rod at scaled coordinates (x, y). Raises ValueError if it is invalid, as crushed."""
         return self.rod.with_values(**{a.name: a.value(z) for a, z in zip(self.axes, (x, y), strict=True)})
 
-    def determinant(self, w: complex, x: float, y: float) -> ValueOnPlane:
+    def determinant(self, w: complex, x: float, y: float) -> PlaneDeterminantValue:
         """D and the derivatives of D by w, x and y, at w, for the rod at scaled coordinates (x, y)."""
         rod = self.rod_at(x, y)
         if self.are_rods_uniform_and_linear:
@@ -107,7 +110,7 @@ class ParameterPlane:
             D_x, D_y = self._slopes_of_arms(w, x, y, log_scale)
         # The rounding errors of w, x and y add to the rounding error of D.
         rounding = rounding_error + MACHINE_EPSILON * (abs(D_x) + abs(D_y) + abs(w * D_w))
-        return ValueOnPlane(D, D_w, D_x, D_y, log_scale, rounding)
+        return PlaneDeterminantValue(D, D_w, D_x, D_y, log_scale, rounding)
 
     def determinant_value(self, w: complex, x: float, y: float) -> DeterminantValue:
         """D and dD/dw at w, for the rod at scaled coordinates (x, y)."""
@@ -120,11 +123,16 @@ class ParameterPlane:
         self, x: float, y: float, axis_index: int
     ) -> tuple[tuple[tuple[float, float], ...], float]:
         """Returns (stencil, step) of a difference along axis number `axis_index`, 0 or 1, at scaled
-        coordinates (x, y): `CENTRAL_STENCIL`, or `ONE_SIDED_STENCIL` if the rod two steps back is invalid."""
+        coordinates (x, y): `FOURTH_ORDER_CENTRAL_STENCIL`, or `FOURTH_ORDER_ONE_SIDED_STENCIL` if the rod two
+        steps back is invalid."""
         step = self.difference_step_at(x, y, axis_index, PLANE_DIFFERENCE_SETTINGS.max_difference_step)
         # Forwards the step is short against the distance to crushing: only rods behind can be invalid.
         two_steps_back = (x - 2 * step, y) if axis_index == 0 else (x, y - 2 * step)
-        return (CENTRAL_STENCIL if self.is_valid_at(*two_steps_back) else ONE_SIDED_STENCIL), step
+        return (
+            FOURTH_ORDER_CENTRAL_STENCIL
+            if self.is_valid_at(*two_steps_back)
+            else FOURTH_ORDER_ONE_SIDED_STENCIL
+        ), step
 
     def _slopes_of_arms(self, w: complex, x: float, y: float, log_scale: float) -> list[complex]:
         """Derivatives of D exp(-`log_scale`) by x and y, for arms without a closed form of D, by fourth-order
@@ -147,8 +155,8 @@ class ParameterPlane:
     ) -> tuple[PathDeterminantValue, complex]:
         """Returns (D with derivatives by w and the parameter of `axis`, derivative by its scaled
         coordinate)."""
-        value = determinant_along_path(w, rod.coefficients, rod.coefficient_derivative(axis.name))
-        return value, value.D_p * axis.path_variable_per_coordinate(getattr(rod, axis.name))
+        value = determinant_value_on_path(w, rod.coefficients, rod.coefficient_derivative(axis.name))
+        return value, value.D_p * axis.path_variable_per_scaled_coordinate(getattr(rod, axis.name))
 
     def difference_step_at(self, x: float, y: float, axis_index: int, max_step: float) -> float:
         """A difference step along axis number `axis_index` at (x, y): the smaller of `max_step` and the
@@ -161,7 +169,7 @@ class ParameterPlane:
             return max_step
         # The crushing force is proportional to k1 and quadratic in the taper, like the area.
         rate = {"F": 1.0, "k1": force / rod.k1}.get(axis.name, 2 * force / rod.taper)
-        slope = rate * axis.parameter_per_coordinate(getattr(rod, axis.name))
+        slope = rate * axis.parameter_per_scaled_coordinate(getattr(rod, axis.name))
         return min(
             max_step, PLANE_DIFFERENCE_SETTINGS.max_step_over_crushing_distance * (force - rod.F) / slope
         )

@@ -1,7 +1,7 @@
 """The rounding error of D(w) at a root, by the derivatives of D with respect to the intermediate results of
 its evaluation.
 
-`rodsweep.determinant.even_parts` bounds the same error by moduli of single terms, which is cheap and safe
+`rodsweep.determinant.even_sum` bounds the same error by moduli of single terms, which is cheap and safe
 everywhere. At high eigenvalues of pulled rods the effects of one rounding error on several terms cancel, and
 that bound is up to a hundred times too large. Here the effects are summed with their signs, as D = 1 + (w/2)
 [T s + 4 N d] is evaluated, N = d(P^2)/dw. The notation is defined in `rodsweep.determinant.value` and
@@ -15,11 +15,11 @@ from typing import NamedTuple
 from ..model.compiled.compilation import compiled
 from ..model.rod import Coefficients
 from .even_functions import EVEN_FUNCTION_SETTINGS
-from .even_parts import even_parts
+from .even_sum import even_sum
 from .exponents import (
     EXPONENT_SETTINGS,
     TWO_MACHINE_EPSILONS,
-    entire_cosh,
+    cosh_minus_one_over_z,
     hyperbolic_functions,
     modulus,
     modulus_without_underflow,
@@ -28,23 +28,26 @@ from .exponents import (
 
 
 class _DispersionTerms(NamedTuple):
-    """T, N, M and P^2 (`square`) of a rod at w, and rounding errors of M, of P^2 and of N."""
+    """T, N, M and P^2 (`P_squared`) of a rod at w, and rounding errors of M, of P^2 and of N."""
 
     T: float
-    N: complex
+    P_squared_w: complex
     M: complex
-    square: complex
+    P_squared: complex
     error_of_M: float
-    error_of_square: float
-    error_of_N: float
+    """Rounding error of M, in units of `TWO_MACHINE_EPSILONS`."""
+    error_of_P_squared: float
+    """Rounding error of P^2, in units of `TWO_MACHINE_EPSILONS`."""
+    error_of_P_squared_w: float
+    """Rounding error of N = dP^2/dw, in units of `TWO_MACHINE_EPSILONS`."""
 
 
-class _ProductTerms(NamedTuple):
-    """dz+/dw z- + z+ dz-/dw = d(z+ z-)/dw (`slope`), and rounding errors of z+ z- (`error`) and of `slope`
-    (`error_of_slope`)."""
+class _SquaredExponentProduct(NamedTuple):
+    """dz+/dw z- + z+ dz-/dw = d(z+ z-)/dw (`slope`), and rounding errors of z+ z- (`error_of_product`) and of
+    `slope` (`error_of_slope`)."""
 
     slope: complex
-    error: float
+    error_of_product: float
     error_of_slope: float
 
 
@@ -72,31 +75,33 @@ def rounding_error_at_root(w: complex, coefficients: Coefficients, log_scale: fl
     )
     size_M = modulus(M)
     size_square = modulus(square)
-    # The same three formulas as in `even_parts`.
-    if size_M + 2 * math.sqrt(size_square) < EVEN_FUNCTION_SETTINGS.series_below:
-        even, _, rounding_error = even_parts(w, coefficients)
+    # The same three formulas as in `even_sum`.
+    if size_M + 2 * math.sqrt(size_square) < EVEN_FUNCTION_SETTINGS.max_size_for_series:
+        even, _, rounding_error = even_sum(w, coefficients)
         return rounding_error * math.exp(even.log_scale - log_scale)
-    max_discriminant = EVEN_FUNCTION_SETTINGS.squares_below * (size_M * size_M + 4 * size_square)
+    max_discriminant = EVEN_FUNCTION_SETTINGS.max_product_ratio_for_squares * (
+        size_M * size_M + 4 * size_square
+    )
     if modulus(M * M - 4 * square) > max_discriminant:
-        error, S = _error_and_scale_by_roots(terms)
+        error, S = _error_and_log_scale_by_roots(terms)
     else:
         contrast = abs(c2 - gamma3) * (abs(c2 - gamma3) + c2 / 2)
         drag = 2 * soft * (T * abs(F) + 2 * nu)
-        product = _ProductTerms(
+        product = _SquaredExponentProduct(
             2 * (c2 - gamma3) ** 2 * w - 2 * g * (T * F + 2 * nu),
             contrast * size * size + drag * size + (F * soft) ** 2,
             2 * contrast * size + drag,
         )
-        error, S = _error_and_scale_by_squares(squared_exponents(w, coefficients), terms, product)
+        error, S = _error_and_log_scale_by_squares(squared_exponents(w, coefficients), terms, product)
     return TWO_MACHINE_EPSILONS * (math.exp(-log_scale) + size / 2 * error * math.exp(S - log_scale))
 
 
 @compiled
-def _error_and_scale_by_roots(terms: _DispersionTerms) -> tuple[float, float]:
+def _error_and_log_scale_by_roots(terms: _DispersionTerms) -> tuple[float, float]:
     """Returns (rounding error of (T s + 4 N d) exp(-S), S) as computed by `even_functions_by_roots`.
 
     With a = (2 T M - 4 N)/R and b = (2 N M - 4 T P^2)/R the sum T s + 4 N d is a C + b H."""
-    T, N, M, square, error_of_M, error_of_square, _ = terms
+    T, N, M, square, error_of_M, error_of_P_squared, _ = terms
     R = M * M - 4 * square
     difference = cmath.sqrt(R)
     if (M.conjugate() * difference).real < 0:
@@ -123,7 +128,7 @@ def _error_and_scale_by_roots(terms: _DispersionTerms) -> tuple[float, float]:
     by_v *= v
     by_M = 2 * (T * C + N * H - M * total) * per_R + (by_u - by_v) * per_difference
     by_R = (by_u - by_v) * per_difference / (4 * u) - total * per_R
-    error = error_of_M * modulus(by_M) + error_of_square * modulus(by_square)
+    error = error_of_M * modulus(by_M) + error_of_P_squared * modulus(by_square)
     error += modulus(by_R) * (modulus(M) ** 2 + 4 * modulus(square))
     # u and v are rounded once, their square roots once.
     error += modulus(by_u - by_v) + modulus(by_u) + 2 * modulus(by_v)
@@ -138,25 +143,27 @@ def _error_and_scale_by_roots(terms: _DispersionTerms) -> tuple[float, float]:
 @compiled
 def _error_of_products(terms: _DispersionTerms, C: complex, H: complex) -> float:
     """Rounding error of (T s + 4 N d) R = 2 T (M C - 2 P^2 H) + 2 N (M H - 2 C) by the errors of T and N and
-    of the four products, which are rounded before they cancel. C, H: see `_error_and_scale_by_roots`."""
-    T, N, M, square, _, _, error_of_N = terms
+    of the four products, which are rounded before they cancel. C, H: see `_error_and_log_scale_by_roots`."""
+    T, N, M, square, _, _, error_of_P_squared_w = terms
     size_M = modulus(M)
     size_C = modulus(C)
     size_H = modulus(H)
     products = T * (size_M * size_C + 2 * modulus(square) * size_H) + modulus(N) * (
         size_M * size_H + 2 * size_C
     )
-    return 2 * (products + error_of_N * modulus(M * H - 2 * C) + T * modulus(M * C - 2 * square * H))
+    return 2 * (
+        products + error_of_P_squared_w * modulus(M * H - 2 * C) + T * modulus(M * C - 2 * square * H)
+    )
 
 
 @compiled
-def _error_and_scale_by_squares(
-    exponents: tuple[complex, complex, complex], terms: _DispersionTerms, product: _ProductTerms
+def _error_and_log_scale_by_squares(
+    exponents: tuple[complex, complex, complex], terms: _DispersionTerms, product: _SquaredExponentProduct
 ) -> tuple[float, float]:
     """Returns (rounding error of (z+' E(z+) + z-' E(z-)) exp(-S), S) as computed by `even_sum_by_squares`.
     exponents: (P, z+, z-)."""
     P, large, small = exponents
-    slope_difference = terms.N / P
+    slope_difference = terms.P_squared_w / P
     if modulus(large) < modulus(small):
         large, small = small, large
         slope_difference = -slope_difference
@@ -165,30 +172,33 @@ def _error_and_scale_by_squares(
     root = cmath.sqrt(large)
     small_root = cmath.sqrt(small)
     S = max(root.real, small_root.real)
-    E, E1 = entire_cosh(large, root, S)
-    small_E, small_E1 = entire_cosh(small, small_root, S)
+    E, E1 = cosh_minus_one_over_z(large, root, S)
+    small_E, small_E1 = cosh_minus_one_over_z(small, small_root, S)
     size_P = modulus(P)
-    error_of_P = terms.error_of_square / size_P / 2
+    error_of_P = terms.error_of_P_squared / size_P / 2
     # The smaller z and its slope follow from z+ z- and its slope; they change with the larger z, too.
     ratio = small / large
     by_large = slope * E1 - ratio * small_slope * small_E1 + (ratio * slope - small_slope) * small_E / large
     by_product = (small_slope * small_E1 - slope * small_E / large) / large
     by_slope = E - ratio * small_E
     error = modulus(by_large) * (terms.error_of_M + 2 * error_of_P + size_P + modulus(large) / 2)
-    error += modulus(by_product) * product.error + modulus(small_E / large) * product.error_of_slope
-    error_of_slope = terms.T + terms.error_of_N / size_P
+    error += (
+        modulus(by_product) * product.error_of_product + modulus(small_E / large) * product.error_of_slope
+    )
+    error_of_slope = terms.T + terms.error_of_P_squared_w / size_P
     error_of_slope += modulus(slope_difference) * (1 + error_of_P / size_P)
     error += modulus(by_slope) * error_of_slope
     error += modulus(slope * E1 * large) + 2 * modulus(small_slope * small_E1 * small)
     error += modulus(small_E / large) * (modulus(product.slope) + modulus(small * slope))
-    error += modulus(slope) * _error_of_entire_cosh(large, root, E, S)
-    error += modulus(small_slope) * _error_of_entire_cosh(small, small_root, small_E, S)
+    error += modulus(slope) * _error_of_cosh_minus_one_over_z(large, root, E, S)
+    error += modulus(small_slope) * _error_of_cosh_minus_one_over_z(small, small_root, small_E, S)
     return error, S
 
 
 @compiled
-def _error_of_entire_cosh(z: complex, root: complex, value: complex, S: float) -> float:
-    """Rounding error of `entire_cosh` at z beyond the error of sqrt(z), `root`. value: E(z) exp(-S)."""
+def _error_of_cosh_minus_one_over_z(z: complex, root: complex, value: complex, S: float) -> float:
+    """Rounding error of `cosh_minus_one_over_z` at z beyond the error of sqrt(z), `root`. value: E(z)
+    exp(-S)."""
     error = modulus(value)
     if modulus(z) >= EXPONENT_SETTINGS.cosh_series_below:
         # E = (exp(q/2) - exp(-q/2))^2/(2 z): both exponentials are rounded before they cancel.

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from .exponents import EXPONENT_SETTINGS
-from .parameter_plane import CENTRAL_STENCIL, PLANE_DIFFERENCE_SETTINGS, ParameterPlane
+from .parameter_plane import FOURTH_ORDER_CENTRAL_STENCIL, PLANE_DIFFERENCE_SETTINGS, ParameterPlane
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -30,11 +30,11 @@ class BoundaryPointSettings:
     min_jacobian_determinant: float = EXPONENT_SETTINGS.min_divisor
     """Newton's method fails if |determinant| of the 3 x 3 matrix of a step is below this number; the
     determinants of regular matrices are far larger."""
-    converging_step_ratio: float = 0.5
+    min_stagnant_step_ratio: float = 0.5
     """A small step of more than this number times the previous step is rounding error."""
     max_stagnant_step: float = 1e-10
-    """Newton's method has also converged if |step| is below this number and more than `converging_step_ratio`
-    times the previous |step|."""
+    """Newton's method has also converged if |step| is below this number and more than
+    `min_stagnant_step_ratio` times the previous |step|."""
 
 
 BOUNDARY_POINT_SETTINGS = BoundaryPointSettings()
@@ -46,6 +46,7 @@ class BoundarySolution(NamedTuple):
 
     v: Array
     jacobian: Array
+    """Derivatives of the two equations of the boundary by x, y and h, (2, 3)."""
     error: float
 
     @property
@@ -58,20 +59,22 @@ class BoundarySolution(NamedTuple):
 @dataclass(frozen=True, slots=True)
 class StabilityBoundary:
     """A stability boundary in a plane: all Hopf points, or all double real eigenvalues of one sign.
-    eigenvalue_sign: 0 for Hopf points; -1 or 1 for double eigenvalues of this sign."""
+    double_eigenvalue_sign: 0 for Hopf points; -1 or 1 for double eigenvalues of this sign."""
 
     plane: ParameterPlane
-    eigenvalue_sign: float
+    double_eigenvalue_sign: float
 
     def eigenvalue(self, h: float) -> tuple[float, float]:
         """(growth rate, frequency), in 1/tau2, of the eigenvalue at a point whose third coordinate is h."""
         size = math.exp(h)
-        return (self.eigenvalue_sign * size, 0.0) if self.eigenvalue_sign else (0.0, size)
+        return (self.double_eigenvalue_sign * size, 0.0) if self.double_eigenvalue_sign else (0.0, size)
 
     def residual_and_jacobian(self, v: Array) -> tuple[Array, Array, float]:
         """Returns (residual, (2,); Jacobian, (2, 3); rounding error of the residual) of the two equations of
         the boundary at v = (x, y, h)."""
-        return self._double_equations(v) if self.eigenvalue_sign else self._hopf_equations(v)
+        return (
+            self._double_eigenvalue_equations(v) if self.double_eigenvalue_sign else self._hopf_equations(v)
+        )
 
     def tangent(self, v: Array) -> Array:
         """Unit tangent of the boundary at v, (3,)."""
@@ -104,7 +107,7 @@ class StabilityBoundary:
             v = v + step
             if step_size <= BOUNDARY_POINT_SETTINGS.converged_step_in_rounding_errors * error or (
                 step_size < BOUNDARY_POINT_SETTINGS.max_stagnant_step
-                and step_size > BOUNDARY_POINT_SETTINGS.converging_step_ratio * previous_size
+                and step_size > BOUNDARY_POINT_SETTINGS.min_stagnant_step_ratio * previous_size
             ):
                 return BoundarySolution(v, jacobian, max(error, step_size))
             if step_size > BOUNDARY_POINT_SETTINGS.max_step or not np.isfinite(v).all():
@@ -122,7 +125,7 @@ class StabilityBoundary:
         jacobian = np.array([rows.real, rows.imag]) / scale
         return np.array([D.real, D.imag]) / scale, jacobian, rounding / scale
 
-    def _double_equations(self, v: Array) -> tuple[Array, Array, float]:
+    def _double_eigenvalue_equations(self, v: Array) -> tuple[Array, Array, float]:
         """`residual_and_jacobian` of double eigenvalues at v = (x, y, h): D = 0 and w D_w = 0 at the real w =
         sign exp(h)."""
         w = self._real_eigenvalue(v)
@@ -134,7 +137,7 @@ class StabilityBoundary:
             stencil, h = (
                 self.plane.difference_stencil(v[0], v[1], i)
                 if i < 2
-                else (CENTRAL_STENCIL, PLANE_DIFFERENCE_SETTINGS.max_difference_step)
+                else (FOURTH_ORDER_CENTRAL_STENCIL, PLANE_DIFFERENCE_SETTINGS.max_difference_step)
             )
             jacobian[1, i] = 0.0
             for offset, weight in stencil:
@@ -152,4 +155,4 @@ class StabilityBoundary:
 
     def _real_eigenvalue(self, v: Array) -> complex:
         """The real eigenvalue w = sign exp(h) at v = (x, y, h)."""
-        return complex(self.eigenvalue_sign * math.exp(v[2]), 0.0)
+        return complex(self.double_eigenvalue_sign * math.exp(v[2]), 0.0)

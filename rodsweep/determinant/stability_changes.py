@@ -23,7 +23,7 @@ from .roots.newton import crossing_by_newton, double_eigenvalue_by_newton
 class StabilityChangeSettings(KernelConstants):
     """Settings for crossings of the imaginary axis between two forces."""
 
-    same_crossing_distance: float = 1e-8
+    same_crossing_relative_distance: float = 1e-8
     """Two zeros (eta, F) of D(i eta; F) are the same crossing if F and eta each differ by at most this times
     1 + |value|. Newton's method converges to rounding error, far below this number."""
 
@@ -34,14 +34,14 @@ STABILITY_CHANGE_SETTINGS = StabilityChangeSettings()
 class StabilityChange(NamedTuple):
     """A change of stability at the force F.
 
-    kind: a kind of change listed in `rodsweep.results.layouts.thresholds`. F, error: the force and its
+    kind: a kind of change listed in `rodsweep.results.layouts.thresholds`. F, error_of_F: the force and its
     absolute error estimate, in k3/L^2. growth_rate, frequency: real and imaginary part, in 1/tau2, of the
     eigenvalue that crosses the imaginary axis or is double.
     """
 
     kind: str
     F: float
-    error: float
+    error_of_F: float
     growth_rate: float
     frequency: float
 
@@ -50,7 +50,7 @@ CoefficientsAlongForce = tuple[Coefficients, Coefficients]
 """Rods that differ in F only: (coefficients at F = 0, derivative of the coefficients by F)."""
 
 
-def onset_between(
+def oscillation_onset_between(
     rods: CoefficientsAlongForce, end_forces: tuple[float, float], before_w: Complex, after_w: Complex
 ) -> StabilityChange | None:
     """The double real eigenvalue between the two forces `end_forces`; None if Newton's method does not find
@@ -133,10 +133,14 @@ def crossings_between(
                 for i in range(n):
                     same_F = abs(
                         zero.p - crossings[i, 0]
-                    ) <= STABILITY_CHANGE_SETTINGS.same_crossing_distance * (1 + abs(crossings[i, 0]))
+                    ) <= STABILITY_CHANGE_SETTINGS.same_crossing_relative_distance * (
+                        1 + abs(crossings[i, 0])
+                    )
                     same_eta = abs(
                         zero.eta_or_x - crossings[i, 1]
-                    ) <= STABILITY_CHANGE_SETTINGS.same_crossing_distance * (1 + abs(crossings[i, 1]))
+                    ) <= STABILITY_CHANGE_SETTINGS.same_crossing_relative_distance * (
+                        1 + abs(crossings[i, 1])
+                    )
                     is_new = is_new and not (same_F and same_eta)
                 if is_new:
                     crossings[n] = zero.p, zero.eta_or_x, zero.error_of_p

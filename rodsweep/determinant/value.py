@@ -15,7 +15,7 @@ and the determinant, Appendix C, simplifies to
     D(w) = 1 + (w/2) [ z+' E(z+) + z-' E(z-) ],   E(z) = (cosh sqrt(z) - 1)/z,   ' = d/dw.
 
 E is entire and the sum is even in P, so the formula is regular where roots q coincide, and in every limit
-(k1, k2 = inf, gamma3 = 0). `rodsweep.determinant.even_parts` evaluates the sum. D spans hundreds of decades,
+(k1, k2 = inf, gamma3 = 0). `rodsweep.determinant.even_sum` evaluates the sum. D spans hundreds of decades,
 so functions return D exp(-S) with S = max Re sqrt(z+-).
 """
 
@@ -26,7 +26,7 @@ from typing import NamedTuple
 from ..model.compiled.compilation import compiled
 from ..model.compiled.kernel_constants import KernelConstants
 from ..model.rod import Coefficients
-from .even_parts import EvenSum, even_parts
+from .even_sum import EvenSum, even_sum
 from .exponents import EXPONENT_SETTINGS, squared_exponents
 
 
@@ -34,12 +34,12 @@ from .exponents import EXPONENT_SETTINGS, squared_exponents
 class DeterminantSettings(KernelConstants):
     """Settings for values of D and for differences of its derivatives."""
 
-    typical_rounding_fraction: float = 0.1
+    typical_rounding_error_over_bound: float = 0.1
     """The rounding error of D is estimated by this fraction of its bound `rounding_error`. Measured fractions
     have the median 0.05, the upper quartile 0.1 and the maximum 0.7."""
-    zero_replacement: float = 1e-200
+    replacement_of_zero_w: float = 1e-200
     """D(0) is computed at this w, in 1/tau2, so that no formula divides by 0; |D - 1| is rounding there."""
-    second_difference_step_ratio: float = 1e-4
+    second_derivative_step_over_w: float = 1e-4
     """Step of the central difference of D' for D'', divided by |w|. The relative error of D'' is about the
     square of this number: enough to distinguish a double root from two close roots."""
 
@@ -83,22 +83,22 @@ def exponent_derivatives(w: complex, coefficients: Coefficients) -> ExponentDeri
 @compiled
 def scaled_determinant(w: complex, coefficients: Coefficients) -> DeterminantValue:
     """D and dD/dw of a uniform rod at w, times exp(-S). w = 0 is replaced by
-    `DETERMINANT_SETTINGS.zero_replacement`, where D equals D(0) = 1 within rounding."""
+    `DETERMINANT_SETTINGS.replacement_of_zero_w`, where D equals D(0) = 1 within rounding."""
     if w == 0:
-        w = complex(DETERMINANT_SETTINGS.zero_replacement, 0.0)
-    return determinant_from_parts(w, coefficients, even_parts(w, coefficients))
+        w = complex(DETERMINANT_SETTINGS.replacement_of_zero_w, 0.0)
+    return determinant_from_even_sum(w, coefficients, even_sum(w, coefficients))
 
 
 @compiled
-def determinant_from_parts(w: complex, coefficients: Coefficients, parts: EvenSum) -> DeterminantValue:
-    """D and dD/dw times exp(-S) at w. parts: result of `even_parts` at w."""
+def determinant_from_even_sum(w: complex, coefficients: Coefficients, parts: EvenSum) -> DeterminantValue:
+    """D and dD/dw times exp(-S) at w. parts: result of `even_sum` at w."""
     even, even_sum, rounding_error = parts
     F, nu, c2, gamma3 = coefficients
     T = c2 + gamma3
     X = c2 * gamma3
     # d(P^2)/dw.
     N = (nu + F * c2) * nu + 2 * X * w
-    slope = T * (T * even.s_M + 8 * N * even.d_M) + 8 * X * even.d + 16 * N * N * even.d_P
+    slope = T * (T * even.s_M + 8 * N * even.d_M) + 8 * X * even.d + 16 * N * N * even.d_P_squared_over_4
     return DeterminantValue(
         math.exp(-even.log_scale) + w / 2 * even_sum,
         (even_sum + w * slope) / 2,
@@ -122,7 +122,7 @@ def scaled_second_derivative_between(
 @compiled
 def second_derivative(w: complex, S: float, coefficients: Coefficients) -> complex:
     """D'' exp(-S) of a uniform rod at w, by a central difference of D'; real for real w."""
-    h = DETERMINANT_SETTINGS.second_difference_step_ratio * abs(w)
+    h = DETERMINANT_SETTINGS.second_derivative_step_over_w * abs(w)
     value_after = scaled_determinant(w + h, coefficients)
     value_before = scaled_determinant(w - h, coefficients)
     D_ww = scaled_second_derivative_between(value_after, value_before, S, h)
@@ -152,7 +152,7 @@ def eigenvalue_error_and_scales(w: complex, coefficients: Coefficients) -> tuple
     """
     value, slope, _, rounding_error = scaled_determinant(w, coefficients)
     # |D| far below its rounding error is accidental and does not mean a smaller error of w.
-    error = max(abs(value), DETERMINANT_SETTINGS.typical_rounding_fraction * rounding_error) / max(
+    error = max(abs(value), DETERMINANT_SETTINGS.typical_rounding_error_over_bound * rounding_error) / max(
         abs(slope), EXPONENT_SETTINGS.min_divisor
     )
     P, P1, _, plus, minus = exponent_derivatives(w, coefficients)

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..model.balance import BalanceCoefficients
-from ..model.material.jump import SHEAR_COLUMN
+from ..model.material.jump import SHEAR_COMPLIANCE_COLUMN
 from ..model.material.laws import LINEAR_CONSTITUTIVE_LAW
 from ..model.material.rod_material import CrossSections, RodMaterial
 from ..model.rod import Rod
@@ -42,7 +42,7 @@ def balance_coefficient_derivatives_at_nodes(
     if rod.is_uniform_and_linear and parameter_name != "taper":
         return rod.balance_coefficient_derivative(parameter_name)
     sections = _sections_inside_elements(rod, mesh)
-    derivatives = rod.section_derivatives(parameter_name, mesh.one_sided_nodes, sections)
+    derivatives = rod.cross_section_derivatives(parameter_name, mesh.one_sided_nodes, sections)
     compliance, drag, rest_strain = _mean_coefficients_at_nodes(derivatives, mesh)
     return BalanceCoefficients(compliance, drag, 1.0 if parameter_name == "F" else 0.0, rest_strain)
 
@@ -68,7 +68,7 @@ def jumps_on_mesh(rod: Rod, mesh: Mesh) -> Jumps:
     sides = _side_weights_at_jumps(rod.material, rod.taper, mesh).copy()
     for column, values in enumerate((sections.nu, c1, c3)):
         sides[..., column] = values[indices]
-    sides[..., SHEAR_COLUMN] = c2[indices]
+    sides[..., SHEAR_COMPLIANCE_COLUMN] = c2[indices]
     return Jumps(nodes, sides)
 
 
@@ -79,7 +79,7 @@ def _side_weights_at_jumps(material: RodMaterial, taper: float, mesh: Mesh) -> A
     the taper."""
     indices, _ = _indices_beside_jumps(material, mesh)
     points = mesh.one_sided_nodes[indices]
-    weights = _points_of_nodes(mesh).weights[indices]
+    weights = _one_sided_node_points(mesh).quadrature_weights[indices]
     relative_compliances = material.relative_compliances(taper, points.ravel()).reshape(3, *points.shape)
     # The mean strain is weighted by quadrature; in means of stresses the compliances of the sides count too.
     strain_weights = [
@@ -88,7 +88,7 @@ def _side_weights_at_jumps(material: RodMaterial, taper: float, mesh: Mesh) -> A
     ]
     mean_weights = weights / weights.sum(axis=1, keepdims=True)
     coefficients = np.zeros(points.shape)
-    # In the order of `SIDE_COLUMNS`; the coefficients, here 0, are filled in for each rod.
+    # In the order of `JUMP_SIDE_COLUMNS`; the coefficients, here 0, are filled in for each rod.
     shares = [coefficients, coefficients, coefficients, *strain_weights, mean_weights, coefficients]
     return np.ascontiguousarray(np.stack(shares, axis=-1))
 
@@ -100,7 +100,7 @@ def jump_derivatives(rod: Rod, parameter_name: str, mesh: Mesh) -> Array:
     indices, nodes = _indices_beside_jumps(rod.material, mesh)
     if rod.material.constitutive_law is LINEAR_CONSTITUTIVE_LAW or not len(nodes):
         return NO_JUMP_DERIVATIVE
-    derivatives = rod.section_derivatives(parameter_name, mesh.one_sided_nodes[indices].ravel())
+    derivatives = rod.cross_section_derivatives(parameter_name, mesh.one_sided_nodes[indices].ravel())
     c1, _, c3 = derivatives.compliance
     return np.ascontiguousarray(np.stack([derivatives.nu, c1, c3], axis=-1).reshape(*indices.shape, 3))
 
@@ -109,7 +109,7 @@ def jump_derivatives(rod: Rod, parameter_name: str, mesh: Mesh) -> Array:
 def _sections_inside_elements(rod: Rod, mesh: Mesh) -> CrossSections:
     """Properties of the cross-sections of a rod at the `one_sided_nodes` of a mesh. Cached for the
     material, its jumps and its derivatives."""
-    return rod.sections(mesh.one_sided_nodes)
+    return rod.cross_sections_at(mesh.one_sided_nodes)
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
@@ -139,23 +139,26 @@ def _mean_coefficients_at_nodes(sections: CrossSections, mesh: Mesh) -> tuple[Ar
 def _mean_at_nodes(values: Array, mesh: Mesh) -> Array:
     """Means over both sides of each node, (m, nodes + 1). values: m fields at the `one_sided_nodes`,
     (m, points)."""
-    points = _points_of_nodes(mesh)
+    points = _one_sided_node_points(mesh)
     # The points of a node are neighbours, so `reduceat` adds the one or two sides of each node.
-    mean: Array = np.add.reduceat(points.weights * values, points.first_indices, axis=1) / mesh.quadrature
+    mean: Array = (
+        np.add.reduceat(points.quadrature_weights * values, points.first_point_indices, axis=1)
+        / mesh.quadrature_weights
+    )
     return mean
 
 
 class OneSidedNodePoints(NamedTuple):
-    """The `one_sided_nodes` of a mesh, sorted by the node to which they belong. first_indices: index
-    of the first point of each node, (nodes + 1,). weights: quadrature weight of each point within its
+    """The `one_sided_nodes` of a mesh, sorted by the node to which they belong. first_point_indices: index of
+    the first point of each node, (nodes + 1,). quadrature_weights: quadrature weight of each point within its
     element, (nodes + elements,)."""
 
-    first_indices: IntegerArray
-    weights: Array
+    first_point_indices: IntegerArray
+    quadrature_weights: Array
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
-def _points_of_nodes(mesh: Mesh) -> OneSidedNodePoints:
+def _one_sided_node_points(mesh: Mesh) -> OneSidedNodePoints:
     """The `OneSidedNodePoints` of a mesh, cached."""
-    weights = np.concatenate(mesh.quadrature_of_elements)
-    return OneSidedNodePoints(np.unique(mesh.element_nodes, return_index=True)[1], weights)
+    weights = np.concatenate(mesh.quadrature_weights_of_elements)
+    return OneSidedNodePoints(np.unique(mesh.element_node_indices, return_index=True)[1], weights)

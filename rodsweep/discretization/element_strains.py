@@ -12,9 +12,9 @@ Arrays over the nodes of every element contain the elements one after the other,
 import numpy as np
 
 from ..arrays import Array
-from ..model.compiled.compilation import compiled, compiled_for_vectors
+from ..model.compiled.compilation import compiled, compiled_with_reordered_sums
 from ..model.material.jump import (
-    SHEAR_COLUMN,
+    SHEAR_COMPLIANCE_COLUMN,
     LawUnknowns,
     side_increments_at_jump,
     unknowns_before_jump,
@@ -32,7 +32,7 @@ def index_before_jump(node: int, element_nodes: IntegerArray) -> int:
     return int(np.searchsorted(element_nodes, node))
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def write_element_strains(S: Array, rod: NodalRod, element_nodes: IntegerArray, out: Array) -> None:
     """Writes the strains (h1, h2, Pi) at the nodes of every element into out, (3, m, nodes + elements). S:
     stresses of m states at all nodes, (3, m, nodes + 1), with the strain E = E0 + C S; at a jump, the strains
@@ -41,22 +41,22 @@ def write_element_strains(S: Array, rod: NodalRod, element_nodes: IntegerArray, 
         for k in range(S.shape[1]):
             for i in range(out.shape[2]):
                 node = element_nodes[i]
-                out[a, k, i] = rod.rest_strain[a, node] + rod.compliance[a, node] * S[a, k, node]
-    for j in range(len(rod.jumps)):
-        node = rod.jumps[j]
-        sides = rod.jump_sides[j]
+                out[a, k, i] = rod.straight_state_strain[a, node] + rod.compliance[a, node] * S[a, k, node]
+    for j in range(len(rod.jump_nodes)):
+        node = rod.jump_nodes[j]
+        sides = rod.jump_side_coefficients[j]
         index = index_before_jump(node, element_nodes)
         for k in range(S.shape[1]):
             q = LawUnknowns(S[0, k, node], S[2, k, node])
-            first = unknowns_before_jump(rod.law, sides, q)
+            first = unknowns_before_jump(rod.law_number, sides, q)
             unknowns_of_sides = first, unknowns_behind_jump(sides, q, first)
             for side in range(2):
                 out[0, k, index + side] = sides[side, 0] + sides[side, 1] * unknowns_of_sides[side].q1
-                out[1, k, index + side] = sides[side, SHEAR_COLUMN] * S[1, k, node]
+                out[1, k, index + side] = sides[side, SHEAR_COMPLIANCE_COLUMN] * S[1, k, node]
                 out[2, k, index + side] = sides[side, 2] * unknowns_of_sides[side].q3
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def write_element_strain_rates(
     S: Array, rates: Array, rod: NodalRod, element_nodes: IntegerArray, out: Array
 ) -> None:
@@ -71,9 +71,9 @@ def write_element_strain_rates(
         for k in range(rates.shape[1]):
             for i in range(out.shape[2]):
                 out[a, k, i] = rates[a, k, element_nodes[i]]
-    for j in range(len(rod.jumps)):
-        node = rod.jumps[j]
-        sides = rod.jump_sides[j]
+    for j in range(len(rod.jump_nodes)):
+        node = rod.jump_nodes[j]
+        sides = rod.jump_side_coefficients[j]
         index = index_before_jump(node, element_nodes)
         c1 = rod.compliance[0, node]
         c2 = rod.compliance[1, node]
@@ -84,8 +84,10 @@ def write_element_strain_rates(
             dq1 = rates[0, k, node] / c1 if c1 > 0 else 0.0
             dq2 = rates[1, k, node] / c2 if c2 > 0 else 0.0
             # c3 needs no test: only k1 and k2 may be infinite.
-            changes = side_increments_at_jump(rod.law, sides, q, LawUnknowns(dq1, rates[2, k, node] / c3))
+            changes = side_increments_at_jump(
+                rod.law_number, sides, q, LawUnknowns(dq1, rates[2, k, node] / c3)
+            )
             for side in range(2):
                 out[0, k, index + side] = sides[side, 1] * changes[side].q1
-                out[1, k, index + side] = sides[side, SHEAR_COLUMN] * dq2
+                out[1, k, index + side] = sides[side, SHEAR_COMPLIANCE_COLUMN] * dq2
                 out[2, k, index + side] = sides[side, 2] * changes[side].q3

@@ -37,7 +37,7 @@ class ExplicitSystem(RodOnMesh):
     (unknowns,) and the unit of the square root of an energy density, sqrt(k3)/L."""
 
     @property
-    def unknown_velocities(self) -> tuple[int, ...]:
+    def unknown_velocity_components(self) -> tuple[int, ...]:
         return ()
 
     @cached_property
@@ -50,9 +50,11 @@ class ExplicitSystem(RodOnMesh):
         """Values of z1 at which the stretch h1 is 0, at all nodes except the tip, (nodes,). At a jump, h1
         reaches 0 first on one side if the law is linear, and the value belongs to this side; for another law
         h1 reaches 0 on both sides at once."""
-        z1 = -self.nodal_rod.rest_strain[0, :-1] / self.sqrt_compliance[0, :-1]
+        z1 = -self.nodal_rod.straight_state_strain[0, :-1] / self.sqrt_compliance[0, :-1]
         if self.has_continuous_stresses:
-            for node, sides in zip(self.nodal_rod.jumps, self.nodal_rod.jump_sides, strict=True):
+            for node, sides in zip(
+                self.nodal_rod.jump_nodes, self.nodal_rod.jump_side_coefficients, strict=True
+            ):
                 # The larger value belongs to the side that is crushed first.
                 z1[node] = self.sqrt_compliance[0, node] * (-sides[:, 0] / sides[:, 1]).max()
         return np.ascontiguousarray(z1)
@@ -68,13 +70,15 @@ class ExplicitSystem(RodOnMesh):
     def state_of_strains(self, strains: Array) -> Array:
         """The state z, (unknowns,), with the given strains (h1, h2, Pi) at all nodes, (3, nodes + 1). Strains
         at the tip are ignored."""
-        return self.layout.state((strains - self.nodal_rod.rest_strain) / self.sqrt_compliance, strains)
+        return self.layout.state(
+            (strains - self.nodal_rod.straight_state_strain) / self.sqrt_compliance, strains
+        )
 
     def state_derivative(self, z: Array) -> Array:
         """dz/dt of states z, both (..., unknowns), with time in tau2."""
         rates = np.empty(z.shape)
         flat = z.reshape(-1, self.unknown_count), rates.reshape(-1, self.unknown_count)
-        write_rates(*flat, self.sqrt_compliance, self.nodal_rod, self.mesh.matrices)
+        write_rates(*flat, self.sqrt_compliance, self.nodal_rod, self.mesh.node_matrices)
         return rates
 
     def jacobian(self, z: Array) -> Array:
@@ -83,7 +87,7 @@ class ExplicitSystem(RodOnMesh):
         jacobians = np.empty((*z.shape, size))
         states = z.reshape(-1, size)
         matrices = jacobians.reshape(-1, size, size)
-        write_rate_jacobians(states, matrices, self.sqrt_compliance, self.nodal_rod, self.mesh.matrices)
+        write_rate_jacobians(states, matrices, self.sqrt_compliance, self.nodal_rod, self.mesh.node_matrices)
         # The kernel writes columns, as LAPACK reads them.
         return jacobians.swapaxes(-1, -2)
 

@@ -34,7 +34,7 @@ class RodOnMesh(ABC):
 
     @property
     @abstractmethod
-    def unknown_velocities(self) -> tuple[int, ...]:
+    def unknown_velocity_components(self) -> tuple[int, ...]:
         """Indices of the components of V that are unknowns."""
 
     def stresses(self, x: Values) -> Values:
@@ -50,7 +50,7 @@ class RodOnMesh(ABC):
     @cached_property
     def layout(self) -> StateLayout:
         """Indices of the fields in a state."""
-        return plane_layout(self.mesh.node_count, self.unknown_velocities)
+        return plane_layout(self.mesh.node_count, self.unknown_velocity_components)
 
     @property
     def unknown_count(self) -> int:
@@ -64,27 +64,34 @@ class RodOnMesh(ABC):
         mesh = self.mesh
         law = rod.material.law_number
         jumps = jumps_on_mesh(rod, mesh)
-        return nodal_rod(balance_coefficients_at_nodes(rod, mesh), mesh, self.unknown_velocities, law, jumps)
+        return nodal_rod(
+            balance_coefficients_at_nodes(rod, mesh), mesh, self.unknown_velocity_components, law, jumps
+        )
 
     @property
     def has_continuous_stresses(self) -> bool:
         """Whether S is continuous along the rod: the material does not jump, or the law is linear."""
-        return self.rod.material.constitutive_law is LINEAR_CONSTITUTIVE_LAW or not len(self.nodal_rod.jumps)
+        return self.rod.material.constitutive_law is LINEAR_CONSTITUTIVE_LAW or not len(
+            self.nodal_rod.jump_nodes
+        )
 
     def strains(self, x: Values) -> Values:
         """Strains (h1, h2, Pi) of states x at all nodes, tip included, (3, ..., nodes + 1); at a jump, the
         mean of both sides."""
         S = self.stresses(x)
         c = self.nodal_rod
-        return broadcast_to_field(c.rest_strain, S) + broadcast_to_field(c.compliance, S) * S
+        return broadcast_to_field(c.straight_state_strain, S) + broadcast_to_field(c.compliance, S) * S
 
     def element_strains(self, x: Array) -> Array:
         """Strains (h1, h2, Pi) of states x at the nodes of every element, (3, ..., nodes + elements); at
         a jump, the strains of both sides."""
         S = self.stresses(x)
-        strains = np.empty((*S.shape[:-1], self.mesh.element_nodes.size))
+        strains = np.empty((*S.shape[:-1], self.mesh.element_node_indices.size))
         write_element_strains(
-            _flatten_middle_axes(S), self.nodal_rod, self.mesh.element_nodes, _flatten_middle_axes(strains)
+            _flatten_middle_axes(S),
+            self.nodal_rod,
+            self.mesh.element_node_indices,
+            _flatten_middle_axes(strains),
         )
         return strains
 
@@ -93,12 +100,12 @@ class RodOnMesh(ABC):
         S = self.stresses(x)
         dS = self.stresses(direction)
         dE = broadcast_to_field(self.nodal_rod.compliance, dS) * dS
-        rates = np.empty((*S.shape[:-1], self.mesh.element_nodes.size))
+        rates = np.empty((*S.shape[:-1], self.mesh.element_node_indices.size))
         write_element_strain_rates(
             _flatten_middle_axes(S),
             _flatten_middle_axes(dE),
             self.nodal_rod,
-            self.mesh.element_nodes,
+            self.mesh.element_node_indices,
             _flatten_middle_axes(rates),
         )
         return rates
@@ -117,17 +124,17 @@ class RodOnMesh(ABC):
         k2 h2^2 + Pi^2] du."""
         S = self.stresses(x)
         c = self.nodal_rod
-        nu = broadcast_to_field(c.rest_strain, S)[0]
+        nu = broadcast_to_field(c.straight_state_strain, S)[0]
         (c1, c2, c3) = broadcast_to_field(c.compliance, S)
         density = self._strain_energy_density(nu, c1, c3, S[0], S[2])
         for node, side_stresses, jump_sides in zip(
-            c.jumps, stresses_at_both_sides(c, S), c.jump_sides, strict=True
+            c.jump_nodes, stresses_at_both_sides(c, S), c.jump_side_coefficients, strict=True
         ):
             # The energy of the mean stress at a jump is not the mean of the energies of both sides.
             density[..., node] = 0.0
             for (q1, q3), (nu, c1, c3, _, _, weight, _) in zip(side_stresses, jump_sides, strict=True):
                 density[..., node] += weight * self._strain_energy_density(nu, c1, c3, q1, q3)
-        energy: Array = (density + c2 * S[1] ** 2 / 2) @ self.mesh.quadrature
+        energy: Array = (density + c2 * S[1] ** 2 / 2) @ self.mesh.quadrature_weights
         return energy
 
     def _strain_energy_density(self, nu: Values, c1: Values, c3: Values, q1: Values, q3: Values) -> Values:
@@ -142,7 +149,8 @@ class RodOnMesh(ABC):
         ratio = np.where(load == 0, 1.0, law.shortening(load) / np.where(load == 0, 1.0, load))
         scaled_strain = q1 - F * ratio  # (h1 - 1)/c1
         energy_density: Values = (
-            c1 * scaled_strain**2 * law.energy_over_square(h1) + law.bending_factor(h1) * c3 * q3**2 / 2
+            c1 * scaled_strain**2 * law.energy_over_squared_strain(h1)
+            + law.bending_factor(h1) * c3 * q3**2 / 2
         )
         return energy_density
 
@@ -168,15 +176,19 @@ class RodOnMesh(ABC):
         convexity the equations are ill-posed: the shortest waves of the mesh grow fastest."""
         S = self.stresses(x)
         c = self.nodal_rod
-        sections = np.stack([c.rest_strain[0], c.compliance[0], c.compliance[2], S[0], S[2]], axis=1)
+        sections = np.stack(
+            [c.straight_state_strain[0], c.compliance[0], c.compliance[2], S[0], S[2]], axis=1
+        )
         for node, side_stresses, jump_sides in zip(
-            c.jumps, stresses_at_both_sides(c, S), c.jump_sides, strict=True
+            c.jump_nodes, stresses_at_both_sides(c, S), c.jump_side_coefficients, strict=True
         ):
             # The energy must be convex on each side; a section with the mean material does not exist.
             left, right = np.column_stack([jump_sides[:, :3], side_stresses])
             sections[node] = left
             sections = np.vstack([sections, right])
-        tangents = (stress_tangent(c.law, LocalSection(*section[:3]), *section[3:]) for section in sections)
+        tangents = (
+            stress_tangent(c.law_number, LocalSection(*section[:3]), *section[3:]) for section in sections
+        )
         return all(T.M3 > 0 and T.N1 * T.M3 > T.N3 * T.M1 for T in tangents)
 
 

@@ -26,14 +26,15 @@ from .nodal_rod import NO_JUMPS, IntegerArray, NodalRod
 STRETCHING_STRESS_INDEX = 0
 BENDING_STRESS_INDEX = 2
 """Indices of the stretching stress S1 and of the bending stress S3, the components of S that jump."""
-JUMPING_COMPONENTS = STRETCHING_STRESS_INDEX, BENDING_STRESS_INDEX
+DISCONTINUOUS_STRESS_COMPONENTS = STRETCHING_STRESS_INDEX, BENDING_STRESS_INDEX
 """The components of S that are discontinuous at a jump."""
-SHARE_COLUMNS = 3, 4
-"""Columns in SIDE_COLUMNS of the weights of a side in the means of JUMPING_COMPONENTS over both sides."""
+SIDE_WEIGHT_COLUMNS = 3, 4
+"""Columns in JUMP_SIDE_COLUMNS of the weights of a side in the means of DISCONTINUOUS_STRESS_COMPONENTS over
+both sides."""
 
 
 @compiled
-def write_unknowns_beside_jump(law: int, sides: Array, q1: Array, q3: Array, out: Array) -> None:
+def write_law_unknowns_beside_jump(law: int, sides: Array, q1: Array, q3: Array, out: Array) -> None:
     """Writes q1 and q3 before a jump, then q1 and q3 behind the jump, into out, (4, m). law: number of the
     constitutive law. q1, q3: means over both sides, (m,). sides: the material on both sides, (2, 7)."""
     for i in range(len(q1)):
@@ -49,14 +50,14 @@ def write_unknowns_beside_jump(law: int, sides: Array, q1: Array, q3: Array, out
 def stresses_at_both_sides(rod: NodalRod, S: Array) -> Array:
     """S1 and S3 on both sides of each jump, (k, 2, 2, ...), with axes (jump, side, stress, ...). S: (3, ...,
     nodes + 1), with the mean of both sides at a jump."""
-    side_stresses = np.empty((len(rod.jumps), 2, 2, *S.shape[1:-1]))
-    for stresses, node, sides in zip(side_stresses, rod.jumps, rod.jump_sides, strict=True):
+    side_stresses = np.empty((len(rod.jump_nodes), 2, 2, *S.shape[1:-1]))
+    for stresses, node, sides in zip(side_stresses, rod.jump_nodes, rod.jump_side_coefficients, strict=True):
         q1, q3 = (
             np.ascontiguousarray(S[a, ..., node]).ravel()
             for a in (STRETCHING_STRESS_INDEX, BENDING_STRESS_INDEX)
         )
         columns = np.empty((4, q1.size))
-        write_unknowns_beside_jump(rod.law, sides, q1, q3, columns)
+        write_law_unknowns_beside_jump(rod.law_number, sides, q1, q3, columns)
         stresses[...] = columns.reshape(stresses.shape)
     return side_stresses
 
@@ -65,11 +66,11 @@ def stresses_by_element(rod: NodalRod, mesh: Mesh, S: Array) -> Array:
     """S at the nodes of every element, (3, ..., nodes + elements); the elements left and right of a jump have
     the values of the left and the right side. S: (3, ..., nodes + 1), with the mean of both sides at a
     jump."""
-    element_stresses: Array = S[..., mesh.element_nodes]
-    for node, sides in zip(rod.jumps, stresses_at_both_sides(rod, S), strict=True):
-        index = index_before_jump(int(node), mesh.element_nodes)
+    element_stresses: Array = S[..., mesh.element_node_indices]
+    for node, sides in zip(rod.jump_nodes, stresses_at_both_sides(rod, S), strict=True):
+        index = index_before_jump(int(node), mesh.element_node_indices)
         for side, values in enumerate(sides):
-            for component, value in zip(JUMPING_COMPONENTS, values, strict=True):
+            for component, value in zip(DISCONTINUOUS_STRESS_COMPONENTS, values, strict=True):
                 element_stresses[component, ..., index + side] = value
     return element_stresses
 
@@ -87,13 +88,18 @@ def interpolate_stress(rod: Rod, S: Values, source: Mesh, target: Mesh) -> Value
     target_jumps = (
         NO_JUMPS if rod.material.constitutive_law is LINEAR_CONSTITUTIVE_LAW else jumps_on_mesh(rod, target)
     )
-    if len(target_jumps.nodes):
-        source_nodes = jumps_on_mesh(rod, source).nodes
-        for column, component in zip(SHARE_COLUMNS, JUMPING_COMPONENTS, strict=True):
+    if len(target_jumps.jump_nodes):
+        source_nodes = jumps_on_mesh(rod, source).jump_nodes
+        for column, component in zip(SIDE_WEIGHT_COLUMNS, DISCONTINUOUS_STRESS_COMPONENTS, strict=True):
             target_S[component] = (
                 S[component]
                 @ _interpolation_matrix_with_jumps(
-                    E, source, target, source_nodes, target_jumps.nodes, target_jumps.jump_sides[..., column]
+                    E,
+                    source,
+                    target,
+                    source_nodes,
+                    target_jumps.jump_nodes,
+                    target_jumps.jump_side_coefficients[..., column],
                 ).T
             )
     return target_S
@@ -112,15 +118,17 @@ def interpolate_state_stress(nodal: NodalRod, S: Values, source: Mesh, rod: Rod,
     target_jumps = jumps_on_mesh(rod, target)
     element = np.searchsorted(source.edges, target.node_positions, side="right") - 1
     sides_of_jumps = stresses_at_both_sides(nodal, S)
-    for node, values in zip(nodal.jumps, sides_of_jumps, strict=True):
+    for node, values in zip(nodal.jump_nodes, sides_of_jumps, strict=True):
         for side, side_values in enumerate(values):
             rows = element == _element_starting_at(source, node) - 1 + side
-            for component, value in zip(JUMPING_COMPONENTS, side_values, strict=True):
+            for component, value in zip(DISCONTINUOUS_STRESS_COMPONENTS, side_values, strict=True):
                 # Each side has its own value at the node of the jump, so only the share of this node changes.
                 target_S[component][..., rows] += (value - S[component, ..., node])[..., None] * E[rows, node]
-    for node, sides, values in zip(target_jumps.nodes, target_jumps.jump_sides, sides_of_jumps, strict=True):
-        for i, component in enumerate(JUMPING_COMPONENTS):
-            fractions = sides[:, SHARE_COLUMNS[i]]
+    for node, sides, values in zip(
+        target_jumps.jump_nodes, target_jumps.jump_side_coefficients, sides_of_jumps, strict=True
+    ):
+        for i, component in enumerate(DISCONTINUOUS_STRESS_COMPONENTS):
+            fractions = sides[:, SIDE_WEIGHT_COLUMNS[i]]
             target_S[component, ..., node] = np.tensordot(fractions, values[:, i], 1)
     return target_S
 
@@ -168,7 +176,7 @@ def _interpolation_matrix_with_jumps(  # noqa: PLR0913, PLR0917 - of both meshes
 
 def _element_starting_at(mesh: Mesh, node: int) -> int:
     """Index of the element that begins at the node `node` of a jump."""
-    return index_before_jump(int(node), mesh.element_nodes) + 1 - int(node)
+    return index_before_jump(int(node), mesh.element_node_indices) + 1 - int(node)
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)

@@ -26,9 +26,9 @@ def serve_page(source: Path | None, port: int, is_opened: bool) -> None:
             "the page needs bokeh, which is not installed; pip install 'rodsweep[explore]' installs it"
         ) from None
     start_fork_server()
+    from .page_state import PageState
+    from .page_state_from_file import state_and_answers_from_file
     from .server import serve
-    from .state import PageState
-    from .state_of_file import page_state_of_file
 
-    state, stored = (PageState(), None) if source is None else page_state_of_file(source)
+    state, stored = (PageState(), None) if source is None else state_and_answers_from_file(source)
     asyncio.run(serve(state, stored, port, is_opened))

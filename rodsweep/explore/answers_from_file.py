@@ -14,10 +14,10 @@ from ..model.parameters import PARAMETERS
 from ..post.branch_curves import RodBranches
 from ..post.figures.cycle.animation import MIN_SHAPES
 from ..results.file.view import status_sentences_in
+from .page_state import PageState
 from .slider_scales import SLIDER_SCALES
-from .solving.curves_and_counts import Dataset, flag_words
-from .solving.requests import AnswerVariables, drawn_branches
-from .state import PageState
+from .solving.diagram_curves_and_counts import DatasetOrArray, flag_words
+from .solving.requests import AnswerVariables, branch_answer_of_rod
 
 CONTROL_DIGITS = (5, 6)
 """Numbers of significant digits to which controls round values. A value in a control that equals the rounded
@@ -39,7 +39,7 @@ class AnswersFromFile:
     "diagram" for this state, or None.
     """
 
-    def __init__(self, path: Path, data: Dataset, state: PageState, diagram: AnswerVariables | None):
+    def __init__(self, path: Path, data: DatasetOrArray, state: PageState, diagram: AnswerVariables | None):
         self.path = path
         self.data = data
         self.state = state
@@ -60,7 +60,7 @@ class AnswersFromFile:
             return self._cycles_over_force(state) if self.has_cycles else self._branch(state)
         return None
 
-    def cycle_to_film(self, state: PageState) -> Dataset | None:
+    def cycle_for_film(self, state: PageState) -> DatasetOrArray | None:
         """Stored cycle of the rod of `state`, with axes of length 1; None if no such cycle is stored, or too
         few shapes for a film."""
         numbers = self._matching_points(state)
@@ -73,13 +73,14 @@ class AnswersFromFile:
         return point if is_filmed else None
 
     def load_selected_by_click(self, state: PageState, load: float) -> float:
-        """Load that a click at the load `load` selects, in the unit of the control: the nearest stored load
-        if its distance is small, see `CLICK_TOLERANCE_IN_SPACINGS`; otherwise `load`. Also `load` if the file
-        has no cycles, fewer than two loads for the rod of `state`, or results of the other tab."""
+        """Load that a click at the load `load_name` selects, in the unit of the control: the nearest stored
+        load if its distance is small, see `CLICK_TOLERANCE_IN_SPACINGS`; otherwise `load_name`. Also
+        `load_name` if the file has no cycles, fewer than two loads for the rod of `state`, or results of the
+        other tab."""
         if state.tab != self.state.tab or not self.has_cycles:
             return load
         stored_loads = np.unique(
-            self._control_values(state.tab, state.load)[self._matching_points(state, (state.load,))]
+            self._control_values(state.tab, state.load_name)[self._matching_points(state, (state.load_name,))]
         )
         if len(stored_loads) < 2:
             return load
@@ -94,15 +95,15 @@ class AnswersFromFile:
         default_value = nan if default is None else default
         stored_values = self.data[name] if name in self.data.variables else default_value
         at_points = (self.data["status"] * 0.0 + stored_values).transpose(*self.dims)
-        values: Array = at_points.values.ravel() * SLIDER_SCALES[tab][name].factor
+        values: Array = at_points.values.ravel() * SLIDER_SCALES[tab][name].factor_from_si
         return values
 
     def _matching_points(self, state: PageState, free_controls: Collection[str] = ()) -> NDArray[np.integer]:
         """Indices, (n,), of the points of the file that have the parameters of `state`. The parameters in
         `free_controls`, and the parameter along a row of a phase diagram, may have any value."""
         is_matching = np.ones(self.data["status"].size, dtype=bool)
-        along_rows = {name for name in state.values if self._is_along_rows(name)}
-        for name, text in state.values.items():
+        along_rows = {name for name in state.visible_texts if self._has_several_values_per_point(name)}
+        for name, text in state.visible_texts.items():
             if name not in free_controls and name not in along_rows:
                 value = SLIDER_SCALES[state.tab][name].value(text)
                 control_values = self._control_values(state.tab, name)
@@ -112,11 +113,11 @@ class AnswersFromFile:
                 )
         return np.flatnonzero(is_matching)
 
-    def _is_along_rows(self, name: str) -> bool:
+    def _has_several_values_per_point(self, name: str) -> bool:
         """Whether a point of the file is a row of rods with several values of the parameter `name`."""
         return name in self.data.variables and not set(self.data[name].dims) <= set(self.dims)
 
-    def _data_at(self, numbers: NDArray[np.integer]) -> Dataset:
+    def _data_at(self, numbers: NDArray[np.integer]) -> DatasetOrArray:
         """Data at the points with the indices `numbers`, with the dimension `POINT_DIMENSION` for the
         points."""
         if not self.dims:
@@ -151,7 +152,7 @@ class AnswersFromFile:
     def _cycles_over_force(self, state: PageState) -> AnswerVariables | None:
         """Stored cycles of the rod of `state` at all forces; None if the file has fewer than two such
         points."""
-        numbers = self._matching_points(state, (state.load,))
+        numbers = self._matching_points(state, (state.load_name,))
         if len(numbers) < 2:
             return None
         line = self._data_at(numbers)
@@ -161,12 +162,12 @@ class AnswersFromFile:
         is_finite = np.isfinite(y)
         stable = np.where(statuses[is_finite] == "unstable", 0, 1)
         cycles = {"F": line["F"].values[is_finite], "y": y[is_finite], "stable": stable}
-        return {"pieces": [], "special": [], "cycles": cycles, **self._source_variables()}
+        return {"pieces": [], "special": [], "cycles": cycles, **self._status_and_source_texts()}
 
     def _branch(self, state: PageState) -> AnswerVariables | None:
         """Stored branches of the rod of `state` along the force; None if the file has no computed branches of
         this rod."""
-        numbers = self._matching_points(state, (state.load,))
+        numbers = self._matching_points(state, (state.load_name,))
         if len(numbers) == 0 or "branch_F" not in self.data:
             return None
         rod = int(numbers[0])
@@ -175,11 +176,11 @@ class AnswersFromFile:
             return None
         largest_force = float(json.loads(self.data.attrs["config_resolved"])["branch"]["stop"])
         return (
-            drawn_branches(RodBranches(view_of_dataset(self.data, self.path), rod), largest_force)
-            | self._source_variables()
+            branch_answer_of_rod(RodBranches(view_of_dataset(self.data, self.path), rod), largest_force)
+            | self._status_and_source_texts()
         )
 
-    def _source_variables(self) -> AnswerVariables:
+    def _status_and_source_texts(self) -> AnswerVariables:
         return {"status": "ok", "sentence": "", "source": f"stored in {self.path.name}"}
 
 

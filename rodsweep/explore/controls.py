@@ -9,9 +9,9 @@ from bokeh.document import Document
 from bokeh.models import Column, InlineStyleSheet, Select, Slider, TabPanel, Tabs, TextInput
 from bokeh.models.css import StyleSheet
 
-from ..post.summary.arm.arm import quantity_words
-from .slider_scales import SLIDER_SCALES, ControlScale, PictureAxis
-from .state import LAW_MENU_ENTRIES, SECOND_PARAMETERS, TAB_DEFAULTS, PageState
+from ..post.summary.arm.arm_texts import quantity_words
+from .page_state import LAW_MENU_ENTRIES, SECOND_PARAMETERS, TAB_DEFAULTS, PageState
+from .slider_scales import SLIDER_SCALES, PictureAxis, SliderScale
 
 LABEL_OF_MAX_FORCE = "Largest force F (k3/L^2)"
 SLIDER_STEP_COUNT = 400
@@ -23,10 +23,10 @@ class SliderField:
     """Text field and slider for the same value. A change of the field or of the slider calls `changed(name,
     text)`."""
 
-    def __init__(self, scale: ControlScale, changed: Callable[[str, str], None], sheets: list[StyleSheet]):
+    def __init__(self, scale: SliderScale, changed: Callable[[str, str], None], sheets: list[StyleSheet]):
         self.scale = scale
         self.changed = changed
-        start, end = scale.ends
+        start, end = scale.end_positions
         self.text = TextInput(
             title=scale.label, name=f"{scale.name}_field", sizing_mode="stretch_width", stylesheets=sheets
         )  # fmt: skip
@@ -70,8 +70,8 @@ class SliderField:
 class Controls:
     """All controls of the page.
 
-    changed: callback; its keywords are the changed fields of `PageState`, or `values`, the changed texts of
-    the tab by name.
+    changed: callback; its keywords are the changed fields of `PageState`, or `visible_texts`, the changed
+    texts of the tab by name.
     """
 
     def __init__(self, changed: ChangeCallback, style_sheet: InlineStyleSheet):
@@ -114,10 +114,10 @@ class Controls:
         try:
             self.tabs.active = list(TAB_DEFAULTS).index(state.tab)
             for name, field in self.fields[state.tab].items():
-                field.show(state.values[name])
+                field.show(state.visible_texts[name])
             self.law.value = state.law
             self.across.options = [(name, quantity_words(name)) for name in SECOND_PARAMETERS[state.tab]]
-            self.across.value = state.second
+            self.across.value = state.second_parameter
             self.F_max.value = state.F_max
         finally:
             self._is_updating = False
@@ -125,7 +125,11 @@ class Controls:
     def show_largest_pressure(self, state: PageState, axis: PictureAxis) -> None:
         """Writes, for an arm, the pressure that corresponds to the largest force above the field of this
         force."""
-        pressure_clause = f": {state.largest_force() * axis.factor:.4g} kPa" if state.tab == "arm" else ""
+        pressure_clause = (
+            f": {state.largest_force() * axis.factor_from_dimensionless:.4g} kPa"
+            if state.tab == "arm"
+            else ""
+        )
         self.F_max.title = LABEL_OF_MAX_FORCE + pressure_clause
 
     def _tab_changed(self, attribute: str, previous: int, tab: int) -> None:

@@ -11,28 +11,28 @@ from bokeh.events import Pan, Tap
 from ..errors import InputError
 from .answers_from_file import AnswersFromFile
 from .controls import PauseTimer
+from .export_panel import state_from_config_text
 from .page_contents import PageContents
-from .sharing import state_from_config_text
+from .page_state import PageState, dimensionless_parameters_of, from_address
 from .slider_scales import SLIDER_SCALES
 from .solving import request_inputs as kinds
 from .solving.diagrams import has_uniform_linear_rods
 from .solving.dragged_tip import TipPosition
 from .solving.request_inputs import AnswerInputs, inputs_of_request, state_to_solve
 from .solving.requests import Reply, SolveRequest
-from .solving.solvers import Solvers
-from .state import PageState, dimensionless_parameters_of, from_address
-from .texts import KIND_WORDS
-
-SOLVE_STOPPED_SENTENCE = "Stopped. A change of the rod starts the solve again."
-"""Sentence shown in place of a picture after the user has stopped its solve."""
+from .solving.solver_processes import SolverProcesses
+from .templates_and_texts import REQUEST_KIND_WORDS, SLOW_SOLVE_SENTENCE, SOLVE_STOPPED_SENTENCE
 
 
 class Page:
-    """Page in a browser tab. stored: answers from a result file, used instead of solves; None if there is no
-    file."""
+    """Page in a browser tab. stored: answers from a result file, used instead of solves, or None."""
 
     def __init__(
-        self, document: Document, solvers: Solvers, state: PageState, stored: AnswersFromFile | None = None
+        self,
+        document: Document,
+        solvers: SolverProcesses,
+        state: PageState,
+        stored: AnswersFromFile | None = None,
     ):
         self.document = document
         self.solvers = solvers
@@ -47,9 +47,9 @@ class Page:
         """`inputs_of_request` of the latest request of each kind."""
         self.drawn_around: PageState | None = None
         """State around which the drawn diagram was solved; None before the first answer of a solver."""
-        self.contents = PageContents(self.change, self.load)
+        self.contents = PageContents(self.change, self.load_config)
         self.pause_timer = PauseTimer(document, self._send_slow_requests)
-        self.contents.connect(document, self._callbacks())
+        self.contents.add_to_document(document, self._callbacks())
         self.contents.beating.on_drag(self.request_tip_answer)
         if stored is not None and stored.diagram is not None:
             self.latest_inputs["diagram"] = inputs_of_request(SolveRequest("diagram", state))
@@ -63,7 +63,7 @@ class Page:
             self._change_to(self.state)
             self._show_error(str(error))
 
-    def load(self, text: str) -> None:
+    def load_config(self, text: str) -> None:
         """Shows the rod or the arm of a config, or an error message; text: the config in YAML."""
         try:
             loaded_state = state_from_config_text(text, self.state.F_max)
@@ -87,14 +87,14 @@ class Page:
         self._send_request(kind, tip, is_solved_again=True)
         self._show_solving()
 
-    def stop(self) -> None:
+    def stop_long_solves(self) -> None:
         """Cancels long solves, with a sentence in their pictures. A dragged arm returns to its motion."""
-        for kind in kinds.STOPPABLE_KINDS:
+        for kind in kinds.STOPPABLE_REQUEST_KINDS:
             if kind in self.solving:
                 self._cancel_request(kind)
                 if kind in kinds.TIP_REQUEST_KINDS:
                     self.contents.beating.remove_dragged_shape()
-                elif kind not in kinds.MANUAL_KINDS:
+                elif kind not in kinds.MANUAL_REQUEST_KINDS:
                     self.contents.show_message(kind, SOLVE_STOPPED_SENTENCE)
         self._show_solving()
 
@@ -118,31 +118,31 @@ class Page:
         return {
             "branch": lambda: self.solve("branch"),
             "diagram": lambda: self.solve("diagram"),
-            "diagram_point": self._move_in_diagram,
-            "film": lambda: self.solve(
-                "film", self.latest_inputs["motion"][1] if "motion" in self.latest_inputs else None
-            ),
+            "diagram_point": self._select_rod_in_diagram,
+            "film": lambda: self.solve("film", self.latest_inputs.get("motion", (None, None))[1]),
             "cycles": lambda: self.solve("cycles"),
-            "load": self._move_load,
-            "stop": self.stop,
+            "load": self._select_load,
+            "stop": self.stop_long_solves,
         }
 
     def _change_to(self, state: PageState) -> None:
         self.state = state
         self.contents.controls.show(state)
         try:
-            rod_or_arm = state.subject()
+            rod_or_arm = state.rod_or_arm()
             state.largest_force()
             F = None if state.has_relative_load else dimensionless_parameters_of(rod_or_arm).get("F")
             if F is None and not state.has_relative_load:
                 section = "parameters.arm" if state.tab == "arm" else "parameters"
-                raise InputError(f"{section}.{state.load} is missing; give the load")
+                raise InputError(f"{section}.{state.load_name} is missing; give the load")
         except InputError as error:
             self._show_error(str(error))
             return
-        for kind in (kinds.LOAD_KIND, *kinds.TIP_REQUEST_KINDS, *kinds.MANUAL_KINDS):
+        for kind in (kinds.LOAD_REQUEST_KIND, *kinds.TIP_REQUEST_KINDS, *kinds.MANUAL_REQUEST_KINDS):
             self._cancel_request(kind)
-        for kind in (*((kinds.LOAD_KIND,) if F is None else ()), *kinds.INSTANT_KINDS):
+        if F is None:
+            self._send_request(kinds.LOAD_REQUEST_KIND)
+        for kind in kinds.INSTANT_REQUEST_KINDS:
             self._send_request(kind)
         self.contents.show_state(state)
         if F is not None:
@@ -154,9 +154,9 @@ class Page:
         """Cancels all solves and shows the error message `sentence` in place of all pictures except a drawn
         diagram."""
         self.pause_timer.cancel()
-        for kind in (kinds.LOAD_KIND, *kinds.TIP_REQUEST_KINDS, *kinds.MANUAL_KINDS):
+        for kind in (kinds.LOAD_REQUEST_KIND, *kinds.TIP_REQUEST_KINDS, *kinds.MANUAL_REQUEST_KINDS):
             self._cancel_request(kind)
-        for kind in (*kinds.INSTANT_KINDS, *kinds.IDLE_KINDS):
+        for kind in (*kinds.INSTANT_REQUEST_KINDS, *kinds.IDLE_REQUEST_KINDS):
             if kind != "diagram" or kind in self.solving:
                 self._cancel_request(kind)
             if kind != "diagram" or not self.contents.diagram.is_drawn:
@@ -165,14 +165,12 @@ class Page:
 
     def _send_slow_requests(self) -> None:
         self.contents.sharing.show_texts()
-        for kind in kinds.IDLE_KINDS:
+        for kind in kinds.IDLE_REQUEST_KINDS:
             if inputs_of_request(SolveRequest(kind, self.state)) == self.latest_inputs.get(kind):
                 continue
             if self.state.tab == "rod" and not has_uniform_linear_rods(self.state):
                 self.latest_inputs.pop(kind, None)
-                self.contents.show_message(
-                    kind, "The solve takes a minute for such a rod; press the button below to start."
-                )
+                self.contents.show_message(kind, SLOW_SOLVE_SENTENCE)
                 continue
             self._send_request(kind)
         self._show_solving()
@@ -182,7 +180,7 @@ class Page:
         `is_solved_again`. tip: position of the dragged tip, in L."""
         state = state_to_solve(kind, self.state, self.drawn_around)
         cycle_file = self.stored if (kind, tip) == ("film", None) else None
-        cycle = None if cycle_file is None else cycle_file.cycle_to_film(state)
+        cycle = None if cycle_file is None else cycle_file.cycle_for_film(state)
         request = SolveRequest(kind, state, tip, cycle)
         inputs = inputs_of_request(request)
         if self.latest_inputs.get(kind) == inputs:
@@ -230,21 +228,22 @@ class Page:
         self._show_solving()
 
     def _show_solving(self) -> None:
-        shown_kinds = (kinds.LOAD_KIND, *kinds.INSTANT_KINDS, *kinds.IDLE_KINDS, *kinds.MANUAL_KINDS)
-        solving = [kind for kind in shown_kinds if kind in self.solving]
-        is_stoppable = any(kind in kinds.STOPPABLE_KINDS for kind in solving)
-        names = [KIND_WORDS.get(kind, kind) + self.progress.get(kind, "") for kind in solving]
+        automatic = (kinds.LOAD_REQUEST_KIND, *kinds.INSTANT_REQUEST_KINDS, *kinds.IDLE_REQUEST_KINDS)
+        solving = [kind for kind in (*automatic, *kinds.MANUAL_REQUEST_KINDS) if kind in self.solving]
+        is_stoppable = any(kind in kinds.STOPPABLE_REQUEST_KINDS for kind in solving)
+        names = [REQUEST_KIND_WORDS.get(kind, kind) + self.progress.get(kind, "") for kind in solving]
         text = f"solving {', '.join(names)} ..." if names else ""
         self.contents.sign.update(text=text, kinds=solving, is_stoppable=is_stoppable)
 
-    def _move_in_diagram(self, event: Tap | Pan) -> None:
+    def _select_rod_in_diagram(self, event: Tap | Pan) -> None:
         if event.x is None or event.y is None or event.y <= 0:
             return
-        values = {self.state.load: event.x, self.state.second: event.y}
+        values = {self.state.load_name: event.x, self.state.second_parameter: event.y}
         self.change({name: SLIDER_SCALES[self.state.tab][name].text(value) for name, value in values.items()})
 
-    def _move_load(self, event: Tap) -> None:
+    def _select_load(self, event: Tap) -> None:
         """Sets the load to the horizontal position of a click."""
         if event.x is not None:
             load = event.x if self.stored is None else self.stored.load_selected_by_click(self.state, event.x)
-            self.change({self.state.load: SLIDER_SCALES[self.state.tab][self.state.load].text(load)})
+            name = self.state.load_name
+            self.change({name: SLIDER_SCALES[self.state.tab][name].text(load)})

@@ -9,17 +9,17 @@ from bokeh.events import DocumentReady, Pan, Tap
 from bokeh.models import Button, CustomJS
 
 from .controls import ChangeCallback, Controls
+from .export_panel import ExportPanel
+from .page_state import PageState
 from .pictures.card import Card
 from .pictures.diagram import DiagramPicture
+from .pictures.growth_and_branches import BranchPicture, GrowthRatePicture
 from .pictures.moving_arm import MovingArmPicture
-from .pictures.numbers import NumbersTable
-from .pictures.over_load import BranchPicture, GrowthPicture
+from .pictures.numbers_table import NumbersTable
 from .pictures.spectrum import ModePicture, SpectrumPicture
-from .sharing import ExportPanel
 from .slider_scales import SLIDER_SCALES, length_axis, load_axis
 from .solving.diagrams import can_follow_cycle_curves
-from .state import PageState
-from .texts import SolvingIndicator, add_texts, style_sheet, template_text
+from .templates_and_texts import SolvingIndicator, add_texts, style_sheet, template_text
 
 NO_CYCLE_CURVES_FOUND_SENTENCE = "No folds and no torus points of cycles were found in this diagram."
 """Sentence above the diagram after a search that found no curves of cycles."""
@@ -38,7 +38,7 @@ class PageContents:
         self.controls = Controls(changed, widgets)
         self.spectrum = SpectrumPicture()
         self.mode = ModePicture()
-        self.growth = GrowthPicture()
+        self.growth = GrowthRatePicture()
         self.beating = MovingArmPicture()
         self.branches = BranchPicture()
         self.diagram = DiagramPicture()
@@ -64,7 +64,7 @@ class PageContents:
         pictures = (self.spectrum, self.mode, self.growth, self.beating, self.branches, self.diagram)
         return [picture.card for picture in pictures]
 
-    def connect(self, document: Document, callbacks: Mapping[str, Callable[..., None]]) -> None:
+    def add_to_document(self, document: Document, callbacks: Mapping[str, Callable[..., None]]) -> None:
         """Adds all models to a Bokeh document. callbacks: callbacks, by name of the button; "diagram_point"
         and "load" for clicks in pictures."""
         for kind, button in self.buttons.items():
@@ -94,24 +94,27 @@ class PageContents:
         config and Python lines."""
         self.controls.show_largest_pressure(state, load_axis(state))
         x, y = (
-            SLIDER_SCALES[state.tab][name].value(state.values[name]) for name in (state.load, state.second)
+            SLIDER_SCALES[state.tab][name].value(state.visible_texts[name])
+            for name in (state.load_name, state.second_parameter)
         )
         if x is not None and y is not None:
-            self.diagram.move_point(x, y)
+            self.diagram.mark_rod(x, y)
         self.buttons["cycles"].visible = can_follow_cycle_curves(state)
         self.sharing.update_exported_texts(state)
 
     def move_load_lines(self, state: PageState, F: float) -> None:
         """Marks the load of `state` in the pictures over the load. F: the load, in k3/L^2."""
         for picture in (self.growth, self.branches):
-            picture.load_line.location = F * load_axis(state).factor
+            picture.load_line.location = F * load_axis(state).factor_from_dimensionless
 
     def show_solved_load(self, answer: dict[str, Any], state: PageState) -> None:
         """Marks the load of `state` in all pictures. answer: answer to the request "load"."""
         self.move_load_lines(state, answer["F"])
-        y = SLIDER_SCALES[state.tab][state.second].value(state.values[state.second])
+        y = SLIDER_SCALES[state.tab][state.second_parameter].value(
+            state.visible_texts[state.second_parameter]
+        )
         if y is not None:
-            self.diagram.move_point(answer["F"] * load_axis(state).factor, y)
+            self.diagram.mark_rod(answer["F"] * load_axis(state).factor_from_dimensionless, y)
 
     def show(self, kind: str, answer: dict[str, Any], state: PageState) -> None:
         """Draws the answer `answer` to a request of the kind `kind` in all pictures that show this answer,
@@ -125,7 +128,7 @@ class PageContents:
         elif kind == "cycle":
             self.beating.show(answer, length_axis(state))
         elif kind == "bent":
-            self.beating.show_bent(answer)
+            self.beating.show_arm_with_held_tip(answer)
         elif kind == "motion":
             self.beating.show_motion(answer)
         elif kind == "film":
@@ -138,7 +141,7 @@ class PageContents:
             self.branches.show(answer, load_axis(state), length_axis(state))
         else:
             scales = SLIDER_SCALES[state.tab]
-            self.diagram.show(answer, scales[state.load], scales[state.second])
+            self.diagram.show(answer, scales[state.load_name], scales[state.second_parameter])
             if kind == "cycles" and not answer["cycle_curves"]:
                 self.diagram.card.show_sentence_above(NO_CYCLE_CURVES_FOUND_SENTENCE)
         self.numbers.show(kind, answer)

@@ -23,8 +23,8 @@ from tornado.netutil import bind_sockets
 from ..errors import InputError
 from .answers_from_file import AnswersFromFile
 from .page import Page
-from .solving.solvers import Solvers
-from .state import PageState
+from .page_state import PageState
+from .solving.solver_processes import SolverProcesses
 
 LISTEN_ADDRESS = "127.0.0.1"
 """IP address on which the server listens."""
@@ -38,7 +38,7 @@ SESSION_CHECK_MILLISECONDS = 1000
 solves of a closed page until its session ends."""
 
 
-class UndelayedServer(HTTPServer):
+class TcpNoDelayServer(HTTPServer):
     """HTTP server without Nagle's algorithm, so that small messages are sent at once."""
 
     def handle_stream(self, stream: IOStream, address: Any) -> None:
@@ -89,7 +89,7 @@ class ExploreServer:
         self.stored = stored
         sockets = _bound_sockets(port)
         self.port: int = sockets[0].getsockname()[1]
-        self.solvers = Solvers()
+        self.solvers = SolverProcesses()
         application = Application(FunctionHandler(self._open))
         tornado = BatchTornado(
             {"/": application},
@@ -97,7 +97,7 @@ class ExploreServer:
             unused_session_lifetime_milliseconds=UNUSED_SESSION_MILLISECONDS,
             check_unused_sessions_milliseconds=SESSION_CHECK_MILLISECONDS,
         )
-        self.http = UndelayedServer(tornado)
+        self.http = TcpNoDelayServer(tornado)
         self.http.add_sockets(sockets)
         self.server = BaseServer(IOLoop.current(), tornado, self.http)
 

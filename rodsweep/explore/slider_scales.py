@@ -5,15 +5,15 @@ from math import inf, isfinite, isnan, log10
 from typing import NamedTuple
 
 from ..errors import InputError
-from ..model.arm.quantities import QUANTITIES
+from ..model.arm.quantities import GIVEN_QUANTITIES
 from ..model.parameters import PARAMETERS
 from ..model.units import quantity_in_si
-from ..post.summary.arm.arm import quantity_words
-from .state import PageState, dimensionless_parameters_of, float_or_text
+from ..post.summary.arm.arm_texts import quantity_words
+from .page_state import PageState, dimensionless_parameters_of, float_or_text
 
 
 @dataclass(frozen=True, kw_only=True)
-class ControlScale:
+class SliderScale:
     """Scale of the slider for one parameter of a rod, or one quantity of an arm, with the name `name`.
 
     low, high: values at the ends of the slider, in `unit`.
@@ -28,9 +28,9 @@ class ControlScale:
     """Whether the slider is logarithmic."""
     unit: str = ""
     """Unit of an arm's quantity; empty for a rod's parameter, which is dimensionless."""
-    factor: float = 1.0
+    factor_from_si: float = 1.0
     """Factor that converts a value from SI units to `unit`."""
-    has_inf: bool = False
+    is_upper_end_inf: bool = False
     """Whether the upper end of the slider means inf instead of `high`."""
 
     def text(self, value: float) -> str:
@@ -42,15 +42,15 @@ class ControlScale:
         """Value, in `unit`, of a text that the user typed, such as "10 cm"; None for an invalid text."""
         try:
             if self.unit:
-                quantity = QUANTITIES[self.name]
-                return quantity_in_si(self.name, text, quantity.unit, quantity.example) * self.factor
+                quantity = GIVEN_QUANTITIES[self.name]
+                return quantity_in_si(self.name, text, quantity.unit, quantity.example) * self.factor_from_si
             number = float_or_text(text)
         except InputError:
             return None
         return number if isinstance(number, float) else None
 
     @property
-    def ends(self) -> tuple[float, float]:
+    def end_positions(self) -> tuple[float, float]:
         """Slider positions of the two ends: `low` and `high`, or their common logarithms for a logarithmic
         slider."""
         return (log10(self.low), log10(self.high)) if self.is_logarithmic else (self.low, self.high)
@@ -59,7 +59,7 @@ class ControlScale:
         """Slider position for a text that the user typed, clipped to the ends; None if the text is invalid or
         NaN."""
         value = self.value(text)
-        start, end = self.ends
+        start, end = self.end_positions
         if value is None or isnan(value):
             return None
         if value == inf:
@@ -70,7 +70,7 @@ class ControlScale:
 
     def text_at(self, position: float) -> str:
         """Value at a slider position, as text."""
-        if self.has_inf and position >= self.ends[1]:
+        if self.is_upper_end_inf and position >= self.end_positions[1]:
             return "inf"
         value = 10**position if self.is_logarithmic else position
         assert isfinite(value)
@@ -78,17 +78,18 @@ class ControlScale:
 
 
 class PictureAxis(NamedTuple):
-    """Axis of a picture. label: text with the unit. factor: value in this unit per dimensionless value."""
+    """Axis of a picture. label: text with the unit. factor_from_dimensionless: value in this unit per
+    dimensionless value."""
 
     label: str
-    factor: float
+    factor_from_dimensionless: float
 
 
 def load_axis(state: PageState) -> PictureAxis:
     """Axis of the load: the force F for a rod, the pressure in kPa for an arm."""
     if state.tab == "rod":
         return PictureAxis("force F (k3/L^2)", 1.0)
-    arm = state.with_values(pressure="1 kPa").subject()
+    arm = state.with_values(pressure="1 kPa").rod_or_arm()
     return PictureAxis("pressure (kPa)", 1 / dimensionless_parameters_of(arm)["F"])
 
 
@@ -101,35 +102,35 @@ def length_axis(state: PageState) -> PictureAxis:
 
 def _rod_scale(
     name: str, lowest_value: float, highest_value: float, logarithmic: bool = True, has_inf: bool = False
-) -> ControlScale:
+) -> SliderScale:
     """Scale of a rod's parameter `name`. lowest_value, highest_value: values at the ends of the slider.
-    has_inf: whether the upper end means inf."""
+    is_upper_end_inf: whether the upper end means inf."""
     parameter = PARAMETERS[name]
     unit = "" if parameter.unit == "1" else f" ({parameter.unit})"
     label = f"{name}: {parameter.meaning}{unit}"
-    return ControlScale(
+    return SliderScale(
         name=name,
         label=label,
         low=lowest_value,
         high=highest_value,
         is_logarithmic=logarithmic,
-        has_inf=has_inf,
+        is_upper_end_inf=has_inf,
     )
 
 
 def _arm_scale(
     name: str, lowest_value: float, highest_value: float, unit: str, factor: float, logarithmic: bool = True
-) -> ControlScale:
+) -> SliderScale:
     """Scale of an arm's quantity `name`. lowest_value, highest_value: values at the ends of the slider, in
     `unit`. factor: factor from SI units to `unit`."""
     label = f"{quantity_words(name)} ({unit})"
-    return ControlScale(
+    return SliderScale(
         name=name,
         label=label,
         low=lowest_value,
         high=highest_value,
         unit=unit,
-        factor=factor,
+        factor_from_si=factor,
         is_logarithmic=logarithmic,
     )
 

@@ -19,12 +19,12 @@ SparsityPattern = tuple[tuple[bool, ...], ...]
 class LieAlgebra(NamedTuple):
     """Structure constants of a Lie algebra, and the sparsity patterns of ad and ad*.
 
-    components: indices of the components. structure_constants: the nonzero constants. ad_pattern: pattern of
-    ad; ad_pattern[a][c] is True if (ad_E V)_a depends on V_c. coad_derivative_pattern: pattern of the
-    derivative of ad*; coad_derivative_pattern[c][b] is True if (ad*_E Sigma)_c depends on Sigma_b or on E_b,
-    which depends on Sigma_b."""
+    component_indices: indices of the components. structure_constants: the nonzero constants. ad_pattern:
+    pattern of ad; ad_pattern[a][c] is True if (ad_E V)_a depends on V_c. coad_derivative_pattern: pattern of
+    the derivative of ad*; coad_derivative_pattern[c][b] is True if (ad*_E Sigma)_c depends on Sigma_b or on
+    E_b, which depends on Sigma_b."""
 
-    components: range
+    component_indices: range
     structure_constants: tuple[StructureConstant, ...]
     ad_pattern: SparsityPattern
     coad_derivative_pattern: SparsityPattern
@@ -32,12 +32,12 @@ class LieAlgebra(NamedTuple):
     @property
     def dimension(self) -> int:
         """Dimension of the algebra: 3 for se(2), 6 for se(3)."""
-        return len(self.components)
+        return len(self.component_indices)
 
     @property
     def ordered_distinct_pairs(self) -> list[tuple[int, int]]:
         """All ordered pairs (a, b) of indices of components of the algebra with a != b."""
-        return [(a, b) for a in self.components for b in self.components if a != b]
+        return [(a, b) for a in self.component_indices for b in self.component_indices if a != b]
 
 
 def algebra_from_constants(dimension: int, constants: list[StructureConstant]) -> LieAlgebra:
@@ -47,11 +47,14 @@ def algebra_from_constants(dimension: int, constants: list[StructureConstant]) -
     # Component c of ad* contains products of components a and b, and depends on both.
     coad_pairs = {(c, component) for a, b, c, _ in constants for component in (a, b)}
     return LieAlgebra(
-        range(dimension), tuple(constants), _pattern(dimension, ad_pairs), _pattern(dimension, coad_pairs)
+        range(dimension),
+        tuple(constants),
+        _sparsity_pattern(dimension, ad_pairs),
+        _sparsity_pattern(dimension, coad_pairs),
     )
 
 
-def _pattern(dimension: int, pairs: set[tuple[int, int]]) -> SparsityPattern:
+def _sparsity_pattern(dimension: int, pairs: set[tuple[int, int]]) -> SparsityPattern:
     """Sparsity pattern of a square matrix of the given dimension. pairs: (row, column) of the elements that
     may be nonzero."""
     return tuple(tuple((row, column) in pairs for column in range(dimension)) for row in range(dimension))

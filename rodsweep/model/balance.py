@@ -51,13 +51,13 @@ def coad(E: Values, Sigma: Values) -> Values:
 
 class BalanceCoefficients(NamedTuple):
     """Coefficients of the nonlinear balance of one rod under its tip force F. compliance: diagonal of C.
-    drag: diagonal of Gamma. rest_strain: deformation E of the straight rod under the force. Each array has
-    the shape (3,) or (6,) for a uniform rod, and (3, nodes + 1) for other rods."""
+    drag: diagonal of Gamma. straight_state_strain: deformation E of the straight rod under the force. Each
+    array has the shape (3,) or (6,) for a uniform rod, and (3, nodes + 1) for other rods."""
 
     compliance: Values
     drag: Values
     F: float
-    rest_strain: Values
+    straight_state_strain: Values
 
     @property
     def tip_stress(self) -> Values:

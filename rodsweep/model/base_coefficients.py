@@ -1,6 +1,6 @@
 """The rod's force, stiffnesses and drags at the base, from the values of the parameters.
 
-A parameter may multiply stiffnesses or drags, as `PARAMETERS` states in the field `scaled_names`.
+A parameter may multiply stiffnesses or drags, as `PARAMETERS` states in the field `scaled_coefficient_names`.
 """
 
 from collections.abc import Mapping
@@ -9,17 +9,17 @@ from typing import Any
 
 import numpy as np
 
-from .parameters import SCALING_PAIRS
+from .parameters import SCALING_AND_SCALED_NAMES
 
 
 def stiffnesses_and_drags_at_base(values: Mapping[str, Any]) -> Mapping[str, Any]:
     """Force, stiffnesses and drags at the base, by name, from the parameter values by name. A result is the
     value of the parameter of the same name, times the values of all parameters that multiply this parameter
-    (`Parameter.scaled_names`). All other values, such as the taper, are passed on unchanged."""
-    if not SCALING_PAIRS:
+    (`Parameter.scaled_coefficient_names`). All other values, such as the taper, are passed on unchanged."""
+    if not SCALING_AND_SCALED_NAMES:
         return values
     base_values = dict(values)
-    for factor_name, scaled_name in SCALING_PAIRS:
+    for factor_name, scaled_name in SCALING_AND_SCALED_NAMES:
         base_values[scaled_name] = base_values[scaled_name] * values[factor_name]
     return base_values
 

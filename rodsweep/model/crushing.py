@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from .material.rod_material import RodMaterial
 
-TAPER_ACCURACY = 1e-9
+RELATIVE_TAPER_TOLERANCE = 1e-9
 """Relative tolerance of the smallest taper at which the force does not crush the tip."""
 
 
@@ -47,7 +47,7 @@ def _smallest_uncrushed_taper(
     # A wider tip never weakens a section, so one sign change at most lies in the interval.
     if is_uncrushed(low) or not is_uncrushed(high):
         return low if is_uncrushed(low) else high
-    while high - low > TAPER_ACCURACY * high:
+    while high - low > RELATIVE_TAPER_TOLERANCE * high:
         middle = (low + high) / 2
         if is_uncrushed(middle):
             high = middle

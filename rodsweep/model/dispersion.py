@@ -23,11 +23,13 @@ WAVE_SAMPLE_COUNT = 64
 SAMPLES_PER_INTERVAL = 33
 """Number of points between two neighbouring breaks of an arm's profile at which local waves are computed, if
 the coefficients vary."""
-CACHED_ARM_COUNT = 16
+MAX_CACHED_ARMS = 16
 """Maximum number of arms, and of materials, in the caches of this module."""
-MIN_K_FRACTION = 1e-4
+MIN_SQUARED_WAVE_NUMBER_RATIO = 1e-4
 """Ratio K/(F g) of the smallest sample of K = kappa^2. Every wave with K > F g decays."""
-K_FRACTIONS: Array = MIN_K_FRACTION ** (1 - np.arange(WAVE_SAMPLE_COUNT) / WAVE_SAMPLE_COUNT)
+SQUARED_WAVE_NUMBER_RATIOS: Array = MIN_SQUARED_WAVE_NUMBER_RATIO ** (
+    1 - np.arange(WAVE_SAMPLE_COUNT) / WAVE_SAMPLE_COUNT
+)
 """Ratios K/(F g) of all samples of K = kappa^2, increasing, (WAVE_SAMPLE_COUNT,)."""
 
 
@@ -45,15 +47,15 @@ def largest_growth_and_wave_number(rod: Rod) -> tuple[float, float]:
 
 class SampledArm(NamedTuple):
     """Midpoints of short intervals of u along an arm, and the local coefficients at the midpoints. points:
-    midpoints, (points,); no midpoint is a break of the profile. weights: interval lengths, (points,). local:
-    coefficients at the midpoints."""
+    midpoints, (points,); no midpoint is a break of the profile. interval_lengths: interval lengths,
+    (points,). local_coefficients: coefficients at the midpoints."""
 
     points: Array
-    weights: Array
-    local: LocalCoefficients
+    interval_lengths: Array
+    local_coefficients: LocalCoefficients
 
 
-@lru_cache(maxsize=CACHED_ARM_COUNT)
+@lru_cache(maxsize=MAX_CACHED_ARMS)
 def sampled_arm(rod: Rod) -> SampledArm:
     """Sample points of the arm `rod` and the local coefficients at these points, cached."""
     # Where the coefficients are constant a single sample is exact.
@@ -63,7 +65,7 @@ def sampled_arm(rod: Rod) -> SampledArm:
     return SampledArm(points, weights, rod.local_coefficients(points))
 
 
-@lru_cache(maxsize=CACHED_ARM_COUNT)
+@lru_cache(maxsize=MAX_CACHED_ARMS)
 def _interval_midpoints(material: RodMaterial, count: int) -> tuple[Array, Array]:
     """Returns (midpoints, lengths) of `count` equal parts of each interval between breaks of a profile,
     (points,) each."""
@@ -74,21 +76,21 @@ def _interval_midpoints(material: RodMaterial, count: int) -> tuple[Array, Array
     return points, np.repeat(lengths / count, count)
 
 
-@lru_cache(maxsize=CACHED_ARM_COUNT)
+@lru_cache(maxsize=MAX_CACHED_ARMS)
 def local_growths_and_wave_numbers(rod: Rod) -> tuple[Array, Array]:
     """Returns (growth rates, wave numbers) of the most amplified wave at each point of `sampled_arm(rod)`,
     (points,) each. A local wave travels on an infinitely long uniform rod with the coefficients of the arm at
     the point. If all waves at a point decay, both numbers are 0."""
-    return _growths_and_wave_numbers(rod.F, sampled_arm(rod).local)
+    return _growths_and_wave_numbers(rod.F, sampled_arm(rod).local_coefficients)
 
 
 def largest_growth_at_ends(rod: Rod) -> float:
     """The larger growth rate, in 1/tau2, of the most amplified local waves at the two ends of an arm: the
     points of `sampled_arm` are too far apart for a thin tip."""
-    return float(_growths_and_wave_numbers(rod.F, end_coefficients(rod))[0].max())
+    return float(_growths_and_wave_numbers(rod.F, local_coefficients_at_ends(rod))[0].max())
 
 
-def end_coefficients(rod: Rod) -> LocalCoefficients:
+def local_coefficients_at_ends(rod: Rod) -> LocalCoefficients:
     """Local coefficients at the clamp and at the tip of an arm, each (2,)."""
     return rod.local_coefficients(np.nextafter([0.0, 1.0], [1.0, 0.0]))
 
@@ -105,10 +107,10 @@ def local_wave_numbers(w: Any, F: float, coefficients: LocalCoefficients) -> Arr
     return bound
 
 
-def wave_numbers_of_growth_at_ends(rod: Rod) -> Array:
+def fastest_growing_wave_numbers_at_ends(rod: Rod) -> Array:
     """Wave numbers |q| of the exponentials at the two ends of an arm that grow at the largest rate of the
     local waves there, (2,); 0 at an end at which all local waves decay."""
-    coefficients = end_coefficients(rod)
+    coefficients = local_coefficients_at_ends(rod)
     growth, _ = _growths_and_wave_numbers(rod.F, coefficients)
     return np.where(growth > 0, local_wave_numbers(growth, rod.F, coefficients), 0.0)
 
@@ -172,7 +174,7 @@ def _sampled_growth_and_wave_number(
     g < 0 the growth rate may have a maximum at K = 0 only, or no maximum. Arguments: as in
     `_scaled_growth_and_wave_number`, (..., 1)."""
     product = c2 * gamma3
-    K = max_K * K_FRACTIONS
+    K = max_K * SQUARED_WAVE_NUMBER_RATIOS
     # Both branches of each `where` are evaluated, also where they divide by 0.
     with np.errstate(all="ignore"):
         constant = K * (max_K - K)
@@ -185,5 +187,5 @@ def _sampled_growth_and_wave_number(
     # Also turns nan into a wave that does not grow.
     rates = np.where(rates > 0, rates, 0.0)
     max_rate = rates.max(axis=-1)
-    fractions = K_FRACTIONS[rates.argmax(axis=-1)]
+    fractions = SQUARED_WAVE_NUMBER_RATIOS[rates.argmax(axis=-1)]
     return max_rate, np.where(max_rate > 0, np.sqrt(max_K[..., 0] * fractions), 0.0)

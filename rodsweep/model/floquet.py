@@ -1,7 +1,7 @@
 """Stability of a limit cycle from its nontrivial Floquet multipliers and their errors."""
 
 
-def min_unstable_count(outside_count: int, largest_modulus: float, modulus_error: float) -> int:
+def min_unstable_multiplier_count(outside_count: int, largest_modulus: float, modulus_error: float) -> int:
     """Lower bound on the number of nontrivial Floquet multipliers outside the unit circle. 0: the cycle is
     stable; -1: its stability is undecided.
 

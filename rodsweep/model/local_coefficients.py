@@ -9,8 +9,8 @@ from ..arrays import Array
 from .base_coefficients import stiffnesses_and_drags_at_base
 from .compiled.compilation import compiled
 from .material.factors import factors_along
-from .material.stress_strain import bending_factor, shortening
-from .parameters import NON_OPTIONAL_LINEAR_PARAMETERS
+from .material.stress_strain import bending_factor_and_derivatives, shortening
+from .parameters import NON_OPTIONAL_LINEAR_PARAMETER_NAMES
 from .rod import Rod
 
 
@@ -24,7 +24,7 @@ def local_coefficient_array(rods: Sequence[Rod], u: Array, remainder: Array | No
         factors = factors_along(material.profile, rod.taper, u, remainder)
         _write_coefficients(
             material.law_number,
-            tuple(float(at_base[name]) for name in NON_OPTIONAL_LINEAR_PARAMETERS),
+            tuple(float(at_base[name]) for name in NON_OPTIONAL_LINEAR_PARAMETER_NAMES),
             tuple(factors[name].ravel() for name in ("k1", "k2", "k3", "gamma2", "gamma3")),
             coefficients[:, i],
         )
@@ -43,7 +43,7 @@ def _write_coefficients(
         c2 = 1 / (k2 * factors[1][i])
         coefficients[0, i] = nu
         coefficients[1, i] = c2
-        coefficients[2, i] = 1 / (factors[2][i] * bending_factor(law, nu)[0])
+        coefficients[2, i] = 1 / (factors[2][i] * bending_factor_and_derivatives(law, nu)[0])
         coefficients[3, i] = factors[3][i]
         coefficients[4, i] = gamma3 * factors[4][i]
         coefficients[5, i] = nu + F * c2

@@ -10,7 +10,7 @@ from math import inf, isfinite
 from typing import TypeVar
 
 Decorated = TypeVar("Decorated")
-STIFFNESSES = ("k1", "k2")
+STIFFNESS_NAMES = ("k1", "k2")
 """Names of the stiffnesses k. The equations contain the compliances 1/k."""
 
 
@@ -20,22 +20,23 @@ class Range:
 
     contains: Callable[[float], bool]
     description: str
+    """The range as a phrase for messages on invalid values, like "a finite number above 0"."""
     schema_bounds: Mapping[str, float] = field(default_factory=dict)
     """Bounds of the range by JSON schema keyword, like {"minimum": 0}; empty if every number is allowed."""
     remark: str = ""
     """Why some finite numbers above 0 lie outside the range, in parentheses, for messages."""
 
-    def description_for(self, value: float) -> str:
+    def description_for_rejected(self, value: float) -> str:
         """The description of the range, for a message on `value` outside of it; with the remark if value is a
         finite number above 0."""
         return f"{self.description} {self.remark}" if self.remark and 0 < value < inf else self.description
 
-    def finite_description_for(self, value: float) -> str:
-        """`description_for`, for a value that may not be inf even where the range contains inf."""
+    def finite_description_for_rejected(self, value: float) -> str:
+        """`description_for_rejected`, for a value that may not be inf even where the range contains inf."""
         description = self.description.partition(", or inf")[0]
         if "finite" not in description:
             description = description.replace("a number", "a finite number")
-        return description + self.description_for(value).removeprefix(self.description)
+        return description + self.description_for_rejected(value).removeprefix(self.description)
 
     def first_outside(self, values: Iterable[float]) -> float | None:
         """The first number in `values` that lies outside the range; None if the range contains all values."""
@@ -45,25 +46,26 @@ class Range:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Parameter:
     """One parameter of the rod, an element of the table `PARAMETERS`. unit: unit of the value. meaning:
-    phrase for messages, files and figures. allowed: range of the value."""
+    phrase for messages, files and figures. allowed_range: range of the value."""
 
     name: str
+    """Name of the parameter in code, configs and result files."""
     symbol: str
     """Symbol of the paper, in TeX."""
     unit: str
     meaning: str
     remark: str = ""
     """Text that is appended to the meaning of the parameter in result files."""
-    allowed: Range
-    in_linear_problem: bool = True
+    allowed_range: Range
+    is_in_linear_problem: bool = True
     """Whether the transverse linear problem contains the parameter."""
     rigid_adjective: str = ""
     """Adjective for a rod whose parameter is inf, like "inextensible"; empty if inf is not allowed."""
-    optional: bool = False
+    is_optional: bool = False
     """Whether a result file contains the parameter only if the config contains it."""
     default: float | None = None
     """Value of the parameter if a config does not contain it; None if every grid must contain it."""
-    scaled_names: tuple[str, ...] = ()
+    scaled_coefficient_names: tuple[str, ...] = ()
     """Names of the stiffnesses or drags that the value multiplies; empty for a load, a stiffness or a drag. A
     parameter may multiply either stiffnesses or drags, not both, because the covering of a path requires
     equations that are affine in the coordinate of the parameter."""
@@ -71,16 +73,16 @@ class Parameter:
     def __post_init__(self) -> None:
         """Raises ValueError if the parameter scales both stiffnesses and drags."""
         # Along such a path some coefficients would be affine in the value and others in its inverse.
-        if len({name in STIFFNESSES for name in self.scaled_names}) > 1:
+        if len({name in STIFFNESS_NAMES for name in self.scaled_coefficient_names}) > 1:
             raise ValueError(
-                f"{self.name} scales {' and '.join(self.scaled_names)}; "
+                f"{self.name} scales {' and '.join(self.scaled_coefficient_names)}; "
                 "a parameter may scale either stiffnesses or drags"
             )
 
     @property
     def has_inverse_coordinate(self) -> bool:
         """Whether the coordinate of the parameter is 1/value; then the value may be inf."""
-        return bool(self.rigid_adjective or set(self.scaled_names) & set(STIFFNESSES))
+        return bool(self.rigid_adjective or set(self.scaled_coefficient_names) & set(STIFFNESS_NAMES))
 
     def coordinate(self, value: float) -> float:
         """The coordinate, in which the equations are affine: 1/value if `has_inverse_coordinate`, as for a
@@ -106,8 +108,10 @@ class Parameter:
 
     def require_in_range(self, value: float) -> None:
         """Raises ValueError for a value outside the range of the parameter. `Rod` checks F < k1."""
-        if not self.allowed.contains(value):
-            raise ValueError(f"{self.name} = {value} is not {self.allowed.description_for(value)}")
+        if not self.allowed_range.contains(value):
+            raise ValueError(
+                f"{self.name} = {value} is not {self.allowed_range.description_for_rejected(value)}"
+            )
 
 
 MIN_TAPER = 0.01
@@ -124,7 +128,7 @@ def stiffness_parameter(name: str, symbol: str, meaning: str, rigid_adjective: s
         unit="k3/L^2",
         meaning=meaning,
         remark=f"; inf is {rigid_adjective}",
-        allowed=Range(
+        allowed_range=Range(
             lambda value: value > 0 and 1 / value < inf,
             f"a number above 0, or inf for an {rigid_adjective} rod",
             {"exclusiveMinimum": 0},
@@ -143,7 +147,7 @@ PARAMETERS = {
             unit="k3/L^2",
             meaning="follower force",
             remark=" at the tip, along -e1",
-            allowed=Range(isfinite, "a finite number below k1 (negative values pull)"),
+            allowed_range=Range(isfinite, "a finite number below k1 (negative values pull)"),
         ),
         stiffness_parameter("k1", r"\tilde k_1", "stretch stiffness", "inextensible"),
         stiffness_parameter("k2", r"\tilde k_2", "shear stiffness", "unshearable"),
@@ -152,15 +156,19 @@ PARAMETERS = {
             symbol=r"\tilde\gamma_3",
             unit="gamma2 L^2",
             meaning="rotational drag",
-            allowed=Range(lambda value: 0 <= value < inf, "a finite number, 0 or above", {"minimum": 0}),
+            allowed_range=Range(
+                lambda value: 0 <= value < inf, "a finite number, 0 or above", {"minimum": 0}
+            ),
         ),
         Parameter(
             name="gamma1",
             symbol=r"\tilde\gamma_1",
             unit="gamma2",
             meaning="axial drag",
-            allowed=Range(lambda value: 0 < value < inf, "a finite number above 0", {"exclusiveMinimum": 0}),
-            in_linear_problem=False,
+            allowed_range=Range(
+                lambda value: 0 < value < inf, "a finite number above 0", {"exclusiveMinimum": 0}
+            ),
+            is_in_linear_problem=False,
             default=1.0,
         ),
         Parameter(
@@ -169,33 +177,35 @@ PARAMETERS = {
             unit="1",
             meaning="tip radius over base radius",
             remark=" of a circular cone",
-            allowed=Range(
+            allowed_range=Range(
                 lambda value: MIN_TAPER <= value <= MAX_TAPER,
                 f"a number from {MIN_TAPER:g} to {MAX_TAPER:g}",
                 {"minimum": MIN_TAPER, "maximum": MAX_TAPER},
             ),
-            optional=True,
+            is_optional=True,
             default=1.0,
         ),
     )
 }
 """All parameters of the rod by name, in the order of configs, result files and tables."""
 
-NONLINEAR_PARAMETERS = tuple(name for name, parameter in PARAMETERS.items() if not parameter.optional)
+NONLINEAR_ROD_PARAMETER_NAMES = tuple(
+    name for name, parameter in PARAMETERS.items() if not parameter.is_optional
+)
 """Names of the parameters of the nonlinear rod, without the optional parameters."""
-NON_OPTIONAL_LINEAR_PARAMETERS = tuple(
-    name for name in NONLINEAR_PARAMETERS if PARAMETERS[name].in_linear_problem
+NON_OPTIONAL_LINEAR_PARAMETER_NAMES = tuple(
+    name for name in NONLINEAR_ROD_PARAMETER_NAMES if PARAMETERS[name].is_in_linear_problem
 )
 """Names of the parameters of the transverse linear problem, without the optional parameters."""
-OPTIONAL_PARAMETERS = tuple(name for name, parameter in PARAMETERS.items() if parameter.optional)
+OPTIONAL_PARAMETER_NAMES = tuple(name for name, parameter in PARAMETERS.items() if parameter.is_optional)
 """Names of the parameters that a result file contains only if the config contains them."""
-SCALING_PAIRS = tuple(
-    (name, scaled) for name, parameter in PARAMETERS.items() for scaled in parameter.scaled_names
+SCALING_AND_SCALED_NAMES = tuple(
+    (name, scaled) for name, parameter in PARAMETERS.items() for scaled in parameter.scaled_coefficient_names
 )
 """All pairs (parameter name, name of a stiffness or drag that the parameter multiplies)."""
-TRANSVERSE_PARAMETERS = (*NON_OPTIONAL_LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
+TRANSVERSE_PARAMETER_NAMES = (*NON_OPTIONAL_LINEAR_PARAMETER_NAMES, *OPTIONAL_PARAMETER_NAMES)
 """Names of all parameters of the transverse linear problem, optional parameters included."""
-RANGE_CHECKS = [(name, parameter.allowed.contains) for name, parameter in PARAMETERS.items()]
+RANGE_CHECKS = [(name, parameter.allowed_range.contains) for name, parameter in PARAMETERS.items()]
 """(name, predicate) of every parameter; the predicate is True for values in the range. The list is prepared
 once, because sweeps create many rods."""
 FORCE_AND_STRETCH_STIFFNESS = ("F", "k1")
@@ -203,9 +213,9 @@ FORCE_AND_STRETCH_STIFFNESS = ("F", "k1")
 
 
 def parameter_names_except(
-    excluded: str, names: tuple[str, ...] = NON_OPTIONAL_LINEAR_PARAMETERS
+    excluded: str, names: tuple[str, ...] = NON_OPTIONAL_LINEAR_PARAMETER_NAMES
 ) -> tuple[str, ...]:
-    """All names in `names` except `excluded`. names: by default `NON_OPTIONAL_LINEAR_PARAMETERS`."""
+    """All names in `names` except `excluded`. names: by default `NON_OPTIONAL_LINEAR_PARAMETER_NAMES`."""
     return tuple(name for name in names if name != excluded)
 
 

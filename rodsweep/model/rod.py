@@ -15,7 +15,13 @@ from ..arrays import Array
 from .balance import BalanceCoefficients, axial_vector
 from .base_coefficients import stiffnesses_and_drags_at_base, stretch_of_straight_rod
 from .material.rod_material import DEFAULT_MATERIAL, CrossSections, LocalCoefficients, RodMaterial
-from .parameters import PARAMETERS, RANGE_CHECKS, STIFFNESSES, TRANSVERSE_PARAMETERS, with_parameter_fields
+from .parameters import (
+    PARAMETERS,
+    RANGE_CHECKS,
+    STIFFNESS_NAMES,
+    TRANSVERSE_PARAMETER_NAMES,
+    with_parameter_fields,
+)
 
 
 class Crushed(ValueError):
@@ -27,7 +33,9 @@ class NotUniform(ValueError):
 
 
 class Coefficients(NamedTuple):
-    """Coefficients of the transverse operator of a uniform rod, as an argument of compiled functions."""
+    """Coefficients of the transverse operator of a uniform rod, as an argument of compiled functions. F:
+    force in k3/L^2, positive if it compresses the rod. nu: stretch 1 - F/k1 of the straight rod. c2: shear
+    compliance 1/k2, in L^2/k3. gamma3: rotational drag, in gamma2 L^2."""
 
     F: float
     nu: float
@@ -46,12 +54,11 @@ def coefficients_of(values: Mapping[str, Any]) -> Coefficients:
 @dataclass(frozen=True, slots=True, kw_only=True)
 @with_parameter_fields
 class Rod:
-    """A rod under its follower force, with every parameter of the table.
-
-    Every parameter is a field; annotations exist only for parameters that code uses by name. material:
-    constitutive law and profile. Raises ValueError for a parameter outside its range, and Crushed for a force
-    that is not below `crushing_force`.
-    """
+    """A rod under its follower force, with every parameter of the table `PARAMETERS`, which states units.
+    Every parameter is a field; annotations exist only for parameters that code uses by name: follower force F
+    at the tip, stiffnesses k1 and k2 and drags gamma3 and gamma1 at the base, and taper, the tip radius over
+    the base radius. material: constitutive law and profile. Raises ValueError for a parameter outside its
+    range, and Crushed for a force that is not below `crushing_force`."""
 
     F: float
     k1: float
@@ -63,6 +70,7 @@ class Rod:
     values: Mapping[str, float] = field(init=False, repr=False, compare=False)
     """All parameters by name."""
     _coefficients: Coefficients | None = field(init=False, repr=False, compare=False)
+    """The value of `coefficients`; None for an arm that varies or has a nonlinear law."""
 
     def __post_init__(self) -> None:
         values: dict[str, float] = {}
@@ -122,7 +130,7 @@ class Rod:
         return self._coefficients is not None
 
     @property
-    def equivalent_linear_rod_and_rate(self) -> tuple["Rod", float]:
+    def equivalent_linear_rod_and_rate_factor(self) -> tuple["Rod", float]:
         """Returns (linear rod, rate). Eigenvalues of this rod are `rate` times eigenvalues of the linear rod.
         With the bending factor K = B(nu) of this rod's law, the linear rod has the coefficients (F/K, nu, c2
         K, gamma3), and rate = K. Raises NotUniform for an arm that varies."""
@@ -139,7 +147,7 @@ class Rod:
     @property
     def without_nonlinear_parameters(self) -> "Rod":
         """The rod with the same parameters of the linear problem, and default nonlinear parameters."""
-        return Rod(**{name: self.values[name] for name in TRANSVERSE_PARAMETERS}, material=self.material)
+        return Rod(**{name: self.values[name] for name in TRANSVERSE_PARAMETER_NAMES}, material=self.material)
 
     def coordinate(self, parameter_name: str) -> float:
         """Coordinate of a parameter of the rod: 1/k for a stiffness k, otherwise the value."""
@@ -205,18 +213,18 @@ class Rod:
         drag = np.array([self.axial_drag, 1.0, self.rotational_drag])
         return BalanceCoefficients(compliance, drag, self.F, axial_vector(self.nu, 3))
 
-    def sections(self, u: Array) -> CrossSections:
+    def cross_sections_at(self, u: Array) -> CrossSections:
         """Compliances, drags and stretch at points u, (points,); no point may be a break of the profile."""
-        return self.material.sections(self.F, stiffnesses_and_drags_at_base(self.values), u)
+        return self.material.cross_sections_at(self.F, stiffnesses_and_drags_at_base(self.values), u)
 
-    def section_derivatives(
+    def cross_section_derivatives(
         self, parameter_name: str, u: Array, sections: CrossSections | None = None
     ) -> CrossSections:
         """Derivatives of `sections(u)` with respect to the coordinate of a parameter; u: (points,). sections:
         `sections(u)`, if known."""
         slopes = self._derivatives_by_coordinate(parameter_name)
-        known = self.sections(u) if sections is None else sections
-        return self.material.section_derivatives(known, self.F, self.taper, slopes, u)
+        known = self.cross_sections_at(u) if sections is None else sections
+        return self.material.cross_section_derivatives(known, self.F, self.taper, slopes, u)
 
     def balance_coefficient_derivative(self, parameter_name: str) -> BalanceCoefficients:
         """Derivative of `balance_coefficients` with respect to the coordinate of a parameter."""
@@ -232,5 +240,7 @@ class Rod:
         Keys are F, k1, k2, gamma1, gamma3, taper; keys of stiffnesses contain derivatives of compliances.
         Each quantity is a product of coordinates: a derivative is the product of all other factors."""
         unit_values = stiffnesses_and_drags_at_base({**self.values, parameter_name: 1.0})
-        keys = PARAMETERS[parameter_name].scaled_names or (parameter_name,)
-        return {key: float(1 / unit_values[key] if key in STIFFNESSES else unit_values[key]) for key in keys}
+        keys = PARAMETERS[parameter_name].scaled_coefficient_names or (parameter_name,)
+        return {
+            key: float(1 / unit_values[key] if key in STIFFNESS_NAMES else unit_values[key]) for key in keys
+        }

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from ..results.file.provenance import RANK_STATISTICS, blas_kernels_in
+from ..results.file.provenance import RANK_STATISTICS_ATTRIBUTES, blas_kernels_in
 from ..results.file.view import ResultView
 from ..wording import counted, duration, plural
 
@@ -49,9 +49,11 @@ def _dates_clause(attributes: dict[str, Any]) -> str:
 def rank_lines(attributes: dict[str, Any], noun: str) -> list[str]:
     """Lines about the last run: ranks, hosts, points, shard, reason of a stop, and fraction of the time spent
     solving; empty if not stored."""
-    if RANK_STATISTICS[0] not in attributes:
+    if RANK_STATISTICS_ATTRIBUTES[0] not in attributes:
         return []
-    points, busy_seconds, idle_seconds = (np.atleast_1d(attributes[name]) for name in RANK_STATISTICS)
+    points, busy_seconds, idle_seconds = (
+        np.atleast_1d(attributes[name]) for name in RANK_STATISTICS_ATTRIBUTES
+    )
     percent = 100 * busy_seconds / np.maximum(busy_seconds + idle_seconds, 1e-9)
     worst = int(percent.argmin())
     ranks_text = counted(int(attributes["ranks"]), "rank")

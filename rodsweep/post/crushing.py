@@ -10,7 +10,7 @@ from ..errors import InputError
 from ..model.crushing import uncrushed_interval
 from ..model.material.rod_material import RodMaterial
 from ..results.file.view import ResultView
-from .branch_curves import branch_ends, followed_parameter
+from .branch_curves import followed_parameter, followed_range
 from .plane_curves import PlaneParameters
 from .range_unions import ParameterRange
 
@@ -28,7 +28,7 @@ def uncrushed_ranges(view: ResultView, rods: Iterable[int]) -> list[ParameterRan
     """(start, stop) of the followed range of branches without forces that crush the rod, for each of the
     rods; stop <= start if all forces of the range crush the rod. rods: indices among the points of the file.
     """
-    range_start, range_end = branch_ends(view)
+    range_start, range_end = followed_range(view)
     parameter = followed_parameter(view)
     material = material_of_rods(view)
     columns = {name: values.ravel() for name, values in view.point_columns.items()}
@@ -40,6 +40,6 @@ def crushing_ratio(view: ResultView, parameters: PlaneParameters, x: Array, y: A
     """Force divided by the crushing force (zero stretch), at the points x, y of the plane of a phase diagram;
     0 if no force crushes the rod. x, y: values of the parameters, of shapes that broadcast."""
     fixed = {name: np.asarray(values[0]) for name, values in view.parameter_values.items()}
-    values = {"taper": np.asarray(1.0)} | fixed | {parameters.line: x, parameters.row: y}
+    values = {"taper": np.asarray(1.0)} | fixed | {parameters.line_parameter: x, parameters.row_parameter: y}
     force_per_k1 = material_of_rods(view).relative_crushing_forces(values["taper"])
     return np.asarray(values["F"] / (values["k1"] * force_per_k1) + 0 * (x + y))

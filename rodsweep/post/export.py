@@ -53,17 +53,20 @@ def _write_csv(table: Table, separator: str, includes_units: bool, stream: TextI
     csv_writer.writerow(
         column.heading_with_unit if includes_units else column.name for column in table.columns
     )
-    for start in range(0, table.rows, EXPORT_BATCH_ROWS):
-        texts = [column.rows(slice(start, start + EXPORT_BATCH_ROWS)).texts() for column in table.columns]
+    for start in range(0, table.row_count, EXPORT_BATCH_ROWS):
+        texts = [
+            column.with_rows(slice(start, start + EXPORT_BATCH_ROWS)).texts() for column in table.columns
+        ]
         csv_writer.writerows(zip(*texts, strict=True))
 
 
 def _written_table_sentence(table: Table, view: ResultView) -> str:
     """Sentence on the written table: numbers of rows and columns, number of points without a row, and names
     of the other tables."""
-    text = f"{counted(table.rows, 'row')} of {table.name} in {counted(len(table.columns), 'column')}"
-    if table.empty_points:
-        text += f"; {table.empty_points} of {counted(view.variables['status'].size, 'point')} without a row"
+    text = f"{counted(table.row_count, 'row')} of {table.name} in {counted(len(table.columns), 'column')}"
+    if table.point_count_without_rows:
+        points_text = counted(view.variables["status"].size, "point")
+        text += f"; {table.point_count_without_rows} of {points_text} without a row"
     if table.other_tables:
         text += f"; --table takes {enumeration(table.other_tables, 'or')} instead"
     return text

@@ -12,15 +12,15 @@ from math import inf, nan
 import numpy as np
 from numpy.typing import NDArray
 
-from ..model.parameters import OPTIONAL_PARAMETERS, TRANSVERSE_PARAMETERS
+from ..model.parameters import OPTIONAL_PARAMETER_NAMES, TRANSVERSE_PARAMETER_NAMES
 from ..results.file.view import ResultView
 from ..results.layouts.thresholds import CROSSING_KINDS
 from ..sweep.points.points import ParameterLine
 
-UNDECIDED_HOPF_DISTANCE = 1e-9
+HOPF_DISTANCE_OF_UNCERTAIN_SIGN = 1e-9
 """At points of the file that are closer to a Hopf point than this relative distance, the growth rate is
 rounding error."""
-STABILITY_CHANGES = {("hopf", 2), ("restabilization", 0)}
+HOPF_KINDS_CHANGING_STABILITY = {("hopf", 2), ("restabilization", 0)}
 """(kind, number of unstable modes above) of the Hopf points at which the stability of the straight rod
 changes. At all other Hopf points the rod is unstable on both sides."""
 
@@ -53,7 +53,7 @@ class LocatedThreshold:
 
 
 @dataclass(frozen=True, slots=True)
-class UnlocatedThreshold:
+class BracketedThreshold:
     """Interval between two neighbouring points of a file in which the stability of the straight rod changes.
     low, high: parameter values of the two points."""
 
@@ -63,7 +63,7 @@ class UnlocatedThreshold:
     """`hopf` if the rod is unstable above the interval, `restabilization` if the rod is stable above."""
 
 
-def sort_position(change: LocatedThreshold | UnlocatedThreshold) -> float:
+def lowest_position(change: LocatedThreshold | BracketedThreshold) -> float:
     """Parameter value by which thresholds are sorted: the position, or the lower end of a bracketing
     interval."""
     return change.position if isinstance(change, LocatedThreshold) else change.low
@@ -83,18 +83,18 @@ class StoredThresholds:
         self.growth_rates = variables[growth_rate_name].reshape(point_count, -1)[:, 0]
         missing = {
             optional_parameter
-            for optional_parameter in OPTIONAL_PARAMETERS
+            for optional_parameter in OPTIONAL_PARAMETER_NAMES
             if not {f"hopf_{optional_parameter}", f"change_{optional_parameter}"} & variables.keys()
         }
         self.other_parameters = [
             other_parameter
-            for other_parameter in TRANSVERSE_PARAMETERS
+            for other_parameter in TRANSVERSE_PARAMETER_NAMES
             if other_parameter not in {name, *missing}
         ]
         self.thresholds_by_rod: dict[tuple[float, ...], list[LocatedThreshold]] = {}
         if "hopf_along" in variables:  # a user may have dropped the variable from a Dataset
             self._add_thresholds(
-                variables, name, "hopf", variables["hopf_along"] == TRANSVERSE_PARAMETERS.index(name)
+                variables, name, "hopf", variables["hopf_along"] == TRANSVERSE_PARAMETER_NAMES.index(name)
             )
         if "change_kind" in variables and name == "F":
             self._add_thresholds(variables, name, "change", np.ones(len(variables["change_kind"]), bool))
@@ -113,48 +113,50 @@ class StoredThresholds:
         for i in np.flatnonzero(is_chosen):
             parameter = float(positions[i])
             word = CROSSING_KINDS[int(kinds[i])]
-            if word == "onset" or counts is None or (word, int(counts[i])) in STABILITY_CHANGES:
+            if word == "onset" or counts is None or (word, int(counts[i])) in HOPF_KINDS_CHANGING_STABILITY:
                 absolute_error = float(errors[i]) * (abs(parameter) or 1.0)
                 rate = nan if word == "onset" else float(frequency[i])
                 point = LocatedThreshold(parameter, absolute_error, word, rate)
                 self.thresholds_by_rod.setdefault(tuple(rods[i].tolist()), []).append(point)
 
-    def thresholds_up_to_end(self, line: ParameterLine) -> list[LocatedThreshold | UnlocatedThreshold]:
+    def thresholds_up_to_end(self, line: ParameterLine) -> list[LocatedThreshold | BracketedThreshold]:
         """Thresholds from the start of the search to the largest parameter value of a line of points."""
-        return sorted({*self.thresholds_on(line), *self._stored_between(line, -inf)}, key=sort_position)
+        return sorted(
+            {*self.thresholds_on_line(line), *self._located_between(line, -inf)}, key=lowest_position
+        )
 
-    def _stored_between(self, line: ParameterLine, low: float) -> list[LocatedThreshold]:
+    def _located_between(self, line: ParameterLine, low: float) -> list[LocatedThreshold]:
         """Located thresholds between the parameter value `low` and the largest parameter value of a line."""
-        rod = tuple(line.parameters[other_parameter] for other_parameter in self.other_parameters)
-        high = float(line.x.max(initial=-inf))
+        rod = tuple(line.other_parameters[other_parameter] for other_parameter in self.other_parameters)
+        high = float(line.values.max(initial=-inf))
         return [point for point in self.thresholds_by_rod.get(rod, []) if _lies_between(point, low, high)]
 
-    def thresholds_on(self, line: ParameterLine) -> list[LocatedThreshold | UnlocatedThreshold]:
+    def thresholds_on_line(self, line: ParameterLine) -> list[LocatedThreshold | BracketedThreshold]:
         """Thresholds on a line of points, in increasing order of the parameter; an empty list for a line
         without points.
 
         Two neighbouring points bracket a change of stability if their growth rates differ in sign and the
         number of located changes of stability between them is even, because a search failed.
         """
-        if not len(line.x):
+        if not len(line.values):
             return []
-        stored_thresholds = self._stored_between(line, float(line.x.min()))
-        thresholds: list[LocatedThreshold | UnlocatedThreshold] = [*stored_thresholds]
+        stored_thresholds = self._located_between(line, float(line.values.min()))
+        thresholds: list[LocatedThreshold | BracketedThreshold] = [*stored_thresholds]
         changes = [point for point in stored_thresholds if point.changes_stability]
         finite_indices = np.flatnonzero(np.isfinite(self.growth_rates[line.indices]))
-        sorted_indices = finite_indices[np.argsort(line.x[finite_indices], kind="stable")]
-        x = line.x[sorted_indices]
+        sorted_indices = finite_indices[np.argsort(line.values[finite_indices], kind="stable")]
+        x = line.values[sorted_indices]
         is_growing = self.growth_rates[line.indices[sorted_indices]] > 0
         for i in np.flatnonzero(is_growing[1:] != is_growing[:-1]):
             low = float(x[i])
             high = float(x[i + 1])
             kind = "hopf" if is_growing[i + 1] else "restabilization"
             if sum(_lies_between(point, low, high) for point in changes) % 2 == 0:
-                thresholds.append(UnlocatedThreshold(low, high, kind))
-        return sorted(thresholds, key=sort_position)
+                thresholds.append(BracketedThreshold(low, high, kind))
+        return sorted(thresholds, key=lowest_position)
 
 
 def _lies_between(point: LocatedThreshold, low: float, high: float) -> bool:
     """Whether a located threshold lies between `low` and `high`, within its error or rounding error."""
-    margin = max(point.error, UNDECIDED_HOPF_DISTANCE * abs(point.position))
+    margin = max(point.error, HOPF_DISTANCE_OF_UNCERTAIN_SIGN * abs(point.position))
     return bool(low - margin <= point.position <= high + margin)

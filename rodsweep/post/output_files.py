@@ -30,7 +30,7 @@ def require_output_path(output: Path, endings: Sequence[str], noun: str, inputs:
 
 
 @contextmanager
-def replaced_file(output: Path) -> Iterator[Path]:
+def temporary_output_path(output: Path) -> Iterator[Path]:
     """Context manager that yields a temporary path beside `output`, with the same suffix, and at the end
     renames the file that was written there to `output`.
 
@@ -53,18 +53,18 @@ def replaced_file(output: Path) -> Iterator[Path]:
 @contextmanager
 def atomic_write(output: Path) -> Iterator[TextIO]:
     """Context manager that opens a text file for writing, which takes the name `output` at the end; see
-    `replaced_file`."""
-    with replaced_file(output) as partial, partial.open("w", newline="", encoding="utf-8") as stream:
+    `temporary_output_path`."""
+    with temporary_output_path(output) as partial, partial.open("w", newline="", encoding="utf-8") as stream:
         yield stream
 
 
 def save_figure(figure: "Figure", output: Path) -> None:
-    """Writes a figure in the format that the suffix of `output` names; see `replaced_file`.
+    """Writes a figure in the format that the suffix of `output` names; see `temporary_output_path`.
 
     The figure is drawn in memory first: on a full disk, matplotlib's own writer of PDF ends with an error of
     its compression instead of an OSError.
     """
     image = BytesIO()
     figure.savefig(image, format=output.suffix.removeprefix("."))
-    with replaced_file(output) as partial:
+    with temporary_output_path(output) as partial:
         partial.write_bytes(image.getvalue())

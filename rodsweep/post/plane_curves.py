@@ -5,26 +5,26 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arrays import Array
-from ..model.parameters import NON_OPTIONAL_LINEAR_PARAMETERS
+from ..model.parameters import NON_OPTIONAL_LINEAR_PARAMETER_NAMES
 from ..results.file.view import ResultView
 
 
 class PlaneParameters(NamedTuple):
-    """Names of the parameters of a phase diagram. line: parameter that varies along a row. row: parameter
-    that is constant on a row."""
+    """Names of the parameters of a phase diagram. line_parameter: parameter that varies along a row.
+    row_parameter: parameter that is constant on a row."""
 
-    line: str
-    row: str
+    line_parameter: str
+    row_parameter: str
 
 
 def plane_parameters(view: ResultView) -> PlaneParameters:
     """Names of the parameters of a phase diagram."""
-    line = next(name for name in NON_OPTIONAL_LINEAR_PARAMETERS if name not in view.parameters)
+    line = next(name for name in NON_OPTIONAL_LINEAR_PARAMETER_NAMES if name not in view.parameters)
     row = next((name for name in view.parameters if len(view.parameter_values[name]) > 1), view.parameters[0])
     return PlaneParameters(line, row)
 
 
-def curve_paths(
+def points_by_curve(
     view: ResultView, parameters: PlaneParameters, prefix: str, kind: int | None = None
 ) -> dict[int, Array]:
     """Points of each curve of a phase diagram, (n, 2), by number of the curve. prefix: "curve" for boundary

@@ -38,7 +38,7 @@ def draw_work_precision(measurements: Table, xlabel: str, target: float | None, 
     columns = {name: np.array(measurements[name]) for name in ("case", "method", "group", "seconds", "error")}
     has_error = np.isfinite(columns["error"])
     cases, methods, groups, seconds, errors = (values[has_error] for values in columns.values())
-    curve_looks = _curve_looks(dict(zip(methods.tolist(), groups.tolist(), strict=True)))
+    curve_looks = _plot_keywords_by_method(dict(zip(methods.tolist(), groups.tolist(), strict=True)))
     titles = list(dict.fromkeys(cases.tolist()))
     is_wide = np.nanmax(seconds) > MIN_RATIO_FOR_DECADE_LABELS * np.nanmin(seconds)
     column_count = ceil(sqrt(len(titles)))
@@ -71,7 +71,7 @@ def draw_work_precision(measurements: Table, xlabel: str, target: float | None, 
         save_figure(figure, output)
 
 
-def _curve_looks(groups: dict[str, str]) -> dict[str, dict]:
+def _plot_keywords_by_method(groups: dict[str, str]) -> dict[str, dict]:
     """Keywords of matplotlib for the curve of each method: a colour for each group, a marker for each method
     of a group."""
     order = list(dict.fromkeys(groups.values()))

@@ -8,14 +8,14 @@ from typing import Any, TypeVar
 import numpy as np
 
 from ..solve_progress import report
-from .backend.petsc import PETSC_ERRORS
+from .backend.petsc import PETSC_EXCEPTIONS
 from .unsolvable import Unsolvable
 
 Outcome = TypeVar("Outcome", bound=Any)
 """Result of a solver: a dataclass with the field `seconds`."""
 
 
-FAILURES = (*PETSC_ERRORS, Unsolvable, ArithmeticError, MemoryError, np.linalg.LinAlgError)
+FAILURE_EXCEPTIONS = (*PETSC_EXCEPTIONS, Unsolvable, ArithmeticError, MemoryError, np.linalg.LinAlgError)
 """Exceptions that are treated as a failed solve; any other exception is a bug and ends the run."""
 
 
@@ -24,14 +24,14 @@ def outcome_or_failure(
     failed: Callable[[str], Outcome],
     more_failures: tuple[type[Exception], ...] = (),
 ) -> Outcome:
-    """Result of `solve()`, or of `failed(cause)` after an exception in `FAILURES` or `more_failures`; the
-    field `seconds` is set to the duration. Any other exception is raised."""
+    """Result of `solve()`, or of `failed(cause)` after an exception in `FAILURE_EXCEPTIONS` or
+    `more_failures`; the field `seconds` is set to the duration. Any other exception is raised."""
     started = time.perf_counter()
     try:
         with np.errstate(all="ignore"):
             report()
             outcome = solve()
-    except (*FAILURES, *more_failures) as error:
+    except (*FAILURE_EXCEPTIONS, *more_failures) as error:
         outcome = failed(cause_of(error))
     return replace(outcome, seconds=time.perf_counter() - started)
 

@@ -13,6 +13,7 @@ class PointStatus(IntEnum):
     sentence: str
     """Cause of the status and remedy, for the user."""
     succeeded: bool
+    """Whether the status means success: the results of the point are complete."""
 
     def __new__(cls, value: int, sentence: str, succeeded: bool = False) -> Self:
         member = int.__new__(cls, value)

@@ -16,7 +16,7 @@ from types import ModuleType
 from typing import Any
 
 
-class _CalledPackage(ModuleType):
+class _CallablePackage(ModuleType):
     """Class of this package, callable: `rs.sweep(...)` calls `rodsweep.api.sweeping.sweep(...)`."""
 
     @property
@@ -34,4 +34,4 @@ class _CalledPackage(ModuleType):
         return self.__wrapped__(*words, **keywords)
 
 
-sys.modules[__name__].__class__ = _CalledPackage
+sys.modules[__name__].__class__ = _CallablePackage

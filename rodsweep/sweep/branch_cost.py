@@ -27,7 +27,7 @@ BRANCH_FORCE_OVER_BENDING_EXPONENT = 1.5
 MEASURED_TAPER_RANGE = (0.5, 1.5)
 """Smallest and largest taper of the cones in the measurement of BRANCH_SECONDS_PER_FORCE. A cone of taper
 0.19 takes some hundred times as long as the formula says, swelling rubber thirty times."""
-MAX_MEASURED_FORCE_TO_CRUSHING = 0.9
+MAX_MEASURED_FORCE_OVER_CRUSHING_FORCE = 0.9
 """Largest force, divided by the crushing force, for which the formula of BRANCH_SECONDS_PER_FORCE holds."""
 
 
@@ -42,7 +42,7 @@ def branches_cost(
     sampled point has a rod.
     """
     indices = sampled_points_with_rod(points)
-    values: dict[str, Array | float] = points.values_of(indices) | {
+    values: dict[str, Array | float] = points.parameter_values_of_points(indices) | {
         # The costly end of the range stands for the whole branch, on which the steps there dominate.
         parameter_name: limits[parameter_name in COSTLIER_IF_LARGER]
     }
@@ -81,6 +81,6 @@ def _underestimated_rods_text(
     relative_load = np.asarray(values["F"] / (values["k1"] * np.minimum(taper, 1.0) ** 2))
     return (
         "branches near the crushing force"
-        if bool((relative_load > MAX_MEASURED_FORCE_TO_CRUSHING).any())
+        if bool((relative_load > MAX_MEASURED_FORCE_OVER_CRUSHING_FORCE).any())
         else ""
     )

@@ -20,11 +20,11 @@ CHUNK_SECONDS = 0.1
 CHUNK_SECONDS_PER_RANK = 1e-3
 """Planned time of a chunk in a run with many ranks, in s per rank. The first rank answers a request in 50
 microseconds and so spends a twentieth of its time on answers."""
-MAX_CHUNK_TIME_TO_PLANNED = 3.0
+MAX_CHUNK_TIME_OVER_PLANNED_TIME = 3.0
 """Time after which a rank returns the unsolved items of a chunk to the queue, over the planned time."""
 MAX_CHUNK_ITEMS = 1 << 16
 """Maximum number of items in a chunk."""
-MIN_QUEUED_PER_RANK_FOR_ADVANCE = 4
+MIN_QUEUED_ITEMS_PER_RANK_FOR_ADVANCE = 4
 """A rank gets its next chunk in advance only if the queue has at least this number of items per rank."""
 NO_WORK_LEFT: IndexRange = (0, 0)
 """Empty range of items: the answer to a request for a chunk if no item is left to solve."""
@@ -40,15 +40,15 @@ def chunk_seconds(rank_count: int) -> float:
 class RankReport:
     """Report of a rank on its last chunk, sent with the request for the next chunk."""
 
-    finished_items: int = 0
+    finished_item_count: int = 0
     """Number of items finished since the last report."""
     seconds: float = 0.0
     """Time spent since the last report, in s."""
     returned_items: IndexRange = NO_WORK_LEFT
     """Range of the items of the last chunk that the rank did not solve."""
-    stored_points: int = 0
+    stored_point_count: int = 0
     """Number of points that the rank has stored in its journal since the last report."""
-    is_in_advance: bool = False
+    is_request_in_advance: bool = False
     """Whether the rank requests the next chunk in advance, at the start of the current chunk."""
     stop_signal: str = ""
     """Name of the stop signal that the rank received, or empty. Items returned after a stop signal are left
@@ -82,9 +82,9 @@ class ChunkQueue:
             # The first report of a rank belongs to no chunk.
             if self.outstanding[rank]:
                 self.outstanding[rank] -= 1
-            self.stored_points += report.stored_points
-            if report.finished_items:
-                self.seconds_per_item[rank] = report.seconds / report.finished_items
+            self.stored_points += report.stored_point_count
+            if report.finished_item_count:
+                self.seconds_per_item[rank] = report.seconds / report.finished_item_count
             start, end = report.returned_items
             if end > start and not self.is_stopped:
                 # Pessimistic, so that its next chunk is one item.
@@ -106,7 +106,7 @@ class ChunkQueue:
         """The next chunk for a rank that still works on a chunk; None if few items are left in the queue."""
         with self.change:
             # Near the end a chunk handed out early would wait on a busy rank while another rank is idle.
-            if self.unsolved and self.items_left >= MIN_QUEUED_PER_RANK_FOR_ADVANCE * self.rank_count:
+            if self.unsolved and self.items_left >= MIN_QUEUED_ITEMS_PER_RANK_FOR_ADVANCE * self.rank_count:
                 return self._pop_chunk(rank)
             return None
 
@@ -161,7 +161,7 @@ class DependentItemQueue(ChunkQueue):
     def add_report(self, rank: int, report: RankReport) -> None:
         """Adds the results in a rank's report; an item without a result can be chosen again."""
         with self.change:
-            self.stored_points += report.stored_points
+            self.stored_points += report.stored_point_count
             self.results |= report.results
             # A new result may change the choice of all items, so it is made anew when a rank next asks.
             self._items_to_solve = None

@@ -71,7 +71,9 @@ class ChunkServer:
         self.thread: threading.Thread | None = None
         if ranks.size > 1:
             # A daemon, so that an exception on this rank does not wait for the thread.
-            self.thread = threading.Thread(target=self._serve_until_over, name="chunk queue", daemon=True)
+            self.thread = threading.Thread(
+                target=self._serve_until_all_ranks_finish, name="chunk queue", daemon=True
+            )
             self.thread.start()
 
     def next_chunk(self, report: RankReport) -> IndexRange:
@@ -87,7 +89,7 @@ class ChunkServer:
                 self.queue.change.wait(IDLE_FIRST_RANK_WAIT_SECONDS)
             self.poll_messages()
             for position in list(self.positions.values())[:1]:
-                self.show_position(position.text, self._sum_of_fractions())
+                self.show_position(position.text, self._sum_of_done_fractions())
         return chunk
 
     def close(self) -> None:
@@ -100,9 +102,9 @@ class ChunkServer:
     def report_position(self, position: SolvePosition) -> None:
         """Displays the progress of the first rank within a long point."""
         self.positions[0] = position
-        self.show_position(position.text, self._sum_of_fractions())
+        self.show_position(position.text, self._sum_of_done_fractions())
 
-    def _sum_of_fractions(self) -> float:
+    def _sum_of_done_fractions(self) -> float:
         """Sum of the fractions done of all unfinished points on all ranks."""
         # A copy, because the thread may change the dictionary meanwhile.
         return sum(position.completed_fraction or 0.0 for position in list(self.positions.values()))
@@ -156,10 +158,10 @@ class ChunkServer:
             self.positions[rank] = comm.recv(source=rank, tag=PROGRESS_TAG)
 
     def _handle_report(self, rank: int, report: RankReport) -> None:
-        """Handles the report of a rank. A request made in advance (`report.is_in_advance`) is answered
-        immediately if enough items are left. Any other request is queued, unless the rank already has its
-        next chunk from a request made in advance."""
-        if report.is_in_advance:
+        """Handles the report of a rank. A request made in advance (`report.is_request_in_advance`) is
+        answered immediately if enough items are left. Any other request is queued, unless the rank already
+        has its next chunk from a request made in advance."""
+        if report.is_request_in_advance:
             if (chunk := self.queue.next_chunk_in_advance(rank)) is not None:
                 self.ranks.comm.send(chunk, dest=rank, tag=ANSWER_TAG)
                 self.answered_in_advance.add(rank)
@@ -174,7 +176,7 @@ class ChunkServer:
         else:
             self.waiting_ranks.append(rank)
 
-    def _serve_until_over(self) -> None:
+    def _serve_until_all_ranks_finish(self) -> None:
         """Body of the thread: answers messages of the other ranks until all of them have finished."""
         with self.ranks.abort_all_ranks_on_error():
             while self.working_ranks:
@@ -204,7 +206,7 @@ class ChunkClient:
             wait_seconds = min(CHUNK_POLL_GROWTH * wait_seconds, LONGEST_CHUNK_POLL_SECONDS)
         chunk: IndexRange = self.comm.recv(source=0, tag=ANSWER_TAG)
         if chunk != NO_WORK_LEFT:
-            self.comm.send(RankReport(is_in_advance=True), dest=0, tag=REQUEST_TAG)
+            self.comm.send(RankReport(is_request_in_advance=True), dest=0, tag=REQUEST_TAG)
         return chunk
 
     def report_position(self, position: SolvePosition) -> None:

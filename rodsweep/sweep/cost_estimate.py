@@ -42,7 +42,7 @@ to 0.43 for the first solve of six tasks beyond the time of the second."""
 MAX_EXTRA_MODES_OF_FOLLOWED_ARM = 9
 """Eigenvalues of an arm are followed only if its number of unstable modes exceeds the number of requested
 modes by at most this number."""
-GROUP_START_TIME_RATIO = 2.0
+GROUP_START_TO_SINGLE_POINT_TIME = 2.0
 """Time of the first point of a group, divided by the time of a point that is solved alone."""
 FOLLOWED_POINT_MS = 0.006
 """Time per point of a group, in which eigenvalues are continued from a neighbouring point, in ms."""
@@ -64,14 +64,14 @@ BEYOND_SHEAR_STIFFNESS_TEXT = "rods under a pull beyond the shear stiffness"
 times as long as estimated, one 800 times; the time grows as gamma3 decreases."""
 MAX_SQUARED_WAVE_NUMBER = 1e8
 """Squared wave number, in 1/L^2, above which a spectrum takes no longer: no allowed mesh resolves it."""
-TWO_MESHES_TO_ROOTS_TIME = 8.0
+TWO_MESHES_TIME_OVER_ROOTS_TIME = 8.0
 """Time of a spectrum by Krylov-Schur on two meshes, divided by the time by roots of D: mean over 800 rods."""
-TWO_MESHES_TO_ROOTS_EXTRA_TIME = 0.05
+EXTRA_TWO_MESHES_TIME_OVER_ROOTS_TIME = 0.05
 """Additional time of soft or pulled rods by Krylov-Schur on two meshes, which finds only the requested modes,
 divided by the additional time by roots of D; three rods."""
-FINER_MESH_RATIO = 4 / 3
+FINER_MESH_UNKNOWNS_RATIO = 4 / 3
 """Ratio of the numbers of unknowns of the second and the first mesh, in a spectrum by Krylov-Schur."""
-MODES_MS = 0.4
+MODES_MS_PER_SQUARED_MODE_COUNT = 0.4
 """Time of the eigenvectors at one point divided by the square of the number of modes, in ms: mean over 24
 rods with 4, 8 and 12 modes each. The time is quadratic because the mesh grows with the number of modes."""
 PULLED_MODES_MS_PER_SQUARED_LAYER_WAVE_NUMBER = 0.012
@@ -80,7 +80,7 @@ the squared wave number of the layers, in ms L^2: 0.009 to 0.022 for nine rods w
 714, 0.004 and 0.008 for two cones."""
 MAX_RESOLVED_WAVE_NUMBER = 1000.0
 """Wave number of layers, in 1/L, above which modes take no longer: already the spectrum is not resolved."""
-GROWTH_MS = 55.0
+TRANSIENT_GROWTH_MS = 55.0
 """Time of the transient growth of one rod, in ms: mean over the 24 rods, 52 to 75 ms with 2 to 12 modes."""
 MEMORY_PER_UNKNOWN = 40_000
 """Memory of a rank per unknown of its largest mesh, in bytes."""
@@ -96,7 +96,7 @@ class CostEstimate:
     """Time of the whole sweep on one rank, in s."""
     memory_bytes: int = BASE_MEMORY
     """Memory of a rank, in bytes."""
-    unknowns: tuple[int, int] | None = None
+    unknown_count_range: tuple[int, int] | None = None
     """Smallest and largest number of unknowns of the sampled points' meshes; None if not estimated."""
     too_large_mesh_count: int = 0
     """Number of sampled points whose mesh would need more than RESOLUTION_SETTINGS.max_unknowns unknowns."""
@@ -122,9 +122,15 @@ def modes_cost(
     waves = np.array([_layer_wave_number(_squared_wave_number(rod)) for rod in rods] or [0.0])
     resolved = waves[waves <= MAX_RESOLVED_WAVE_NUMBER]
     layers_ms = PULLED_MODES_MS_PER_SQUARED_LAYER_WAVE_NUMBER * float((resolved**2).sum()) / waves.size
-    point_ms = MODES_MS * mode_count**2 + layers_ms + (GROWTH_MS if includes_growth else 0)
+    point_ms = (
+        MODES_MS_PER_SQUARED_MODE_COUNT * mode_count**2
+        + layers_ms
+        + (TRANSIENT_GROWTH_MS if includes_growth else 0)
+    )
     extra_seconds = points.count * 1e-3 * point_ms
-    return replace(spectra_estimate, seconds=spectra_estimate.seconds + extra_seconds, unknowns=None)
+    return replace(
+        spectra_estimate, seconds=spectra_estimate.seconds + extra_seconds, unknown_count_range=None
+    )
 
 
 def followed_spectra_cost(
@@ -132,11 +138,10 @@ def followed_spectra_cost(
 ) -> CostEstimate:
     """Estimated cost of the spectra of `points` followed along groups. alone: cost of solving every
     point alone. mode_count: number of eigenvalues."""
-    ratio = GROUP_START_TIME_RATIO * groups.count / points.count
+    ratio = GROUP_START_TO_SINGLE_POINT_TIME * groups.count / points.count
     rods = [points.rod(int(index)) for index in sampled_points_with_rod(points)]
-    point_ms = (
-        FOLLOWED_ARM_POINT_MS if any(not rod.is_uniform_and_linear for rod in rods) else FOLLOWED_POINT_MS
-    )
+    are_uniform = all(rod.is_uniform_and_linear for rod in rods)
+    point_ms = FOLLOWED_POINT_MS if are_uniform else FOLLOWED_ARM_POINT_MS
     unstable = _unstable_counts_of_arms(rods)
     # Such arms are not followed, so each of their points is solved alone.
     are_alone = unstable > mode_count + MAX_EXTRA_MODES_OF_FOLLOWED_ARM
@@ -153,10 +158,11 @@ def two_meshes_cost(points: Points, mode_count: int, accuracy: float) -> CostEst
     rods = [points.rod(int(index)) for index in sampled_points_with_rod(points)]
     extra = points.count * 1e-3 * float(np.mean([_soft_or_pulled_rod_ms(rod) for rod in rods] or [0.0]))
     # The part for soft and pulled rods is taken out of the factor, as it has a factor of its own.
-    seconds = TWO_MESHES_TO_ROOTS_TIME * (one_mesh.seconds - extra) + TWO_MESHES_TO_ROOTS_EXTRA_TIME * extra
-    low, high = one_mesh.unknowns or (0, 0)
-    unknowns = one_mesh.unknowns and (low, math.ceil(FINER_MESH_RATIO * high))
-    return replace(one_mesh, seconds=seconds, unknowns=unknowns)
+    seconds = TWO_MESHES_TIME_OVER_ROOTS_TIME * (one_mesh.seconds - extra)
+    seconds += EXTRA_TWO_MESHES_TIME_OVER_ROOTS_TIME * extra
+    low, high = one_mesh.unknown_count_range or (0, 0)
+    unknowns = one_mesh.unknown_count_range and (low, math.ceil(FINER_MESH_UNKNOWNS_RATIO * high))
+    return replace(one_mesh, seconds=seconds, unknown_count_range=unknowns)
 
 
 def spectra_cost(points: Points, mode_count: int, accuracy: float, certify: bool) -> CostEstimate:
@@ -171,9 +177,8 @@ def spectra_cost(points: Points, mode_count: int, accuracy: float, certify: bool
     # A rod whose mesh would be larger is refused at once, so it costs no more than the largest mesh.
     n = np.minimum(np.array(counts, dtype=float), RESOLUTION_SETTINGS.max_unknowns)
     dense_ms = SPECTRUM_FIXED_MS + SPECTRUM_MS_PER_UNKNOWN * n + SPECTRUM_MS_PER_CUBED_UNKNOWN * n**3
-    point_ms = np.where(n <= MIN_SPARSE_UNKNOWNS, dense_ms, SPARSE_MS_PER_UNKNOWN * n) + (
-        CERTIFICATE_MS if certify else 0
-    )
+    point_ms = np.where(n <= MIN_SPARSE_UNKNOWNS, dense_ms, SPARSE_MS_PER_UNKNOWN * n)
+    point_ms += CERTIFICATE_MS if certify else 0
     unstable = _unstable_counts_of_arms(rods)
     point_ms += arm_fraction * CERTIFIED_ARM_SPECTRUM_MS + ARM_MS_PER_SQUARED_UNSTABLE_MODE * unstable**2
     point_ms += np.array([_soft_or_pulled_rod_ms(rod) for rod in rods])
@@ -207,7 +212,7 @@ def _squared_wave_number(rod: Rod) -> float:
     if rod.is_uniform_and_linear:
         return rod.F * rod.g
     # The unstable modes of arms are counted in `spectra_cost`.
-    local = sampled_arm(rod).local
+    local = sampled_arm(rod).local_coefficients
     return min(rod.F, 0.0) * float(np.max(local.c3 * np.maximum(local.g, 0.0)))
 
 
@@ -220,7 +225,7 @@ def _layer_wave_number(squared_wave_number: float) -> float:
 
 def _is_beyond_shear_stiffness(rod: Rod) -> bool:
     """Whether the pull on a rod exceeds its shear stiffness somewhere: g = nu + F c2 < 0."""
-    g = rod.g if rod.is_uniform_and_linear else float(np.min(sampled_arm(rod).local.g))
+    g = rod.g if rod.is_uniform_and_linear else float(np.min(sampled_arm(rod).local_coefficients.g))
     return rod.F < 0 and g < 0
 
 

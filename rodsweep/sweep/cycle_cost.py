@@ -33,7 +33,7 @@ def cycles_cost(points: Points, first_count: int) -> CostEstimate:
     mode; all other cycles are computed from a neighbour's cycle."""
     indices = sampled_points_with_rod(points)
     # Without any rod in the model nothing is pulled, as for F = 0.
-    F = np.asarray(points.values_of(indices)["F"]) if indices.size else np.zeros(1)
+    F = np.asarray(points.parameter_values_of_points(indices)["F"]) if indices.size else np.zeros(1)
     pulled_count = points.count * float(np.mean(-MIN_PULL_OF_SLOW_MOTION >= F))
     seconds = first_count * CYCLE_FROM_MODE_SECONDS + (points.count - first_count) * CHAINED_CYCLE_SECONDS
     doubt = UNDERESTIMATED_CYCLES_TEXT if bool((F > MAX_FORCE_OF_MEASURED_CYCLES).any()) else ""

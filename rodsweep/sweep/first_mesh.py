@@ -12,7 +12,7 @@ from ..discretization.elements.resolution import expected_wave_number, resolutio
 from ..discretization.straight.arm_resolution import arm_mesh
 from ..model.dispersion import largest_growth_and_wave_number
 from ..model.rod import Crushed, Rod
-from ..solve.changes.search_range import end_below_crushing
+from ..solve.changes.search_range import search_end_below_crushing
 from .cost_estimate import sampled_points_with_rod
 from .points.points import Points
 
@@ -22,7 +22,7 @@ def spectrum_mesh(rod: Rod, mode_count: int, accuracy: float) -> Elements:
     mesh."""
     if not rod.is_uniform:
         return arm_mesh(rod, mode_count, accuracy)
-    _, wave_number = largest_growth_and_wave_number(rod.equivalent_linear_rod_and_rate[0])
+    _, wave_number = largest_growth_and_wave_number(rod.equivalent_linear_rod_and_rate_factor[0])
     resolution = resolution_for(expected_wave_number(mode_count, wave_number), accuracy)
     return Elements(equal_edges(resolution.element_count), resolution.order)
 
@@ -37,7 +37,7 @@ def largest_first_mesh(
     rod is searched, by name of the parameter; meshes are compared at these values.
     """
     # The finest meshes belong to extreme parameter values, which evenly spaced points may miss.
-    indices = {*list_of(sampled_points_with_rod(points)), *_corners(points)}
+    indices = {*list_of(sampled_points_with_rod(points)), *_grid_corner_indices(points)}
     rods = (
         rod
         for point_rod in _uncrushed_rods(points, sorted(indices))
@@ -63,7 +63,7 @@ def _rods_at_parameter_ends(rod: Rod, parameter_ends: Mapping[str, Array]) -> It
             # The other parameters come first, because they set the crushing force.
             force = end_values.pop("F")
             end_rod = rod.with_values(**end_values)
-            yield end_rod.with_values(F=end_below_crushing(end_rod, force))
+            yield end_rod.with_values(F=search_end_below_crushing(end_rod, force))
             continue
         try:
             yield rod.with_values(**end_values)
@@ -71,7 +71,7 @@ def _rods_at_parameter_ends(rod: Rod, parameter_ends: Mapping[str, Array]) -> It
             continue
 
 
-def _corners(points: Points) -> Iterator[int]:
+def _grid_corner_indices(points: Points) -> Iterator[int]:
     """Yields the flat indices of the corners of a grid at which the rod model applies; none for a list."""
     if not points.axes:
         return

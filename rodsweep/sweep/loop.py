@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..solve_progress import SolveStopped, reporting_to
-from .chunk_queue import MAX_CHUNK_TIME_TO_PLANNED, NO_WORK_LEFT, ChunkQueue, RankReport, chunk_seconds
+from .chunk_queue import MAX_CHUNK_TIME_OVER_PLANNED_TIME, NO_WORK_LEFT, ChunkQueue, RankReport, chunk_seconds
 from .chunk_requests import ChunkClient, ChunkServer
 from .points.ranges import IndexRange
 from .ranks import Ranks
-from .stop import RankListener, StopRequest
+from .stop import SolverReportListener, StopRequest
 
 PointIndexOrIndices = int | NDArray[np.int64]
 """Flat index of one point, or flat indices, (n,), of points that are stored together."""
@@ -41,11 +41,11 @@ class ProgressSink(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class RankStatistics:
-    """Statistics of a rank after the sweep. solved_points: number of points that this rank solved.
+    """Statistics of a rank after the sweep. solved_point_count: number of points that this rank solved.
     busy_seconds, idle_seconds: time spent on solving and on waiting, in s. was_interrupted: whether a stop
     request interrupted a solve; a later run repeats this solve."""
 
-    solved_points: int
+    solved_point_count: int
     busy_seconds: float
     idle_seconds: float
     was_interrupted: bool = False
@@ -61,7 +61,7 @@ class SweepCallbacks:
     """Stores the result of a point durably, on the rank that solved it, before the next point begins."""
     prepare: Callable[[], object] = lambda: None
     """Called once, before the first item."""
-    new_results: Callable[[], dict[int, Any]] = dict
+    results_since_last_call: Callable[[], dict[int, Any]] = dict
     """Returns the results of the items stored since the last call, by number of the item; empty if no item
     depends on the results of other items."""
     item_label: Callable[[int], str] = lambda item: ""
@@ -80,7 +80,7 @@ def sweep(
         else ChunkClient(ranks, stop)
     )
     # A stop request during the preparation ends it; the loop below then gets no work.
-    with suppress(SolveStopped), reporting_to(RankListener(requests, stop)):
+    with suppress(SolveStopped), reporting_to(SolverReportListener(requests, stop)):
         callbacks.prepare()
     # Points count from here on, so that the preparation does not lower the rate.
     progress(0)
@@ -119,12 +119,12 @@ class _RankLoop:
             # Measured before the next request, so that waiting counts as idle.
             busy_seconds += chunk_seconds
             report = RankReport(
-                finished_items=next_item - chunk[0],
+                finished_item_count=next_item - chunk[0],
                 seconds=chunk_seconds,
                 returned_items=(next_item, chunk[1]),
-                stored_points=self.solved_points - points_before,
+                stored_point_count=self.solved_points - points_before,
                 stop_signal=self.stop.name,
-                results=self.callbacks.new_results(),
+                results=self.callbacks.results_since_last_call(),
             )
             chunk = self.requests.next_chunk(report)
         if isinstance(self.requests, ChunkServer):
@@ -137,13 +137,13 @@ class _RankLoop:
     def _solve_to_first_unsolved(self, chunk: IndexRange) -> int:
         """Solves the items of a chunk in order; returns the number of the first unsolved item. Later items
         stay unsolved after a stop request, or if the chunk takes too long."""
-        deadline = time.monotonic() + MAX_CHUNK_TIME_TO_PLANNED * chunk_seconds(self.ranks.size)
+        deadline = time.monotonic() + MAX_CHUNK_TIME_OVER_PLANNED_TIME * chunk_seconds(self.ranks.size)
         item = chunk[0]
         points_before = self.solved_points
         while item < chunk[1] and not self.stop:
             try:
                 with reporting_to(
-                    RankListener(self.requests, self.stop, partial(self.callbacks.item_label, item))
+                    SolverReportListener(self.requests, self.stop, partial(self.callbacks.item_label, item))
                 ):
                     self._solve_and_store_item(item, points_before)
             except SolveStopped:

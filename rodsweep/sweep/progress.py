@@ -12,7 +12,7 @@ from rich.progress import BarColumn, Progress, TextColumn
 
 from ..solve_progress import SolvePosition
 from .remaining_time import RemainingTimeEstimator, duration_text, rate_in_words
-from .stop import RankListener, SingleRankCommunication, StopRequest
+from .stop import SingleRankCommunication, SolverReportListener, StopRequest
 
 QUIET_SECONDS = 1.0
 """Seconds before progress is shown for the first time; a shorter sweep shows no progress."""
@@ -70,7 +70,7 @@ class ProgressReporter:
         self.fraction_sum = 0.0
         self.position_text = ""
         shows_bar = on_terminal() if is_bar is None else is_bar
-        self.bar = _bar(title) if shows_bar else None
+        self.bar = _progress_bar(title) if shows_bar else None
         if self.bar is not None:
             self.task = self.bar.add_task(title, total=total, count="", rate="", left="", where="")
 
@@ -133,17 +133,17 @@ Display = ProgressReporter | SilentProgress
 """Progress display, or its silent substitute."""
 
 
-def display_listener(display: Display, name: str) -> RankListener:
+def display_listener(display: Display, name: str) -> SolverReportListener:
     """Listener that shows the progress of the solve `name` in the display `display`. Ctrl-C still raises
     KeyboardInterrupt."""
 
     def show(position: SolvePosition) -> None:
         display.show_position(position.text, position.completed_fraction or 0.0)
 
-    return RankListener(SingleRankCommunication(show), StopRequest(), lambda: name)
+    return SolverReportListener(SingleRankCommunication(show), StopRequest(), lambda: name)
 
 
-def _bar(title: str) -> Progress:
+def _progress_bar(title: str) -> Progress:
     """Progress bar on standard error, or in a notebook, that begins with `title`."""
     console = Console() if can_show_notebook_bar() else Console(file=sys.stderr, force_terminal=True)
     fields = (f"{{task.fields[{name}]}}" for name in ("count", "rate", "left", "where"))

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from typing import Any, TypeVar
 
-from ..errors import BUG_STATUS, EnvironmentIncomplete, UserError, import_failure_error
+from ..errors import BUG_EXIT_STATUS, EnvironmentIncomplete, UserError, import_failure_error
 
 T = TypeVar("T")
 S = TypeVar("S")
@@ -101,7 +101,7 @@ class Ranks:
         try:
             yield
         except BaseException as error:
-            if self.size == 1 or getattr(error, "collective", False):
+            if self.size == 1 or getattr(error, "is_collective", False):
                 raise
             if isinstance(error, UserError):
                 sys.stderr.write(f"rodsweep: rank {self.rank}: {error}\n")
@@ -112,7 +112,7 @@ class Ranks:
                 with suppress(OSError):  # a full disk under the log must not prevent the abort
                     stream.flush()
             # The launcher ends with this status, which tells a refusal from a bug.
-            status = error.exit_status if isinstance(error, UserError) else BUG_STATUS
+            status = error.exit_status if isinstance(error, UserError) else BUG_EXIT_STATUS
             self.comm.Abort(status)
             # Reached only if Abort returns, which MPI allows.
             raise SystemExit(status) from error

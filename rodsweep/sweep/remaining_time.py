@@ -9,7 +9,7 @@ included. The module reads no clock: the caller passes all times.
 
 from math import exp
 
-SKIPPED_FRACTION_OF_POINTS = 0.5
+SKIPPED_POINT_FRACTION_FOR_PACE = 0.5
 """The time per point is measured after this fraction of the points that are finished now."""
 MIN_POINTS_FOR_PACE = 2
 """Minimum number of points finished after the first record; with fewer points there is no time per point."""
@@ -18,7 +18,7 @@ MIN_UNFINISHED_FRACTION_SUM = 0.1
 smaller sums, the time of starting up dominates."""
 SMOOTHING_TIME_RATIO = 0.25
 """Time constant of the reported remaining time, divided by the smaller of elapsed and remaining time."""
-RECORDED_POINT_COUNT_RATIO = 1.02
+POINT_COUNT_RATIO_OF_SUCCESSIVE_RECORDS = 1.02
 """Ratio of the numbers of finished points in two successive stored records: about 35 records per doubling."""
 
 
@@ -40,7 +40,7 @@ class RemainingTimeEstimator:
         if finished_count == self.total:
             return 0.0
         if finished_count and (not self.records or finished_count > self.records[-1][0]):
-            self._record(finished_count, now)
+            self._store_record(finished_count, now)
         seconds_per_point = self._seconds_per_point(finished_count, now, fraction_sum)
         if seconds_per_point is None:
             return None
@@ -58,9 +58,12 @@ class RemainingTimeEstimator:
         self.reported = now, expected + weight * (remaining - expected)
         return self.reported[1]
 
-    def _record(self, finished_count: int, now: float) -> None:
+    def _store_record(self, finished_count: int, now: float) -> None:
         """Stores the record (finished, now); thins earlier records to about 35 per doubling of the points."""
-        if len(self.records) > 2 and self.records[-1][0] < RECORDED_POINT_COUNT_RATIO * self.records[-2][0]:
+        if (
+            len(self.records) > 2
+            and self.records[-1][0] < POINT_COUNT_RATIO_OF_SUCCESSIVE_RECORDS * self.records[-2][0]
+        ):
             # The latest record is replaced, not added to, so that a million points need some hundred records.
             self.records.pop()
         self.records.append((finished_count, now))
@@ -81,7 +84,7 @@ class RemainingTimeEstimator:
         earlier_records = (
             record
             for record in reversed(self.records)
-            if record[0] <= SKIPPED_FRACTION_OF_POINTS * finished_count
+            if record[0] <= SKIPPED_POINT_FRACTION_FOR_PACE * finished_count
         )
         earlier_points, earlier_time = next(earlier_records, self.records[0])
         latest_time = self.records[-1][1]

@@ -39,7 +39,7 @@ HOPF_SEARCH_MS = 25.0
 """Time to search one rod for Hopf points, in ms: mean over 90 rods."""
 HOPF_CERTIFICATE_MS = 3.0
 """Time to certify that no Hopf point of a rod is missing, in ms: mean over the 90 rods."""
-HOPF_POINTS_MS = 18.0
+HOPF_NORMAL_FORMS_MS_PER_ROD = 18.0
 """Time of the normal forms of the two or three Hopf points of a rod, in ms: mean over the 90 rods."""
 
 
@@ -56,7 +56,7 @@ def soft_searches_seconds(points: Points, F_max: float, is_varying: bool) -> flo
     indices = sampled_points_with_rod(points)
     if not indices.size:
         return 0.0
-    values = points.values_of(indices)
+    values = points.parameter_values_of_points(indices)
     min_area = np.minimum(np.asarray(values.get("taper", 1.0)), 1.0) ** 2
     with np.errstate(over="ignore"):
         # The search ends where the rod is crushed.
@@ -93,7 +93,7 @@ def criticality_cost(points: Points, F_max: float, certify: bool, is_varying: bo
     """Estimated cost of the Hopf points and normal forms of all rods in `points` for forces up to `F_max`.
     certify: whether each search is certified. is_varying: whether any rod is not uniform."""
     search_ms = HOPF_SEARCH_MS + (HOPF_CERTIFICATE_MS if certify else 0)
-    rod_ms = HOPF_POINTS_MS + (ARM_SEARCH_MS if is_varying else search_ms)
+    rod_ms = HOPF_NORMAL_FORMS_MS_PER_ROD + (ARM_SEARCH_MS if is_varying else search_ms)
     return CostEstimate(points.count * 1e-3 * rod_ms + soft_searches_seconds(points, F_max, is_varying))
 
 
@@ -102,7 +102,7 @@ MAX_SAMPLED_ROWS = 20
 COVERING_MS_PER_BOX = 0.11
 """Time to search one uniform rod under pulls, divided by the number of boxes from which the covering starts,
 in ms: 0.07 to 0.15 for twelve rods with 98 to 2900 boxes."""
-EXTRA_MS_BEYOND_SHEAR_STIFFNESS = 100.0
+EXTRA_MS_FOR_PULL_BEYOND_SHEAR_STIFFNESS = 100.0
 """Further time to search one rod from a pull beyond its shear stiffness, in ms: 110 for six, k2 = 100."""
 ARM_MS_PER_LARGEST_PULL = 0.6
 """Time to search an arm that is not uniform under pulls, divided by the largest pull in k3/L^2, in ms: 0.5 to
@@ -126,7 +126,7 @@ def pulled_rows_seconds(rods: Sequence[Rod], F_values: Array, row_count: int) ->
     seconds_of_rows = [_row_seconds(rod, start) for rod, start in zip(rods, starts, strict=True)]
     # Beyond the shear stiffness g = nu + F c2 is negative somewhere along the arm.
     arms = (sampled_arm(rod.with_values(F=start)) for rod, start in zip(rods, starts, strict=True))
-    is_beyond_shear_stiffness = any(float(np.min(arm.local.g)) < 0 for arm in arms)
+    is_beyond_shear_stiffness = any(float(np.min(arm.local_coefficients.g)) < 0 for arm in arms)
     return row_count * float(
         np.mean(seconds_of_rows)
     ), UNDERESTIMATED_ROWS_TEXT if is_beyond_shear_stiffness else ""
@@ -157,7 +157,7 @@ def _row_seconds(rod: Rod, start_pull: float) -> float:
     covering_ms = COVERING_MS_PER_BOX * (0 if boxes is None else len(boxes))
     drive = start_pull * rod.with_values(F=start_pull).g
     exchanges_ms = (
-        EXTRA_MS_BEYOND_SHEAR_STIFFNESS + SOFT_SEARCH_MS_PER_F2_OVER_K2 * drive if drive > 0 else 0.0
+        EXTRA_MS_FOR_PULL_BEYOND_SHEAR_STIFFNESS + SOFT_SEARCH_MS_PER_F2_OVER_K2 * drive if drive > 0 else 0.0
     )
     return 1e-3 * covering_ms + min(1e-3 * exchanges_ms, MAX_UNRESOLVED_SEARCH_SECONDS)
 

@@ -1,7 +1,8 @@
 """Early stop of a run, requested by a scheduler's warning, a user's kill or Ctrl-C.
 
 A run stops between two points; a point that is not finished GRACE_SECONDS after the request is abandoned. A
-`RankListener` exchanges messages during long solves, reports progress, and ends a solve after a stop request.
+`SolverReportListener` exchanges messages during long solves, reports progress, and ends a solve after a stop
+request.
 """
 
 import os
@@ -50,13 +51,13 @@ class StopRequest:
         self._since = self._since or time.monotonic()
         return time.monotonic() - self._since >= GRACE_SECONDS
 
-    def listen(self) -> None:
+    def listen_for_signals(self) -> None:
         """Installs handlers, so that stop signals set this request, not end the process; main thread only."""
         for signal_number in STOP_SIGNALS:
             signal.signal(signal_number, self._record_signal_name)
 
     @staticmethod
-    def ignore() -> None:
+    def ignore_signals() -> None:
         """Makes the process ignore stop signals, even while Python and MPI shut down; main thread only."""
         for signal_number in STOP_SIGNALS:
             # A second signal would otherwise end the process with a traceback after all results are stored.
@@ -96,7 +97,7 @@ class SingleRankCommunication:
             self.show_position(position)
 
 
-class RankListener:
+class SolverReportListener:
     """Receives the solvers' reports on a rank: polls messages, forwards progress, ends a solve on a stop
     request. A new listener is created for every item."""
 

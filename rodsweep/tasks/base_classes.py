@@ -15,7 +15,7 @@ from ..results.layouts.variables import FilledVariable
 from ..solve.changes.spectrum_samples import SPECTRUM_SAMPLE_SETTINGS
 from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
 from .check_rows import arms_line, stretch_shear_and_drag_rows, varying_arm_and_law_rows
-from .hopf.force_changes import force_change_variables
+from .hopf.thresholds_along_force import force_threshold_variables
 from .protocol import CheckRow, Task
 
 
@@ -46,15 +46,15 @@ class CertifiedTask(Task):
         return self.points.parameter_values_of_rods | self.searched_range_ends() | self.coordinates()
 
     def arms_line(self) -> str:
-        return arms_line(self.config, self.parameter_values, self.first_mesh)
+        return arms_line(self.config, self.parameter_values, self.finest_initial_mesh)
 
-    def first_mesh(self) -> Elements | None:
+    def finest_initial_mesh(self) -> Elements | None:
         """The finest of the initial meshes of all points; None if the rod model applies to no point.
 
         By default the mesh of a search, along the parameter in `searched_range_ends`, for eigenvalues on the
         imaginary axis.
         """
-        accuracy = mesh_accuracy(SPECTRUM_SAMPLE_SETTINGS.arm_accuracy, needs_vectors=False)
+        accuracy = mesh_accuracy(SPECTRUM_SAMPLE_SETTINGS.arm_eigenvalue_accuracy, needs_vectors=False)
 
         def mesh_of(rod: Rod) -> Elements:
             return spectrum_mesh(rod, SPECTRUM_SAMPLE_SETTINGS.min_computed_modes, accuracy)
@@ -104,12 +104,14 @@ class ModesOfPointsTask(CertifiedTask):
     """Base class of the tasks spectrum and modes, which compute the leading modes at every point."""
 
     uncertified_risk: ClassVar[str] = "modes may be missed"
+    """Consequence of a missing certificate, as `check` prints it."""
     mode_count_location: ClassVar[str] = "point"
+    """The certificate counts the modes of the rod of every point."""
 
     def variables_from_points(self, values: Mapping[str, Any]) -> tuple[FilledVariable, ...]:
         """Thresholds of the rods along F; empty if any arm is not uniform or not of linear material. values:
         variables of the points by name, shape (points, own dimensions), readable by slices."""
-        return force_change_variables(self.points, values) if self.config.is_uniform_and_linear else ()
+        return force_threshold_variables(self.points, values) if self.config.is_uniform_and_linear else ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,10 +119,12 @@ class HopfPointTask(CertifiedTask):
     """Base class of the tasks criticality and branch, which start from the Hopf points of a rod."""
 
     uncertified_risk: ClassVar[str] = "Hopf points may be missed"
+    """Consequence of a missing certificate, as `check` prints it."""
     never_modelled_effects: ClassVar[tuple[str, str]] = (
         "gravity, inertia, motion out of the plane",
         "not part of the overdamped problem",
     )
+    """(effects that the task never models, reason), as `check` prints them; nonlinear motion is modelled."""
     AXIAL_DRAG_ROW: ClassVar[CheckRow]
     """Row of `check` on the axial drag."""
     AXIAL_DRAG_ROW = "axial drag", True, "parameters.gamma1; it changes cycles, but no Hopf point"

@@ -12,7 +12,7 @@ from ..results.layouts.variables import outcome_values, value_lists
 from ..sweep.branch_cost import branches_cost
 from ..sweep.cost_estimate import CostEstimate
 from .base_classes import HopfPointTask
-from .check_rows import points_clause, search_end_below_crushing_clause
+from .check_rows import point_count_text_with_clause, search_end_below_crushing_clause
 from .protocol import CheckRow, Solver
 
 if TYPE_CHECKING:
@@ -27,13 +27,16 @@ class BranchTask(HopfPointTask):
     """The task branch: branches of cycles of every rod, with their special points."""
 
     config: BranchConfig
+    """The config, with the section `branch`."""
 
-    def headline(self) -> str:
+    def check_headline(self) -> str:
         options = self.config.branch
         parameter = options.along
         crushing_text = search_end_below_crushing_clause(self.config) * (options.along == "F")
         range_text = f"from {options.start:g} to {options.stop:g}"
-        return points_clause(self.points, f"followed in {parameter} {range_text}{crushing_text}")
+        return point_count_text_with_clause(
+            self.points, f"followed in {parameter} {range_text}{crushing_text}"
+        )
 
     def requested_result_rows(self) -> list[CheckRow]:
         options = self.config.branch
@@ -72,7 +75,7 @@ class BranchTask(HopfPointTask):
             statuses=tuple(BranchStatus),
             warm_up=warm_up,
             solve=lambda index: solve_branches(self.points.rod(index), request, workspace),
-            record=lambda index, result: branch_values(result, *lengths),
+            file_values_of_outcome=lambda index, result: branch_values(result, *lengths),
         )
 
 
@@ -86,7 +89,7 @@ def branch_values(
     numbered = [(number, point) for number, curve in enumerate(result.curves, 1) for point in curve.points]
     cycles = [_cycle_values(point, parameter_name) | {"branch": number} for number, point in numbered]
     crossing_by_value = {crossing.value: crossing for crossing in result.crossings}
-    second_branches = second_branch_by_breaking(result.curves)
+    second_branches = second_branch_by_symmetry_breaking(result.curves)
     specials = []
     first_cycle_index = 0  # index of the first cycle of the branch
     for number, curve in enumerate(result.curves, 1):
@@ -102,14 +105,17 @@ def branch_values(
     counts = {"hopf": len(result.crossings), "branch": len(result.curves), "point": len(cycles)}
     counts["special"] = len(specials)
     values: dict[str, Any] = {f"{name}_count": count if is_complete else -1 for name, count in counts.items()}
-    values |= {"unstable_at_start": result.unstable_at_start, "certified": result.proved}
+    values |= {
+        "unstable_at_start": result.unstable_modes_at_start,
+        "certified": result.are_crossings_proved_complete,
+    }
     values["followed_from"], values["followed_to"] = result.followed_range
     values |= value_lists(branch_cycle_variables(parameter_name), cycles, point_count)
     values |= value_lists(special_variables(parameter_name), specials, special_count)
     return values | {"seconds": result.seconds, "status": result.status}
 
 
-def second_branch_by_breaking(curves: "Sequence[BranchCurve]") -> dict[tuple[int, int], int]:
+def second_branch_by_symmetry_breaking(curves: "Sequence[BranchCurve]") -> dict[tuple[int, int], int]:
     """For every symmetry breaking on a branch, the number of the second branch that begins or ends there.
 
     Keys: (number of the branch, from 1; index of the symmetry breaking among the branch's special points).
@@ -137,7 +143,7 @@ def _cycle_values(point: "StoredBranchCycle", parameter_name: str) -> dict[str, 
 
 SPECIAL_POINT_FIELD_BY_VARIABLE = {
     "special_at": "parameter_value",
-    "special_amplitude_coefficient_error": "relative_coefficient_error",
+    "special_amplitude_coefficient_error": "relative_amplitude_coefficient_error",
 }
 """Field of `SpecialPoint` by name of the variable, where the two names differ."""
 
@@ -151,7 +157,7 @@ def _special_point_values(
     number = first_cycle_index + point.index_of_cycle_before + 1
     values = {
         "special_point": number if point.index_of_cycle_before >= 0 else 0,
-        "special_reason": int(point.reason or 0),
+        "special_reason": int(point.end_reason or 0),
         "special_unstable_after": crossing.unstable_after if crossing else -1,
     }
     given_names = {*values, "special_branch", "special_meets"}

@@ -22,7 +22,7 @@ def search_end_below_crushing_clause(config: Config) -> str:
     return ", or to just below the force that crushes the weakest section" * bool(can_be_crushed)
 
 
-def points_text(points: Points) -> str:
+def point_count_text(points: Points) -> str:
     """Text with the number of points and the shape of their grid: "50 points (a grid of 5 x 10)"."""
     if points.axes and points.count == 1:
         return "1 point"
@@ -34,10 +34,10 @@ def points_text(points: Points) -> str:
     return f"{counted(points.count, 'point')} ({points_kind})"
 
 
-def points_clause(points: Points, clause: str) -> str:
+def point_count_text_with_clause(points: Points, clause: str) -> str:
     """Text with the number of points and a clause on each point: "50 points (a list), each searched from
     ..."."""
-    return f"{points_text(points)}, {'each ' * (points.count > 1)}{clause}"
+    return f"{point_count_text(points)}, {'each ' * (points.count > 1)}{clause}"
 
 
 def stretch_shear_and_drag_rows(columns: Mapping[str, np.ndarray]) -> list[CheckRow]:
@@ -111,7 +111,7 @@ def _profile_text(config: Config, profile: Profile) -> str:
     """Text describing a profile. The profile of a cone in SI units is computed by rodsweep: the drag at each
     radius."""
     arm = config.parameters.arm
-    if config.stated_rod_material is None and arm is not None and arm.cone_parameters:
+    if config.stated_rod_material is None and arm is not None and arm.cone_parameter_names:
         return "the drag of each local radius"
     jumps = len(profile.u) - len(profile.breaks)
     profile_text = f"a profile of {counted(len(profile.u), 'row')}"

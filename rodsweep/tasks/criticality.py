@@ -4,12 +4,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from ..config.task.criticality import CriticalityConfig
-from ..results.layouts.criticality import ABSENT_FROM_HOPF_SEARCH, NORMAL_FORM_VARIABLES
+from ..results.layouts.criticality import NORMAL_FORM_VARIABLES, VARIABLES_ABSENT_FROM_HOPF_SEARCH
 from ..results.layouts.variables import outcome_values, value_lists
 from ..sweep.cost_estimate import CostEstimate
 from ..sweep.search_cost import criticality_cost
 from .base_classes import HopfPointTask
-from .check_rows import points_clause, search_end_below_crushing_clause
+from .check_rows import point_count_text_with_clause, search_end_below_crushing_clause
 from .protocol import CheckRow, Solver
 from .thresholds import crossing_values
 
@@ -22,10 +22,11 @@ class CriticalityTask(HopfPointTask):
     """The task criticality: Hopf points of every rod and their normal forms."""
 
     config: CriticalityConfig
+    """The config, with the section `criticality`."""
 
-    def headline(self) -> str:
+    def check_headline(self) -> str:
         F_max = self.config.criticality.F_max
-        return points_clause(
+        return point_count_text_with_clause(
             self.points, f"searched from F = 0 to {F_max:g}{search_end_below_crushing_clause(self.config)}"
         )
 
@@ -53,7 +54,7 @@ class CriticalityTask(HopfPointTask):
             statuses=tuple(CriticalityStatus),
             warm_up=warm_up,
             solve=lambda index: solve_criticality(self.points.rod(index), request),
-            record=lambda index, result: criticality_values(result, options.crossings),
+            file_values_of_outcome=lambda index, result: criticality_values(result, options.crossings),
         )
 
 
@@ -61,7 +62,7 @@ def criticality_values(result: "Criticality", max_crossings: int) -> dict[str, A
     """Variables of the file for the Hopf points of a rod; max_crossings: length of the list of Hopf
     points."""
     search = crossing_values(result, max_crossings, "F", "crossing_F")
-    for name in ABSENT_FROM_HOPF_SEARCH:
+    for name in VARIABLES_ABSENT_FROM_HOPF_SEARCH:
         del search[name]
     pairs = zip(result.coefficients, result.search_result.thresholds, strict=False)
     rows = [outcome_values(NORMAL_FORM_VARIABLES, *pair, prefix="crossing_") for pair in pairs]

@@ -51,7 +51,7 @@ def _solve_stored_point(view: ResultView, number: int) -> tuple[Job, dict[str, A
     try:
         solver = job.solver()
         solver.warm_up()
-        record = solver.record(0, solver.solve(0))
+        record = solver.file_values_of_outcome(0, solver.solve(0))
     except EnvironmentIncomplete as lack:
         raise InputError(
             f"{view.path} has no shapes of cycles, and the cycles cannot be solved here: {lack}; run with "

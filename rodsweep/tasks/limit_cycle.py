@@ -18,7 +18,7 @@ from ..results.layouts.limit_cycle import (
     ENERGY_VARIABLES,
     PERIOD_TAU1_VARIABLE,
     SHAPE_VARIABLES,
-    STORED_MULTIPLIERS,
+    STORED_MULTIPLIER_COUNT,
     TIP_VARIABLES,
     TRANSIENT_VARIABLES,
 )
@@ -28,17 +28,17 @@ from ..sweep.cost_estimate import CostEstimate
 from ..sweep.cycle_cost import cycles_cost, marched_cycles_cost
 from ..sweep.first_mesh import largest_first_mesh
 from ..sweep.points.chains import Chains, SweepChains
-from ..sweep.points.grid import require_in_range
+from ..sweep.points.points_from_config import require_in_range
 from ..wording import counted
 from .check_rows import (
     arms_line,
-    points_clause,
-    points_text,
+    point_count_text,
+    point_count_text_with_clause,
     stretch_shear_and_drag_rows,
     varying_arm_and_law_rows,
 )
-from .hopf.lines import HopfLine, hopf_lines_of, hopf_variables
-from .protocol import CheckRow, NamedArrays, OrderedMap, Solver, Task, solve_on_one_rank
+from .hopf.hopf_search_lines import HopfSearchLine, filled_hopf_point_variables, hopf_search_lines_of_points
+from .protocol import CheckRow, MapInOrder, NamedArrays, Solver, Task, map_on_one_rank
 
 if TYPE_CHECKING:
     from ..solve.cycle.limit_cycle import CycleOutcome, CycleRequest
@@ -59,21 +59,18 @@ class LimitCycleTask(Task):
     """The task limit_cycle: a limit cycle, or a status without cycle, at every point."""
 
     config: LimitCycleConfig
+    """The config, with the section `limit_cycle`."""
 
     def __post_init__(self) -> None:
         if self.config.limit_cycle.time == "tau1":
             reason = ", because tau1 = gamma3/k2 is the unit of time that limit_cycle.time asks for"
-            require_in_range(
-                K2_VALUES_WITH_TAU1, "k2", self.points.parameter_values_of_rods["k2"], "", reason
-            )
-            require_in_range(
-                GAMMA3_VALUES_WITH_TAU1, "gamma3", self.points.parameter_values_of_rods["gamma3"], "", reason
-            )
+            values = self.points.parameter_values_of_rods
+            require_in_range(K2_VALUES_WITH_TAU1, "k2", values["k2"], "", reason)
+            require_in_range(GAMMA3_VALUES_WITH_TAU1, "gamma3", values["gamma3"], "", reason)
 
     @property
     def chains(self) -> Chains | None:
-        """Chains of points, each started from the cycle of the previous point; None if there are no
-        chains."""
+        """Chains of points, each started from the cycle of the previous point; None without chains."""
         options = self.config.limit_cycle
         if options.start != "neighbour":
             return None
@@ -90,25 +87,26 @@ class LimitCycleTask(Task):
             times["transient"] = np.linspace(0.0, 1.0, options.transient)
         return times | ({"u": lobatto_points(options.nodes)} if options.shapes else {})
 
-    def variables_from_config(self, in_order: OrderedMap = solve_on_one_rank) -> tuple[FilledVariable, ...]:
+    def variables_from_config(self, in_order: MapInOrder = map_on_one_rank) -> tuple[FilledVariable, ...]:
         """Hopf points of the straight rod on the lines of points. in_order: function that applies a
         function to a sequence, in order, on all ranks."""
-        lines = hopf_lines_of(self.points)
+        lines = hopf_search_lines_of_points(self.points)
         if lines:
             require_solvers()
-        return hopf_variables(self.points.names, lines, in_order(lines, HopfLine.hopf_points))
+        hopf_points = in_order(lines, HopfSearchLine.hopf_points)
+        return filled_hopf_point_variables(self.points.names, lines, hopf_points)
 
-    def headline(self) -> str:
+    def check_headline(self) -> str:
         options = self.config.limit_cycle
         chains = self.chains
         start_text = f"the leading mode with tip deflection {options.amplitude:g} L"
         if options.start == "hopf":
             start_text = "the nearest Hopf point below its force"
         if chains is None:
-            return points_clause(self.points, f"started from {start_text}")
+            return point_count_text_with_clause(self.points, f"started from {start_text}")
         chains_text = f"{counted(chains.count, 'chain')} of {chains.length}"
         return (
-            f"{points_text(self.points)} in {chains_text}, {options.direction} in "
+            f"{point_count_text(self.points)} in {chains_text}, {options.direction} in "
             f"{self.config.chain_parameter}: each starts from its neighbour's cycle; the first point, and a "
             f"point whose neighbour has no cycle, starts from {start_text}; at most "
             f"{counted(chains.count, 'rank')} can share the work"
@@ -122,13 +120,13 @@ class LimitCycleTask(Task):
         branches from Hopf points. None if no point has a mesh."""
         from ..solve.cycle.transient.motion_mesh import (
             accuracy_of_motion_mesh,
-            coarse_mesh_along_branch,
+            coarse_mesh_for_branch_to_cycle,
             motion_mesh,
         )
 
         options = self.config.limit_cycle
         if options.start == "hopf":
-            return largest_first_mesh(self.points, coarse_mesh_along_branch)
+            return largest_first_mesh(self.points, coarse_mesh_for_branch_to_cycle)
         accuracy = accuracy_of_motion_mesh(options.transient > 0)
         if options.method == "integration":
             accuracy = self.config.accuracy
@@ -141,7 +139,7 @@ class LimitCycleTask(Task):
         is_integrated = options.method == "integration"
         transient_row = "tip from the start to the cycle", False, f"limit_cycle.method: {options.method}"
         if not is_integrated:
-            transient_row = self._stored_values_row(transient_row[0], "transient", TRANSIENT_VARIABLES)
+            transient_row = self._row_on_stored_values(transient_row[0], "transient", TRANSIENT_VARIABLES)
         tip_variables = TIP_VARIABLES + ENERGY_VARIABLES
         return [
             *stretch_shear_and_drag_rows(self.points.parameter_values_of_rods),
@@ -150,30 +148,27 @@ class LimitCycleTask(Task):
             ("nonlinear motion", True, "task: limit_cycle; in the plane, geometrically exact"),
             ("energy budget", True, "means and fluctuations over a cycle"),
             ("Floquet multipliers", not is_integrated, f"limit_cycle.method: {options.method}"),
-            self._stored_values_row("tip and energy over a cycle", "samples", tip_variables),
-            self._stored_values_row("shapes over a cycle", "shapes", SHAPE_VARIABLES),
+            self._row_on_stored_values("tip and energy over a cycle", "samples", tip_variables),
+            self._row_on_stored_values("shapes over a cycle", "shapes", SHAPE_VARIABLES),
             transient_row,
             ("period in units of tau1", options.time == "tau1", f"limit_cycle.time: {options.time}"),
             ("gravity, inertia, motion out of the plane", False, "not part of the overdamped problem"),
         ]
 
-    def _stored_values_row(self, description: str, option: str, variables: tuple[Variable, ...]) -> CheckRow:
+    def _row_on_stored_values(
+        self, description: str, option: str, variables: tuple[Variable, ...]
+    ) -> CheckRow:
         """Row of `check` on variables that are stored only on request, with number and size of the stored
         values. option: name of the option of limit_cycle with the number of values per point."""
         options = self.config.limit_cycle
         sample_count: int = getattr(options, option)
         if not sample_count:
             return description, False, f"limit_cycle.{option} stores them"
-        value_count = (
-            self.points.count * sample_count * len(variables) * (options.nodes if option == "shapes" else 1)
-        )
-        nodes_text = f" on {options.nodes} nodes" if option == "shapes" else ""
         total = self.points.count * sample_count
-        return (
-            description,
-            True,
-            f"{sample_count} per point{nodes_text}, {total} in total: {8e-6 * value_count:.3g} MB",
-        )
+        value_count = total * len(variables) * (options.nodes if option == "shapes" else 1)
+        nodes_text = f" on {options.nodes} nodes" if option == "shapes" else ""
+        size_text = f"{total} in total: {8e-6 * value_count:.3g} MB"
+        return description, True, f"{sample_count} per point{nodes_text}, {size_text}"
 
     def cost(self) -> CostEstimate:
         if self.config.limit_cycle.method == "integration":
@@ -196,14 +191,16 @@ class LimitCycleTask(Task):
 
         def solve_from(index: int, start: "CycleStart | None") -> "tuple[CycleOutcome, CycleStart | None]":
             cycle = solve(index, start)
-            return cycle, cycle.neighbour if cycle.status == CycleStatus.cycle else None
+            return cycle, cycle.start_for_next_rod if cycle.status == CycleStatus.cycle else None
 
         by_collocation = Solver(
             statuses=tuple(CycleStatus),
             warm_up=warm_up,
             solve=solve,
-            record=lambda index, cycle: self.record(self.points.values(index), cycle),
-            chained=SweepChains(chains, solve_from, CycleStart.from_arrays) if chains else None,
+            file_values_of_outcome=lambda index, cycle: self.cycle_values(
+                self.points.parameter_values_of_point(index), cycle
+            ),
+            sweep_chains=SweepChains(chains, solve_from, CycleStart.from_arrays) if chains else None,
         )
         if self.config.limit_cycle.method == "collocation":
             return by_collocation
@@ -223,10 +220,10 @@ class LimitCycleTask(Task):
         options = self.config.limit_cycle.model_dump(exclude=set(NON_SOLVER_OPTIONS))
         return CycleRequest(accuracy=self.config.accuracy, **options)
 
-    def record(self, point: dict[str, float], cycle: "CycleOutcome") -> dict[str, Any]:
+    def cycle_values(self, point: dict[str, float], cycle: "CycleOutcome") -> dict[str, Any]:
         """Variables of the file for the cycle of one point; point: parameters by name."""
         options = self.config.limit_cycle
-        unknown = np.full(STORED_MULTIPLIERS, COMPLEX_NAN)
+        unknown = np.full(STORED_MULTIPLIER_COUNT, COMPLEX_NAN)
         multipliers = unknown if cycle.multipliers is None else cycle.multipliers
         stored_multipliers = SimpleNamespace(multipliers=multipliers)
         sources = stored_multipliers, cycle.errors, cycle.measures, cycle
@@ -234,16 +231,16 @@ class LimitCycleTask(Task):
         if options.time == "tau1":  # t/tau1 = (t/tau2) k2/gamma3
             values[PERIOD_TAU1_VARIABLE.name] = cycle.measures.period * point["k2"] / point["gamma3"]
         if options.samples:
-            values |= _values_of_arrays(TIP_VARIABLES, cycle.tip)
-            values |= _values_of_arrays(ENERGY_VARIABLES, cycle.energy)
+            values |= _values_by_variable(TIP_VARIABLES, cycle.tip)
+            values |= _values_by_variable(ENERGY_VARIABLES, cycle.energy_and_powers)
         if options.shapes:
-            values |= _values_of_arrays(SHAPE_VARIABLES, cycle.shape)
+            values |= _values_by_variable(SHAPE_VARIABLES, cycle.shape)
         if options.transient:
-            values |= _values_of_arrays(TRANSIENT_VARIABLES, cycle.transient)
+            values |= _values_by_variable(TRANSIENT_VARIABLES, cycle.transient_tip_path)
         return values
 
 
-def _values_of_arrays(variables: tuple[Variable, ...], arrays: np.ndarray | None) -> dict[str, Any]:
+def _values_by_variable(variables: tuple[Variable, ...], arrays: np.ndarray | None) -> dict[str, Any]:
     """Values of variables by name, from arrays in the order of the variables; NaN for all variables if
     `arrays` is None."""
     names = [variable.name for variable in variables]

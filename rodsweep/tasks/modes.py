@@ -16,7 +16,7 @@ from ..results.layouts.variables import outcome_values
 from ..sweep.cost_estimate import CostEstimate, modes_cost, spectra_cost
 from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
 from .base_classes import ModesOfPointsTask
-from .check_rows import points_text
+from .check_rows import point_count_text
 from .protocol import CheckRow, Solver
 
 if TYPE_CHECKING:
@@ -28,14 +28,17 @@ class ModesTask(ModesOfPointsTask):
     """The task modes: leading modes and transient growth at every point."""
 
     config: ModesConfig
+    """The config, with the section `modes`."""
 
     def coordinates(self) -> dict[str, np.ndarray]:
         """Material coordinates u of the nodes at which modes are stored, (nodes,), by dimension."""
         return {"u": lobatto_points(self.config.modes.nodes)}
 
-    def headline(self) -> str:
+    def check_headline(self) -> str:
         options = self.config.modes
-        return f"{points_text(self.points)}, {options.modes} leading modes each, on {options.nodes} nodes"
+        return (
+            f"{point_count_text(self.points)}, {options.modes} leading modes each, on {options.nodes} nodes"
+        )
 
     def requested_result_rows(self) -> list[CheckRow]:
         growth = self.config.modes.growth
@@ -46,7 +49,7 @@ class ModesTask(ModesOfPointsTask):
             ("longitudinal modes", False, "they decouple; the task spectrum has them"),
         ]
 
-    def first_mesh(self) -> Elements | None:
+    def finest_initial_mesh(self) -> Elements | None:
         accuracy = mesh_accuracy(self.config.accuracy, needs_vectors=False)
         mode_count = self.config.modes.modes
         return largest_first_mesh(self.points, lambda rod: spectrum_mesh(rod, mode_count, accuracy))
@@ -69,13 +72,13 @@ class ModesTask(ModesOfPointsTask):
             statuses=tuple(SpectrumStatus),
             warm_up=lambda: solve_modes(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4), warm_up_request),
             solve=lambda index: solve_modes(self.points.rod(index), request),
-            record=lambda index, result: mode_values(result, options.growth),
+            file_values_of_outcome=lambda index, result: mode_values(result, options.growth),
         )
 
 
 def mode_values(result: "Modes", growth: bool) -> dict[str, Any]:
     """Variables of the file for the modes of one rod; growth: whether transient growth was computed."""
-    vectors = result.vectors
+    vectors = result.mode_vectors
     attribute_names = {"elements": "element_count"}
     sources = vectors.resolution, result, result.spectrum
     values = outcome_values(MODE_VARIABLES + POINT_VARIABLES, *sources, names=attribute_names)

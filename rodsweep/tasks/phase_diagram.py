@@ -13,8 +13,8 @@ from ..sweep.branch_cost import branches_cost
 from ..sweep.cost_estimate import CostEstimate, sampled_points_with_rod
 from ..sweep.search_cost import MAX_SAMPLED_ROWS, diagram_cost, pulled_rows_seconds, soft_searches_seconds
 from .base_classes import CertifiedTask
-from .diagram.curve_variables import cycles_record
-from .diagram.curves import DiagramCurves
+from .diagram.curve_variables import row_cycle_values
+from .diagram.diagram_curve_search import DiagramCurveSolver
 from .protocol import CheckRow, Solver
 from .thresholds import crossing_values
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from ..solve.orbit.matrix.workspace import NewtonWorkspace
 
 
-UNCOUNTED_WORK_TEXT = (
+WORK_NOT_IN_COST_ESTIMATE_TEXT = (
     "branches beyond the range, curves of folds and torus points, and rows that such a curve shows to have a "
     "detached branch"
 )
@@ -38,9 +38,12 @@ class PhaseDiagramTask(CertifiedTask):
     """The task phase_diagram. A point of the task is a row: a line of rods along the first parameter."""
 
     config: PhaseDiagramConfig
+    """The config, with the section `phase_diagram`."""
 
     uncertified_risk: ClassVar[str] = "crossings may be missed"
+    """Consequence of a missing certificate, as `check` prints it."""
     mode_count_location: ClassVar[str] = "line"
+    """The certificate counts the modes of some rods on each row."""
 
     @property
     def line_values(self) -> np.ndarray:
@@ -51,7 +54,7 @@ class PhaseDiagramTask(CertifiedTask):
         """Values of the parameter that varies along every row, (values,), by its name."""
         return {self.config.plane_parameters[0]: self.line_values}
 
-    def headline(self) -> str:
+    def check_headline(self) -> str:
         line_parameter, row_parameter = self.config.plane_parameters
         return (
             f"{self.points.count} rows, one for each {row_parameter}, of {len(self.line_values)} "
@@ -109,7 +112,7 @@ class PhaseDiagramTask(CertifiedTask):
         rows_cost = diagram_cost(self.points.count, *requested)
         line_range = (float(self.line_values[0]), float(self.line_values[-1]))
         if self.config.plane_parameters[0] == "F":
-            rows_cost = self._with_soft_and_pulled_rows(rows_cost, is_varying)
+            rows_cost = self._cost_with_soft_and_pulled_rows(rows_cost, is_varying)
         if not options.cycles:
             return rows_cost
         branches = branches_cost(
@@ -119,10 +122,10 @@ class PhaseDiagramTask(CertifiedTask):
             branches,
             seconds=rows_cost.seconds + branches.seconds,
             underestimated_rods=branches.underestimated_rods or rows_cost.underestimated_rods,
-            uncounted_work=UNCOUNTED_WORK_TEXT,
+            uncounted_work=WORK_NOT_IN_COST_ESTIMATE_TEXT,
         )
 
-    def _with_soft_and_pulled_rows(self, rows_cost: CostEstimate, is_varying: bool) -> CostEstimate:
+    def _cost_with_soft_and_pulled_rows(self, rows_cost: CostEstimate, is_varying: bool) -> CostEstimate:
         """The cost `rows_cost` of rows along F with the further time of soft and of pulled rows."""
         soft = soft_searches_seconds(self.points, float(self.line_values[-1]), is_varying)
         sampled_rows = sampled_points_with_rod(self.points, MAX_SAMPLED_ROWS)
@@ -137,12 +140,12 @@ class PhaseDiagramTask(CertifiedTask):
 
         options = self.config.phase_diagram
         workspace = NewtonWorkspace()
-        curves = DiagramCurves(self, workspace)
+        curves = DiagramCurveSolver(self, workspace)
         row_solver = Solver(
             statuses=tuple(ThresholdStatus),
             warm_up=warm_up,
             solve=self.solve_straight_row,
-            record=lambda index, result: self.row_record(result),
+            file_values_of_outcome=lambda index, result: self.straight_row_values(result),
             sweep_wide_solver=curves if options.curves else None,
         )
         if not options.cycles:
@@ -155,7 +158,7 @@ class PhaseDiagramTask(CertifiedTask):
             statuses=tuple(CoexistenceStatus),
             warm_up=warm_up_branches,
             solve=lambda index: curves.cache_row(index, self.solve_coexistence_row(index, workspace)),
-            record=lambda index, result: self.coexistence_record(result),
+            file_values_of_outcome=lambda index, result: self.coexistence_row_values(result),
         )
 
     def solve_straight_row(self, index: int) -> "DiagramRow":
@@ -176,15 +179,15 @@ class PhaseDiagramTask(CertifiedTask):
             return crushed_coexistence_row(self.line_values)
         return solve_coexistence(rod, self.row_request(), workspace, starts)
 
-    def row_record(self, result: "DiagramRow") -> dict[str, Any]:
+    def straight_row_values(self, result: "DiagramRow") -> dict[str, Any]:
         """Variables of the file for a row without cycles."""
         request = self.row_request()
         return row_values(result, request.parameter_name, request.max_thresholds)
 
-    def coexistence_record(self, result: "CoexistenceRow") -> dict[str, Any]:
+    def coexistence_row_values(self, result: "CoexistenceRow") -> dict[str, Any]:
         """Variables of the file for a row with cycles."""
-        cycles = cycles_record(result, self.row_request().parameter_name)
-        return self.row_record(result.straight_rod_row) | cycles
+        cycles = row_cycle_values(result, self.row_request().parameter_name)
+        return self.straight_row_values(result.straight_rod_row) | cycles
 
     def rod_of_row(self, index: int) -> Rod | None:
         """The rod of a row, with the neutral value, such as F = 0 or k1 = inf, of the parameter that varies
@@ -201,7 +204,7 @@ class PhaseDiagramTask(CertifiedTask):
         options = self.config.phase_diagram
         return RowRequest(
             parameter_name=self.config.plane_parameters[0],
-            values=self.line_values,
+            parameter_values=self.line_values,
             accuracy=self.config.accuracy,
             certify=options.certify,
             max_thresholds=options.crossings,
@@ -215,7 +218,7 @@ def row_values(result: "DiagramRow", line_parameter: str, max_crossings: int) ->
 
     max_crossings: length of the list of crossings.
     """
-    classes = {"class": result.rod_class, "unstable_count": result.unstable_count}
+    classes = {"class": result.stability_class, "unstable_count": result.unstable_count}
     changes = crossing_values(result.thresholds, max_crossings, line_parameter, "crossing_at")
-    certified = result.thresholds.search_result.proved_to_the_end
+    certified = result.thresholds.search_result.is_proved_to_the_end
     return classes | changes | {"certified": certified, "seconds": result.seconds}

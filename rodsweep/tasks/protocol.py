@@ -13,12 +13,12 @@ from ..solve.status import PointStatus
 from ..sweep.chunk_queue import ItemChooser
 from ..sweep.cost_estimate import CostEstimate
 from ..sweep.points.chains import Chains, State, SweepChains
-from ..sweep.points.groups import PointGroups, SolveGroup
+from ..sweep.points.groups import GroupSolveFunction, PointGroups
 from ..sweep.points.points import Points
 
 NamedArrays = dict[str, np.ndarray]
 """Arrays by name: the result of a work item for variables that depend on all points."""
-OrderedMap = Callable[[Sequence[Any], Callable[[Any], Any]], list[Any]]
+MapInOrder = Callable[[Sequence[Any], Callable[[Any], Any]], list[Any]]
 """Function (items, function) -> results in the order of the items; the work may be shared among ranks."""
 SolveWrapper = Callable[[int, State, Callable[[], tuple[Any, State]]], tuple[Any, State]]
 """Wrapper of the solve of a point: (flat index, initial state, solve) -> (outcome, initial state of the next
@@ -31,7 +31,7 @@ class WorkItems(ItemChooser, Protocol):
     """Work items, numbered from 0, for variables that depend on all points: an `ItemChooser` that also
     describes its items. The object is sent to all ranks."""
 
-    outcome: ClassVar[str]
+    done_item_phrase: ClassVar[str]
     """Noun for one item and what was done with it, as in "piece of curves followed"."""
     progress_noun: ClassVar[str]
     """Plural noun for items in the progress display."""
@@ -46,7 +46,7 @@ class SweepWideResult:
     by name, of the points that have changed since they were solved, by flat index. messages: message for the
     user on each of these points, by flat index."""
 
-    variables: Sequence[FilledVariable]
+    sweep_wide_variables: Sequence[FilledVariable]
     changed_points: Mapping[int, NamedArrays] = field(default_factory=dict)
     messages: Mapping[int, str] = field(default_factory=dict)
 
@@ -93,27 +93,27 @@ class Solver:
     """Triggers compilation and fills caches before any point is timed."""
     solve: Callable[[int], Any]
     """Solves the point at a flat index; returns an outcome with the attributes `status` and `message`."""
-    record: Callable[[int, Any], dict[str, Any]]
+    file_values_of_outcome: Callable[[int, Any], dict[str, Any]]
     """Function from (flat index, outcome) of a point to the values of the file's variables, by name."""
     sweep_wide_solver: SweepWideSolver | None = None
     """Computes the variables that depend on all points; None for tasks without such variables."""
-    chained: SweepChains | None = None
+    sweep_chains: SweepChains | None = None
     """Chains of points, each started from the solution of the previous point; used instead of `solve`. None
     if there are no chains."""
-    grouped: tuple[PointGroups, SolveGroup] | None = None
+    groups_and_group_solver: tuple[PointGroups, GroupSolveFunction] | None = None
     """(groups of the sweep, function that solves the points of a group at their flat indices), used
     instead of `solve`; None if no points are solved together."""
 
     def with_wrapper(
-        self, solve_wrapper: SolveWrapper, solve_group: SolveGroup | None = None, **changed: Any
+        self, solve_wrapper: SolveWrapper, solve_group: GroupSolveFunction | None = None, **changed: Any
     ) -> "Solver":
         """A copy of the solver with the solve of every point wrapped by `solve_wrapper`, and with the fields
         in `changed`.
 
         solve_group: new function that solves a group, if the solver has groups.
         """
-        chained = self.chained
-        grouped = self.grouped
+        chained = self.sweep_chains
+        grouped = self.groups_and_group_solver
 
         def solve(index: int) -> Any:
             return solve_wrapper(index, None, lambda: (self.solve(index), None))[0]
@@ -127,10 +127,10 @@ class Solver:
             chained = replace(chained, solve_from=solve_from)
         if grouped is not None and solve_group is not None:
             grouped = grouped[0], solve_group
-        return replace(self, solve=solve, chained=chained, grouped=grouped, **changed)
+        return replace(self, solve=solve, sweep_chains=chained, groups_and_group_solver=grouped, **changed)
 
 
-def solve_on_one_rank(items: Sequence[Any], work: Callable[[Any], Any]) -> list[Any]:
+def map_on_one_rank(items: Sequence[Any], work: Callable[[Any], Any]) -> list[Any]:
     """Results of `work` for all items, in order, computed on this rank only."""
     return [work(item) for item in items]
 
@@ -159,7 +159,7 @@ class Task(ABC):
         default empty."""
         return {}
 
-    def variables_from_config(self, in_order: OrderedMap = solve_on_one_rank) -> tuple[FilledVariable, ...]:
+    def variables_from_config(self, in_order: MapInOrder = map_on_one_rank) -> tuple[FilledVariable, ...]:
         """Variables of the file that depend only on the config. in_order: maps a function over items, shared
         among the ranks. By default empty."""
         return ()
@@ -173,7 +173,7 @@ class Task(ABC):
         return ()
 
     @abstractmethod
-    def headline(self) -> str:
+    def check_headline(self) -> str:
         """Line of `check` with the number of points and the computation at each point."""
 
     def arms_line(self) -> str:

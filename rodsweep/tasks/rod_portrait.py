@@ -9,18 +9,18 @@ import numpy as np
 
 from ..config.document.reading import validated_config
 from ..config.parameters_section import DEFAULT_F_MAX
-from ..config.tasks import CONFIGS
+from ..config.tasks import CONFIG_CLASSES_BY_TASK
 from ..errors import InputError
-from ..model.parameters import OPTIONAL_PARAMETERS
+from ..model.parameters import OPTIONAL_PARAMETER_NAMES
 from ..post.branch_curves import RodBranches
 from ..post.range_unions import ParameterRange
 from ..post.rod_portrait.results import DescribedRod, RodResults
 from ..results.file.view import ResultView
 from ..results.layouts.thresholds import CROSSING_KINDS
-from .running.in_memory import solved_view
+from .running.in_memory import solve_job_in_memory
 from .running.job import Job, job_of_config
 
-CYCLE_FORCE_FRACTIONS = (0.1, 0.5, 0.9)
+CYCLE_POSITIONS_IN_STABLE_RANGES = (0.1, 0.5, 0.9)
 """Forces of the three cycles, as fractions of the total length of all ranges of F with a stable cycle."""
 SHAPE_COUNT = 12
 """Number of shapes per period of each cycle; a small panel has no room for more."""
@@ -29,14 +29,14 @@ LARGE_INITIAL_DEFLECTION = 0.5
 stable."""
 LEADING_MODE_THRESHOLD_KINDS = ("onset", "hopf")
 """Kinds of thresholds; the leading mode is solved at the first threshold of each kind."""
-BRANCH_ACCURACY = 1e-5
+DEFAULT_BRANCH_ACCURACY = 1e-5
 """Relative accuracy of the cycles on the branches of a portrait without a requested accuracy, far below a
 line width of the picture. Special points are located to 1e-9 at every accuracy, as far as
 MAX_PORTRAIT_BRANCH_WORK allows."""
 MAX_PORTRAIT_BRANCH_WORK = 300.0
 """Limit `work` of the branches of a portrait: 15 to 30 s, and at most 1 GB for a matrix. A cone of taper 0.19
 needs 300 up to F = 15, three times its Hopf point, and ever more at larger forces."""
-SolveJob = Callable[[Job], ResultView]
+SolveJobFunction = Callable[[Job], ResultView]
 """Function that solves the only point of a job."""
 
 
@@ -45,7 +45,7 @@ class PortraitRequest:
     """Request for a portrait.
 
     rod: the rod. F_max: largest force. accuracy: relative accuracy of all tasks; if None, branches have the
-    accuracy BRANCH_ACCURACY and every other task has its default.
+    accuracy DEFAULT_BRANCH_ACCURACY and every other task has its default.
     """
 
     rod: DescribedRod
@@ -67,7 +67,7 @@ class PortraitRequest:
         """Job of a task for this rod. F: force, None for tasks that vary the force. default_accuracy:
         relative accuracy if the request has none; None for the default of the task."""
         given_values = self.rod.parameters
-        names = (*CONFIGS[task].rod_parameters_used(options), *OPTIONAL_PARAMETERS)
+        names = (*CONFIG_CLASSES_BY_TASK[task].rod_parameters_used(options), *OPTIONAL_PARAMETER_NAMES)
         values: dict[str, Any] = {
             name: given_values[name] for name in names if name in given_values and name != "F"
         }
@@ -80,7 +80,7 @@ class PortraitRequest:
         return job_of_config(Path(task), validated_config(document), document)
 
 
-def solve_rod_results(request: PortraitRequest, solve: SolveJob = solved_view) -> RodResults:
+def solve_rod_results(request: PortraitRequest, solve: SolveJobFunction = solve_job_in_memory) -> RodResults:
     """Solves and returns all results of a portrait.
 
     solve: function that solves the only point of a job. If a result cannot be solved, `RodResults.missing`
@@ -101,7 +101,8 @@ def solve_rod_results(request: PortraitRequest, solve: SolveJob = solved_view) -
 
     if (view := solved("criticality", F_max)) is not None:
         views["criticality"] = view
-    if (view := solved("branch", request.branch_options, default_accuracy=BRANCH_ACCURACY)) is not None:
+    view = solved("branch", request.branch_options, default_accuracy=DEFAULT_BRANCH_ACCURACY)
+    if view is not None:
         views["branch"] = view
     modes = {
         kind: (F, view)
@@ -109,18 +110,20 @@ def solve_rod_results(request: PortraitRequest, solve: SolveJob = solved_view) -
         if (view := solved("modes", {}, F)) is not None
     }
     ranges = RodBranches(views["branch"]).stable_cycle_ranges if "branch" in views else []
-    cycles = [
-        (F, view)
-        for F in three_forces_with_stable_cycle(ranges)
-        if (view := _cycle_at_force(solved, F)) is not None
-    ]
+    forces = forces_of_three_stable_cycles(ranges)
+    cycles = [(F, view) for F in forces if (view := _cycle_at_force(solved, F)) is not None]
     if not modes:
         missing.setdefault("modes", f"no threshold is known up to F = {request.F_max:g}")
     if not cycles:
         reason = missing.get("branch", "no stable cycle lies on a branch from a Hopf point")
         missing.setdefault("limit_cycle", reason)
     return RodResults(
-        rod=request.rod, F_max=request.F_max, views=views, modes=modes, cycles=cycles, missing=missing
+        rod=request.rod,
+        F_max=request.F_max,
+        views=views,
+        modes=modes,
+        cycles=cycles,
+        missing_result_reasons=missing,
     )
 
 
@@ -142,7 +145,7 @@ def _cycle_at_force(
 def first_threshold_forces(thresholds: ResultView) -> dict[str, float]:
     """Force of the first threshold of each kind in LEADING_MODE_THRESHOLD_KINDS, at which the leading mode is
     drawn."""
-    kinds, forces = (thresholds.by_point(f"crossing_{name}")[0] for name in ("kind", "F"))
+    kinds, forces = (thresholds.flattened_by_point(f"crossing_{name}")[0] for name in ("kind", "F"))
     first_forces = {}
     for kind in LEADING_MODE_THRESHOLD_KINDS:
         indices = np.flatnonzero(kinds == CROSSING_KINDS.index(kind))
@@ -151,9 +154,9 @@ def first_threshold_forces(thresholds: ResultView) -> dict[str, float]:
     return first_forces
 
 
-def three_forces_with_stable_cycle(ranges: Sequence[ParameterRange]) -> list[float]:
-    """Forces of the three cycles, increasing: at CYCLE_FORCE_FRACTIONS of the ranges of F with a stable
-    cycle.
+def forces_of_three_stable_cycles(ranges: Sequence[ParameterRange]) -> list[float]:
+    """Forces of the three cycles, increasing: at CYCLE_POSITIONS_IN_STABLE_RANGES of the ranges of F with a
+    stable cycle.
 
     A force is rounded to three digits if the rounded force is in the same range. Empty if `ranges` is empty.
     """
@@ -162,7 +165,7 @@ def three_forces_with_stable_cycle(ranges: Sequence[ParameterRange]) -> list[flo
     lengths = np.array([high - low for low, high in ranges])
     cumulated = np.concatenate([[0.0], np.cumsum(lengths)])
     forces = []
-    for fraction in CYCLE_FORCE_FRACTIONS:
+    for fraction in CYCLE_POSITIONS_IN_STABLE_RANGES:
         position = fraction * cumulated[-1]
         number = min(int(np.searchsorted(cumulated, position, side="right")) - 1, len(ranges) - 1)
         low, high = ranges[number]

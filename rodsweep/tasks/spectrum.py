@@ -26,8 +26,8 @@ from ..sweep.cost_estimate import CostEstimate, followed_spectra_cost, spectra_c
 from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
 from ..sweep.points.groups import GroupResult, PointGroups, groups_along_longest_axis
 from .base_classes import ModesOfPointsTask
-from .check_rows import points_text
-from .protocol import CheckRow, OrderedMap, Solver, solve_on_one_rank
+from .check_rows import point_count_text
+from .protocol import CheckRow, MapInOrder, Solver, map_on_one_rank
 
 if TYPE_CHECKING:
     from ..solve.spectrum.search import Spectrum, SpectrumRequest
@@ -38,6 +38,7 @@ class SpectrumTask(ModesOfPointsTask):
     """The task spectrum: the leading eigenvalues of the straight rod at every point."""
 
     config: SpectrumConfig
+    """The config, with the section `spectrum`."""
 
     def __post_init__(self) -> None:
         if self.config.spectrum.longitudinal and np.isinf(self.points.columns_by_name["k1"]).any():
@@ -47,7 +48,7 @@ class SpectrumTask(ModesOfPointsTask):
             )
 
     @property
-    def _vector_nodes(self) -> int:
+    def _eigenvector_node_count(self) -> int:
         return self.config.spectrum.nodes if self.config.spectrum.vectors else 0
 
     @property
@@ -60,9 +61,9 @@ class SpectrumTask(ModesOfPointsTask):
     def coordinates(self) -> dict[str, np.ndarray]:
         """Material coordinates u of the nodes of eigenvectors, (nodes,), by name of the dimension; empty if
         no eigenvectors are requested."""
-        return {"u": lobatto_points(self._vector_nodes)} if self._vector_nodes else {}
+        return {"u": lobatto_points(self._eigenvector_node_count)} if self._eigenvector_node_count else {}
 
-    def variables_from_config(self, in_order: OrderedMap = solve_on_one_rank) -> tuple[FilledVariable, ...]:
+    def variables_from_config(self, in_order: MapInOrder = map_on_one_rank) -> tuple[FilledVariable, ...]:
         """Longitudinal growth rates, along the parameters on which these rates depend; for arms that are not
         uniform or not of linear material, also their relative errors. Empty if longitudinal modes are not
         requested."""
@@ -109,8 +110,8 @@ class SpectrumTask(ModesOfPointsTask):
             dict(zip(names, (coordinate.ravel() for coordinate in grid), strict=True)),
         )
 
-    def headline(self) -> str:
-        return f"{points_text(self.points)}, {self.config.spectrum.modes} leading modes each"
+    def check_headline(self) -> str:
+        return f"{point_count_text(self.points)}, {self.config.spectrum.modes} leading modes each"
 
     def requested_result_rows(self) -> list[CheckRow]:
         options = self.config.spectrum
@@ -125,7 +126,7 @@ class SpectrumTask(ModesOfPointsTask):
             ("eigenvectors", options.vectors, vectors_text),
         ]
 
-    def first_mesh(self) -> Elements | None:
+    def finest_initial_mesh(self) -> Elements | None:
         options = self.config.spectrum
         accuracy = self.config.accuracy
         if options.vectors or options.method == "determinant":
@@ -155,15 +156,17 @@ class SpectrumTask(ModesOfPointsTask):
 
         options = self.config.spectrum
         accuracy, certifies = self.config.accuracy, self.config.certifies
-        request = SpectrumRequest(options.modes, accuracy, certifies, self._vector_nodes)
+        request = SpectrumRequest(options.modes, accuracy, certifies, self._eigenvector_node_count)
         groups = self.groups
         solve = solve_spectrum if options.method == "determinant" else solve_on_two_meshes
         return Solver(
             statuses=tuple(SpectrumStatus),
             warm_up=warm_up_following if groups else warm_up,
             solve=lambda index: solve(self.points.rod(index), request),
-            record=lambda index, result: spectrum_values(result),
-            grouped=(groups, lambda indices: self._solve_group(indices, request)) if groups else None,
+            file_values_of_outcome=lambda index, result: spectrum_values(result),
+            groups_and_group_solver=(groups, lambda indices: self._solve_group(indices, request))
+            if groups
+            else None,
         )
 
     def _solve_group(self, indices: NDArray[np.int64], request: "SpectrumRequest") -> GroupResult:
@@ -176,7 +179,7 @@ class SpectrumTask(ModesOfPointsTask):
         assert groups is not None
         followed_parameter = self.points.varied_parameter_by_axis[groups.axis]
         path = ParameterPath(self.points.rod(int(indices[0])), followed_parameter)
-        rods = NeighbouringRods(path, self.points.values_of(indices)[followed_parameter])
+        rods = NeighbouringRods(path, self.points.parameter_values_of_points(indices)[followed_parameter])
         followed = follow_spectra(rods, request)
         return GroupResult(spectrum_values(followed.spectra), followed.is_solved)
 

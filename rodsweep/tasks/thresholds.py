@@ -12,7 +12,7 @@ from ..results.layouts.variables import outcome_values, value_lists
 from ..sweep.cost_estimate import CostEstimate
 from ..sweep.search_cost import thresholds_cost
 from .base_classes import CertifiedTask
-from .check_rows import points_clause, search_end_below_crushing_clause
+from .check_rows import point_count_text_with_clause, search_end_below_crushing_clause
 from .protocol import CheckRow, Solver
 
 if TYPE_CHECKING:
@@ -34,13 +34,16 @@ class ThresholdsTask(CertifiedTask):
     for F from 0 to `F_max`."""
 
     config: ThresholdsConfig
+    """The config, with the section `thresholds`."""
 
     uncertified_risk: ClassVar[str] = "crossings may be missed"
+    """Consequence of a missing certificate, as `check` prints it."""
     mode_count_location: ClassVar[str] = "line"
+    """The certificate counts the modes of some rods on each line along F."""
 
-    def headline(self) -> str:
+    def check_headline(self) -> str:
         end_text = f"{self.config.thresholds.F_max:g}{search_end_below_crushing_clause(self.config)}"
-        return points_clause(self.points, f"searched from F = 0 to {end_text}")
+        return point_count_text_with_clause(self.points, f"searched from F = 0 to {end_text}")
 
     def requested_result_rows(self) -> list[CheckRow]:
         max_thresholds = self.config.thresholds.crossings
@@ -64,7 +67,7 @@ class ThresholdsTask(CertifiedTask):
             statuses=tuple(ThresholdStatus),
             warm_up=warm_up,
             solve=lambda index: solve_thresholds(self.points.rod(index), request),
-            record=lambda index, result: threshold_values(result, options.crossings),
+            file_values_of_outcome=lambda index, result: threshold_values(result, options.crossings),
         )
 
 
@@ -98,9 +101,9 @@ def crossing_values(
         "crossing_count": -1 if is_failed else len(thresholds),
         "open_from": search_result.open_range[0],
         "open_to": search_result.open_range[1],
-        "certified": search_result.proved,
-        "boxes": search_result.evaluation_count,
-        "solves": search_result.solve_count,
+        "certified": search_result.is_proved,
+        "boxes": search_result.determinant_evaluation_count,
+        "solves": search_result.eigenvalue_solve_count,
         "seconds": result.seconds,
         "status": int(result.status),
     }

@@ -9,7 +9,7 @@ from ..model.arm.arm import SlenderArm
 from ..model.arm.neglected import Validity
 from .assessment import Assessment
 from .checks import Check, checks_of
-from .load import LoadFormatter
+from .load_texts import LoadFormatter
 from .number_rows import NumberRow, number_rows
 from .planes import planes_of, with_absolute_load
 from .sentences import verdict_sentences
@@ -89,8 +89,8 @@ def arm_report(arm: SlenderArm) -> ArmReport:
         if is_applicable and check.can_change_verdict and check.validity == Validity.doubtful
     )
     headline, *others = verdict_sentences(planes, assessment)
-    if arm.share_of_flutter is not None:
-        load = str(getattr(arm, str(arm.load))).strip()
+    if arm.load_over_flutter is not None:
+        load = str(getattr(arm, str(arm.load_name))).strip()
         # The reader typed a multiple of flutter, so the absolute load has to be stated once.
         others.insert(0, f"{LoadFormatter(first_plane.arm).typed_text} is {load} with the likeliest drag.")
     return ArmReport(

@@ -11,12 +11,12 @@ from ..model.arm.neglected import (
     Effect,
     Validity,
     angular_frequency_at_smallest_drag,
+    base_force_of_equal_compression,
     compression_effect,
-    equivalent_base_force,
     neglected_effects,
     worst_validity,
 )
-from ..model.arm.quantities import LOADS, SECTION_SIZE_NAMES
+from ..model.arm.quantities import LOAD_NAMES, SECTION_SIZE_NAMES
 from ..solve.changes.threshold_kinds import Threshold, ThresholdKind
 from ..solve.solve_lock import exclusive_solve
 from .flutter import ThresholdsOverDrags, thresholds_with_drag
@@ -43,7 +43,7 @@ class Assessment:
     thresholds: ThresholdsOverDrags
 
     @cached_property
-    def at_flutter(self) -> tuple[Effect, ...]:
+    def neglected_effects_at_flutter(self) -> tuple[Effect, ...]:
         """Neglected effects at the first flutter force for the most likely drag for which the arm flutters.
         The rate of motion is the largest rate over all drags."""
         return effects_at_flutter(self.arm, self.thresholds)
@@ -51,9 +51,9 @@ class Assessment:
     @cached_property
     def compression_under_load(self) -> tuple[Effect, ...]:
         """Compression by the arm's load, the only neglected effect that it changes; empty without load."""
-        if self.arm.load is None:
+        if self.arm.load_name is None:
             return ()
-        return (compression_effect(self.arm, equivalent_base_force(self.arm, self.arm.F)),)
+        return (compression_effect(self.arm, base_force_of_equal_compression(self.arm, self.arm.F)),)
 
     @property
     def dimensionless_flutter_force(self) -> float | None:
@@ -65,12 +65,12 @@ class Assessment:
     @property
     def effects(self) -> tuple[Effect, ...]:
         """Neglected effects at the flutter threshold, then under the load."""
-        return *self.at_flutter, *self.compression_under_load
+        return *self.neglected_effects_at_flutter, *self.compression_under_load
 
     @property
     def validity_at_flutter(self) -> Validity:
         """Validity of the model at the flutter threshold."""
-        return Validity(int(worst_validity(self.at_flutter, of_cycles=False)))
+        return Validity(int(worst_validity(self.neglected_effects_at_flutter, of_cycles=False)))
 
     @property
     def validity_of_verdict(self) -> Validity:
@@ -80,7 +80,7 @@ class Assessment:
     def effects_with(self, validity: Validity) -> list[Effect]:
         """Neglected effects with the given validity, in decreasing order of their ratio to the limit. Effects
         on cycles alone are left out."""
-        effects = [e for e in self.effects if e.validity == validity and not e.of_cycles_only]
+        effects = [e for e in self.effects if e.validity == validity and not e.is_of_cycles_only]
         return sorted(effects, key=lambda effect: -float(effect.value_over_limit))
 
 
@@ -107,14 +107,14 @@ def effects_at_flutter(arm: SlenderArm, thresholds: ThresholdsOverDrags) -> tupl
     return neglected_effects(
         arm,
         angular_frequency_at_smallest_drag(arm, abs(threshold.frequency)),
-        equivalent_base_force(arm, threshold.value),
+        base_force_of_equal_compression(arm, threshold.value),
     )
 
 
-def viscosity_factor(effects: tuple[Effect, ...]) -> float:
+def viscosity_factor_for_small_inertia(effects: tuple[Effect, ...]) -> float:
     """Factor on the viscosity with which the larger inertia in `effects`, of arm or fluid, just reaches its
     limit; NaN if the arm does not flutter."""
-    return max(float(e.viscosity_factor) for e in effects if e.name.startswith("inertia"))
+    return max(float(e.viscosity_factor_at_limit) for e in effects if e.name.startswith("inertia"))
 
 
 @exclusive_solve
@@ -127,15 +127,17 @@ def thickness_factor_for_small_inertia(arm: SlenderArm) -> float:
     take a second.
     """
     # Sections of unequal size do not scale with one thickness that the reader could choose.
-    if arm.shape.varies:
+    if arm.geometry.varies_along_arm:
         return nan
     factor = 1.0
     for _ in range(MAX_THINNING_ITERATIONS):
         scaled_arm = _unloaded_arm_with_scaled_section(arm, factor)
         # The flutter force changes with the thickness, through shear and drag, so each arm is solved anew.
-        thresholds = ThresholdsOverDrags((thresholds_with_drag(scaled_arm, scaled_arm.drags[0]),))
+        thresholds = ThresholdsOverDrags(
+            (thresholds_with_drag(scaled_arm, scaled_arm.base_drag_estimates[0]),)
+        )
         effects = effects_at_flutter(scaled_arm, thresholds)
-        required_viscosity_factor = viscosity_factor(effects)
+        required_viscosity_factor = viscosity_factor_for_small_inertia(effects)
         if MIN_REQUIRED_VISCOSITY_FACTOR < required_viscosity_factor <= 1.0:
             # A thinner arm may still be crushed or bent too much, and is then no remedy.
             is_valid = worst_validity(effects, of_cycles=False) < Validity.does_not_apply
@@ -148,7 +150,7 @@ def thickness_factor_for_small_inertia(arm: SlenderArm) -> float:
 def _unloaded_arm_with_scaled_section(arm: SlenderArm, thickness_ratio: float) -> SlenderArm:
     """The uniform arm `arm` without its load, with all sides of the section multiplied by
     `thickness_ratio`."""
-    omitted_names = {*LOADS, *chain(*SECTION_SIZE_NAMES)}
+    omitted_names = {*LOAD_NAMES, *chain(*SECTION_SIZE_NAMES)}
     other_quantities = {
         name: value for name, value in vars(arm.si).items() if not isnan(value) and name not in omitted_names
     }

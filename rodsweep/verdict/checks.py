@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from ..model.arm.arm import SlenderArm
 from ..model.arm.neglected import SELF_BUCKLING_WEIGHT, Effect, Validity
 from ..model.material.laws import LINEAR_CONSTITUTIVE_LAW
-from ..wording import two_digits
+from ..wording import two_significant_digits
 
 if TYPE_CHECKING:
     from .assessment import Assessment  # for annotations only: the module imports solvers
@@ -52,7 +52,7 @@ class Check:
 def checks_of(assessment: "Assessment") -> list[Check]:
     """Checks of all neglected effects on an arm, in the order of the report."""
     arm = assessment.arm
-    effects = {effect.name: effect for effect in assessment.at_flutter}
+    effects = {effect.name: effect for effect in assessment.neglected_effects_at_flutter}
     return [
         slenderness_check(arm),
         compression_check(assessment, effects["compression"]),
@@ -66,7 +66,7 @@ def checks_of(assessment: "Assessment") -> list[Check]:
 
 def slenderness_check(arm: SlenderArm) -> Check:
     """Check of the ratio of the arm's length to its radius against MIN_ACCURATE_SLENDERNESS."""
-    ratio = arm.si.length / arm.shape.largest_drag_radius
+    ratio = arm.si.length / arm.geometry.largest_drag_radius
     is_slender = ratio >= MIN_ACCURATE_SLENDERNESS
     reason = "slender enough for local drag"
     if not is_slender:
@@ -98,10 +98,9 @@ def compression_check(assessment: "Assessment", at_flutter: Effect) -> Check:
         f"real materials are no longer linear at this {noun}",
     )[validity]
     shortening = " and ".join(texts) or NO_COMPRESSION_CHECK_SENTENCE
-    place_clause = " at the weakest section" if assessment.arm.shape.varies else ""
-    return Check(
-        validity, f"Compression: {shortening} (F/k1){place_clause}; {remark}.", can_change_verdict=True
-    )
+    place_clause = " at the weakest section" if assessment.arm.geometry.varies_along_arm else ""
+    sentence = f"Compression: {shortening} (F/k1){place_clause}; {remark}."
+    return Check(validity, sentence, can_change_verdict=True)
 
 
 def _rubber_compression_check(assessment: "Assessment") -> Check:
@@ -110,29 +109,27 @@ def _rubber_compression_check(assessment: "Assessment") -> Check:
     arm = assessment.arm
     texts = []
     flutter = assessment.dimensionless_flutter_force
-    if arm.load is not None:
+    if arm.load_name is not None:
         texts.append(_strain_text("the load", "the arm", _weakest_section_shortening(arm, arm.F)))
     if flutter is not None:
         flutter_compression = _weakest_section_shortening(arm, flutter)
         texts.append(_strain_text("the flutter load", "it" if texts else "the arm", flutter_compression))
     shortening = " and ".join(texts) or NO_COMPRESSION_CHECK_SENTENCE
-    place_clause = " at the weakest section" if arm.shape.varies else ""
-    return Check(
-        Validity.applies,
-        f"Compression: {shortening}{place_clause}; the law of rubber includes large compression.",
-    )
+    place_clause = " at the weakest section" if arm.geometry.varies_along_arm else ""
+    sentence = f"Compression: {shortening}{place_clause}; the law of rubber includes large compression."
+    return Check(Validity.applies, sentence)
 
 
 def _strain_text(load_name: str, arm_name: str, strain: float) -> str:
     """Clause on the compressive strain of an arm under a load; a negative strain lengthens the arm."""
     verb = "shortens" if strain >= 0 else "lengthens"
-    return f"{load_name} {verb} {arm_name} by {two_digits(100 * abs(strain))} %"
+    return f"{load_name} {verb} {arm_name} by {two_significant_digits(100 * abs(strain))} %"
 
 
 def _weakest_section_shortening(arm: SlenderArm, F: float) -> float:
     """Compressive strain of the arm's weakest section under the force F. F: in k3/L^2."""
-    smallest_stiffness = min(station.young * station.section.area for station in arm.shape.stations)
-    base_stiffness = arm.shape.base.young * arm.cross_section.area
+    smallest_stiffness = min(station.young * station.section.area for station in arm.geometry.stations)
+    base_stiffness = arm.geometry.base.young * arm.cross_section.area
     return float(arm.material.constitutive_law.shortening(F / (arm.k1 * smallest_stiffness / base_stiffness)))
 
 
@@ -160,7 +157,9 @@ def inertia_checks(arm_inertia: Effect, fluid_inertia: Effect) -> list[Check]:
         f"they lower the threshold of flutter by some {_one_digit_text(percent)} %",
         f"the model neglects both and applies only up to {arm_inertia.limit:g}",
     )[validity]
-    arm_text, fluid_text = (two_digits(float(effect.value)) for effect in (arm_inertia, fluid_inertia))
+    arm_text, fluid_text = (
+        two_significant_digits(float(effect.value)) for effect in (arm_inertia, fluid_inertia)
+    )
     sentence = (
         f"Inertia: at flutter mass times rate over drag is {arm_text} for the arm and {fluid_text} for the "
         f"fluid beside it; {remark}."
@@ -179,7 +178,7 @@ def reynolds_checks(reynolds_number: Effect) -> list[Check]:
         "at large amplitude the drag is somewhat larger than in the model",
         "at large amplitude the drag is larger than in the model, and the motion slower",
     )[validity]
-    value = two_digits(float(reynolds_number.value))
+    value = two_significant_digits(float(reynolds_number.value))
     return [Check(validity, f"Reynolds number: {value} if the tip moves by half the length; {remark}.")]
 
 
@@ -193,9 +192,8 @@ def tube_flattening_check(effect: Effect) -> Check:
     """Check of a tube's wall. effect: relative loss of bending stiffness by flattening of the section, if the
     tip moves by L/2."""
     loss = float(effect.value)
-    result = (
-        f"takes some {two_digits(100 * loss)} % of its bending stiffness" if loss < 1 else "folds the tube"
-    )
+    loss_text = f"takes some {two_significant_digits(100 * loss)} % of its bending stiffness"
+    result = loss_text if loss < 1 else "folds the tube"
     validity = _validity_of_effect(effect)
     remark = (
         "negligible",
@@ -214,23 +212,21 @@ def weight_check(effect: Effect | None, arm: SlenderArm) -> Check:
     ratio = float(effect.value)
     validity = _validity_of_effect(effect)
     sag = SAG_AT_SELF_BUCKLING * ratio
-    sag_clause = (
-        f"a horizontal arm sags by {two_digits(sag)} of its length"
-        if sag < MAX_STATED_SAG
-        else "a horizontal arm hangs down"
+    sag_text = (
+        f"sags by {two_significant_digits(sag)} of its length" if sag < MAX_STATED_SAG else "hangs down"
     )
     remark = (
         "negligible",
         "weight bends the arm a little, which the model neglects",
         "weight bends the arm, which the model neglects",
     )[validity]
-    ratio_clause = f"weight less buoyancy is {two_digits(ratio)} of the weight that buckles an upright arm"
-    clause_of_uniform_arm = (
-        "" if arm.shape.varies else f"; {sag_clause}"
-    )  # the formula of the sag is valid for uniform arms
-    return Check(
-        validity, f"Weight: {ratio_clause}{clause_of_uniform_arm}; {remark}.", can_change_verdict=True
+    # The formula of the sag is valid for uniform arms.
+    sag_clause = "" if arm.geometry.varies_along_arm else f"; a horizontal arm {sag_text}"
+    sentence = (
+        f"Weight: weight less buoyancy is {two_significant_digits(ratio)} of the weight that buckles an "
+        f"upright arm{sag_clause}; {remark}."
     )
+    return Check(validity, sentence, can_change_verdict=True)
 
 
 def poisson_check(arm: SlenderArm) -> Check:

@@ -13,7 +13,7 @@ from .relative_load import SEARCH_END, SEARCH_ENDS_OF_VARYING_ARM, rod_with_drag
 
 SEARCH_REQUEST = ThresholdsRequest(F_max=SEARCH_END, accuracy=1e-6, certify=True, max_thresholds=1000)
 """Request for all thresholds of an arm, with relative accuracy 1e-6 and a proof that none is missing."""
-MIN_SEARCH_END_RATIO = 2.0
+MIN_SEARCH_END_OVER_FLUTTER_AND_LOAD = 2.0
 """The search for an arm that is not uniform or not of linear material is extended until its largest force is
 at least this number times the first flutter force and this number times the load."""
 KINDS_USED_BY_VERDICT = (
@@ -37,7 +37,7 @@ class ThresholdsWithDrag:
     @property
     def is_usable(self) -> bool:
         """Whether the search gave thresholds. The search may have ended early, the list may be incomplete,
-        and the thresholds may miss the accuracy; see `uncertainty`."""
+        and the thresholds may miss the accuracy; see `uncertainty_text`."""
         return self.thresholds.status in (
             ThresholdStatus.ok,
             ThresholdStatus.ended_early,
@@ -46,7 +46,7 @@ class ThresholdsWithDrag:
         )
 
     @property
-    def uncertainty(self) -> str:
+    def uncertainty_text(self) -> str:
         """Why usable thresholds are uncertain: a threshold of a kind in KINDS_USED_BY_VERDICT misses the
         accuracy, or the list is not proved complete; empty if the thresholds are certain."""
         search = self.thresholds
@@ -55,7 +55,7 @@ class ThresholdsWithDrag:
             c.error > accuracy * abs(c.value) for c in search.thresholds if c.kind in KINDS_USED_BY_VERDICT
         ):
             return f"a threshold misses the relative accuracy of {accuracy:g}"
-        if search.search_result.proved:
+        if search.search_result.is_proved:
             return ""
         return search.message or "the list of thresholds is not proved complete"
 
@@ -87,7 +87,7 @@ class ThresholdsWithDrag:
         unstable_counts = [c.unstable_after for c in self.thresholds.thresholds if c.value <= F]
         return bool(unstable_counts) and unstable_counts[-1] != 0
 
-    def up_to(self, end_force: float) -> "ThresholdsWithDrag":
+    def without_forces_above(self, end_force: float) -> "ThresholdsWithDrag":
         """A copy without the thresholds at forces larger than `end_force`."""
         result = self.thresholds
         kept_thresholds = tuple(c for c in result.thresholds if c.value <= end_force)
@@ -100,11 +100,12 @@ class ThresholdsWithDrag:
 @dataclass(frozen=True, slots=True)
 class RangeOverDrags:
     """Range of a quantity over the drags of an arm; drags for which the quantity does not exist are left out.
-    low, high: smallest and largest value. for_every_drag: whether the quantity exists for every drag."""
+    low, high: smallest and largest value. exists_for_every_drag: whether the quantity exists for every
+    drag."""
 
     low: float
     high: float
-    for_every_drag: bool = True
+    exists_for_every_drag: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,33 +116,33 @@ class ThresholdsOverDrags:
     """Thresholds for each drag, the most likely drag first."""
 
     @property
-    def failures(self) -> list[str]:
+    def failure_texts(self) -> list[str]:
         """Distinct error messages of failed searches; to stop before the requested force is no failure."""
         failed_searches = [f.thresholds for f in self.by_drag if not f.is_usable]
         return sorted({thresholds.message or thresholds.status.sentence for thresholds in failed_searches})
 
     @property
-    def uncertainties(self) -> list[str]:
+    def uncertainty_texts(self) -> list[str]:
         """Distinct reasons for which thresholds, for some drags, are uncertain."""
-        return sorted({f.uncertainty for f in self.by_drag if f.is_usable} - {""})
+        return sorted({f.uncertainty_text for f in self.by_drag if f.is_usable} - {""})
 
     @property
     def end(self) -> float:
         """Largest force of the search, in k3/L^2; the same for all drags."""
         return self.by_drag[0].thresholds.end
 
-    def first_forces(self, kind: ThresholdKind) -> RangeOverDrags | None:
+    def first_force_range(self, kind: ThresholdKind) -> RangeOverDrags | None:
         """Range, over the drags, of the force at the first threshold of the given kind, in k3/L^2; None if no
         drag has such a threshold."""
         return range_over_drags([f.first_force(kind) for f in self.by_drag])
 
     @property
-    def second_flutter_forces(self) -> RangeOverDrags | None:
+    def second_flutter_force_range(self) -> RangeOverDrags | None:
         """Range, over the drags, of the force at which the arm flutters again, in k3/L^2; None if it does not
         for any drag."""
         return range_over_drags([f.second_flutter_force for f in self.by_drag])
 
-    def first_frequencies(self, kind: ThresholdKind) -> RangeOverDrags | None:
+    def first_frequency_range(self, kind: ThresholdKind) -> RangeOverDrags | None:
         """Range, over the drags, of the frequency at the first threshold of the given kind, in Hz; None if no
         drag has such a threshold."""
         return range_over_drags([f.first_frequency(kind) for f in self.by_drag])
@@ -166,23 +167,24 @@ def thresholds_over_drags(arm: SlenderArm) -> ThresholdsOverDrags:
     """All thresholds of the straight arm for each drag, up to a force common to all drags. The search with
     the most likely drag sets this force. If a search stops at a smaller force, the smallest such force is the
     end for all drags."""
-    likeliest_drag, *others = arm.drags
-    end, first_result = _first_search(arm, likeliest_drag)
+    likeliest_drag, *others = arm.base_drag_estimates
+    end, first_result = _first_search_end_and_thresholds(arm, likeliest_drag)
     results = (first_result, *(thresholds_with_drag(arm, drag, end) for drag in others))
     common_end = min(thresholds.thresholds.end for thresholds in results)
-    return ThresholdsOverDrags(tuple(thresholds.up_to(common_end) for thresholds in results))
+    return ThresholdsOverDrags(tuple(thresholds.without_forces_above(common_end) for thresholds in results))
 
 
-def _first_search(arm: SlenderArm, drag: Drag) -> tuple[float, ThresholdsWithDrag]:
+def _first_search_end_and_thresholds(arm: SlenderArm, drag: Drag) -> tuple[float, ThresholdsWithDrag]:
     """Returns (end, thresholds): the largest force requested, and the thresholds up to this force. `end` is
     SEARCH_END for an arm that does not vary. For other arms, `end` is the first number of
     SEARCH_ENDS_OF_VARYING_ARM that exceeds the first flutter force and a known load by at least the factor
-    MIN_SEARCH_END_RATIO, or before which the search ended; without such a number, the last number."""
-    has_known_load = arm.load is not None and arm.share_of_flutter is None
-    for end in SEARCH_ENDS_OF_VARYING_ARM if arm.shape.varies else (SEARCH_END,):
+    MIN_SEARCH_END_OVER_FLUTTER_AND_LOAD, or before which the search ended; without such a number, the last
+    number."""
+    has_known_load = arm.load_name is not None and arm.load_over_flutter is None
+    for end in SEARCH_ENDS_OF_VARYING_ARM if arm.geometry.varies_along_arm else (SEARCH_END,):
         thresholds = thresholds_with_drag(arm, drag, end)
         flutter = thresholds.first_force(ThresholdKind.hopf)
         min_end = max(inf if flutter is None else flutter, arm.F if has_known_load else 0.0)
-        if MIN_SEARCH_END_RATIO * min_end <= end or thresholds.thresholds.end < end:
+        if MIN_SEARCH_END_OVER_FLUTTER_AND_LOAD * min_end <= end or thresholds.thresholds.end < end:
             break
     return end, thresholds

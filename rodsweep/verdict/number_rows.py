@@ -4,11 +4,11 @@ from math import isfinite
 from typing import NamedTuple
 
 from ..model.arm.arm import SlenderArm
+from ..model.arm.geometry import Station
 from ..model.arm.section import Tube
-from ..model.arm.shape import Station
 from ..model.material.laws import LINEAR_CONSTITUTIVE_LAW
 from ..model.units import with_si_prefix
-from .load import three_digit_range_text
+from .load_texts import three_digit_range_text
 from .planes import PlaneOfMotion
 
 RUBBER_STRESS_FORMULA = "stress E (h - 1/h^2)/3 at the stretch h, incompressible"
@@ -53,17 +53,17 @@ def taper_segments_and_law_rows(arm: SlenderArm) -> list[NumberRow]:
     if arm.taper != 1:
         formula = "tip radius/radius; all other rows are for the base"
         rows.append(NumberRow("taper", f"{arm.taper:.4g}", formula, "k1, k2, gamma3 ~ r^2, k3 ~ r^4"))
-    elif arm.shape.varies:
+    elif arm.geometry.varies_along_arm:
         start = 0.0
-        for number, station in enumerate(arm.shape.stations, 1):
-            interval_text = f"u = {start:.4g} to {station.end:.4g}"
+        for number, station in enumerate(arm.geometry.stations, 1):
+            interval_text = f"u = {start:.4g} to {station.end_position:.4g}"
             source = "all other rows are for segment 1" if number == 1 else "drag by its own radius"
             rows.append(
                 NumberRow(
                     f"segment {number}", interval_text, station_radii_and_modulus_phrase(station), source
                 )
             )
-            start = station.end
+            start = station.end_position
     if arm.law != LINEAR_CONSTITUTIVE_LAW.law_name:
         rows.append(
             NumberRow(
@@ -81,8 +81,13 @@ def dimensional_rows(arm: SlenderArm) -> list[NumberRow]:
     section = arm.cross_section
     kappa = section.shear_coefficient(arm.poisson)
     return [
-        NumberRow("A", f"{section.area:.4g} m^2", section.formula.split(", ")[0], "geometry"),
-        NumberRow("I", f"{section.second_moment:.4g} m^4", section.formula.split(", ")[1], "geometry"),
+        NumberRow("A", f"{section.area:.4g} m^2", section.area_and_moment_formula.split(", ")[0], "geometry"),
+        NumberRow(
+            "I",
+            f"{section.second_moment:.4g} m^4",
+            section.area_and_moment_formula.split(", ")[1],
+            "geometry",
+        ),
         NumberRow("kappa", f"{kappa:.4g}", section.shear_coefficient_formula, "Cowper 1966"),
         NumberRow("k3", f"{arm.bending_stiffness:.4g} N m^2", "E I", "paper, Sec. III"),
         NumberRow("k3/L^2", f"{arm.force_scale:.4g} N", "unit of force", "paper, Sec. VI"),
@@ -92,12 +97,12 @@ def dimensional_rows(arm: SlenderArm) -> list[NumberRow]:
 
 def load_row(arm: SlenderArm) -> list[NumberRow]:
     """Row with the tip force; an empty list for an arm without load."""
-    if arm.load is None:
+    if arm.load_name is None:
         return []
-    tip_clause = " of the tip" if arm.shape.varies else ""
+    tip_clause = " of the tip" if arm.geometry.varies_along_arm else ""
     formula = "as given"
-    if arm.load == "pressure":
-        formula = f"{arm.shape.tip.section.pressure_force_formula}{tip_clause}"
+    if arm.load_name == "pressure":
+        formula = f"{arm.geometry.tip.section.pressure_force_formula}{tip_clause}"
     return [NumberRow("tip force", f"{arm.tip_force:.4g} N", formula, "paper, Sec. IV")]
 
 
@@ -106,7 +111,7 @@ def flutter_force_row(plane: PlaneOfMotion) -> list[NumberRow]:
     or only with part of the drags, or if a search failed. Of two arms with tips of different size, the larger
     pressure may be the smaller force."""
     thresholds = plane.thresholds
-    forces = [] if thresholds.failures else plane.flutter_load_by_drag
+    forces = [] if thresholds.failure_texts else plane.flutter_load_by_drag
     # A range over drags that leaves some drags out would look like the whole range.
     if not forces or not all(isfinite(force) for force in forces):
         return []
@@ -122,7 +127,7 @@ def value_with_drag_range(values: list[float], unit: str = "") -> str:
 
 def drag_rows(arm: SlenderArm) -> list[NumberRow]:
     """Rows with the drag coefficients and the time scale tau2, with their ranges over the drags."""
-    drags = arm.drags
+    drags = arm.base_drag_estimates
     translation = "Cox 1970; Gray & Hancock 1955, Lighthill 1976"
     return [
         NumberRow(
@@ -154,8 +159,10 @@ def drag_rows(arm: SlenderArm) -> list[NumberRow]:
 
 def dimensionless_rows(arm: SlenderArm) -> list[NumberRow]:
     """Rows with the dimensionless parameters of an arm, named like keys of a config; F only with a load."""
-    drags = arm.drags
-    force = NumberRow("F", f"{arm.F:.5g}", "tip force L^2/k3", "paper, Sec. IV, VI") if arm.load else None
+    drags = arm.base_drag_estimates
+    force = (
+        NumberRow("F", f"{arm.F:.5g}", "tip force L^2/k3", "paper, Sec. IV, VI") if arm.load_name else None
+    )
     return [
         NumberRow("k1", f"{arm.k1:.5g}", "E A L^2/k3", "paper, Sec. III, VI"),
         NumberRow("k2", f"{arm.k2:.5g}", "kappa G A L^2/k3, G = E/(2 (1 + nu))", "paper, Sec. III, VI"),

@@ -6,7 +6,7 @@ from typing import Any, TypeVar
 
 from ..errors import InputError
 from ..model.arm.arm import SlenderArm
-from ..model.arm.quantities import UNITS
+from ..model.arm.quantities import UNITS_AND_EXAMPLES
 from ..model.units import with_si_prefix
 from ..solve.changes.threshold_kinds import ThresholdKind
 from .flutter import ThresholdsOverDrags, thresholds_over_drags
@@ -42,7 +42,7 @@ class PlanesOfMotion:
     second: PlaneOfMotion | None = None
 
     @property
-    def is_first_for_every_drag(self) -> bool:
+    def is_first_lowest_for_every_drag(self) -> bool:
         """Whether, for every drag, the flutter load in the plane `first` is not larger than in `second`; True
         without a second plane."""
         if self.second is None:
@@ -70,19 +70,19 @@ def with_absolute_load(planes: PlanesOfMotion) -> PlanesOfMotion:
     load is the smallest over all planes, for the most likely drag. Raises InputError if the arm does not
     flutter."""
     first = planes.first
-    ratio = first.arm.share_of_flutter
-    load = first.arm.load
+    ratio = first.arm.load_over_flutter
+    load = first.arm.load_name
     if ratio is None or load is None:
         return planes
     force = first.thresholds.by_drag[0].first_force(ThresholdKind.hopf)
     scale = first.arm.load_scale
     if force is None:
-        end_text = f"{float(f'{first.thresholds.end * scale:.3g}'):g} {UNITS[load][0]}"
+        end_text = f"{float(f'{first.thresholds.end * scale:.3g}'):g} {UNITS_AND_EXAMPLES[load][0]}"
         raise InputError(
             f"{load} = '{getattr(first.arm, load)}' cannot be computed: with the likeliest drag the arm does "
             f"not flutter up to {end_text}; give an absolute load"
         )
-    factor, unit = with_si_prefix(ratio * force * scale, UNITS[load][0])
+    factor, unit = with_si_prefix(ratio * force * scale, UNITS_AND_EXAMPLES[load][0])
     # As text with a unit, because a bare number would be read in SI units and lose the user's scale.
     absolute_load: dict[str, Any] = {load: f"{ratio * force * scale * factor:.15g} {unit}"}
     second = planes.second and replace(planes.second, arm=replace(planes.second.arm, **absolute_load))
@@ -92,7 +92,7 @@ def with_absolute_load(planes: PlanesOfMotion) -> PlanesOfMotion:
 def arm_with_absolute_load(arm: A) -> A:
     """The arm with its load in a physical unit. Solves for the flutter load if the load is relative to the
     flutter load; raises InputError if such an arm does not flutter."""
-    load = arm.load
-    if load is None or arm.share_of_flutter is None:
+    load = arm.load_name
+    if load is None or arm.load_over_flutter is None:
         return arm
     return replace(arm, **{load: getattr(with_absolute_load(planes_of(arm)).first.arm, load)})

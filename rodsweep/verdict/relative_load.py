@@ -14,14 +14,14 @@ import numpy as np
 
 from ..determinant.certificate.covering import cover_with_boxes
 from ..determinant.certificate.first_crossing_boxes import first_crossing_boxes
-from ..determinant.parameter_path import ParameterPath, coefficients_at, determinant_along_path
+from ..determinant.parameter_path import ParameterPath, coefficients_at, determinant_value_on_path
 from ..determinant.roots.newton import LocatedEigenvalue
 from ..errors import InputError
 from ..model.arm.arm import SlenderArm
 from ..model.arm.drag import Drag
 from ..model.material.rod_material import RodMaterial
 from ..model.rod import Rod
-from ..solve.changes.search_range import end_below_crushing
+from ..solve.changes.search_range import search_end_below_crushing
 from ..solve.changes.threshold_kinds import ThresholdKind
 
 A = TypeVar("A", bound=SlenderArm)
@@ -35,7 +35,7 @@ SEARCH_ENDS_OF_VARYING_ARM = (3.0, 10.0, 30.0, 100.0, 300.0, SEARCH_END)
 """Largest forces of successive searches, in k3/L^2 at the base, for an arm that is not uniform or not of
 linear material. The first search that finds flutter is the last: far beyond flutter, where many modes are
 unstable, a search takes up to half a minute for each drag."""
-REFERENCE_DIGITS = 10
+REFERENCE_FORCE_DIGITS = 10
 """Significant digits to which the reference force is rounded. Ten digits are more than the data of an arm
 have, and few enough to be equal on all machines. A run resumed elsewhere then has the same points."""
 
@@ -67,7 +67,7 @@ def rods_by_plane(
 def _rod_in_its_plane(arm: SlenderArm, material: RodMaterial | None, taper: float | None) -> Rod:
     """The arm as a rod that bends in the plane of the section's height. material: constitutive law and
     profile. taper: ratio of tip to base radius."""
-    rod = rod_with_drag(arm, arm.drags[0], material)
+    rod = rod_with_drag(arm, arm.base_drag_estimates[0], material)
     return rod if taper is None else replace(rod, taper=taper)
 
 
@@ -80,19 +80,19 @@ def rod_with_drag(arm: SlenderArm, drag: Drag, material: RodMaterial | None = No
 
 @cache
 def first_hopf_force(rod: Rod) -> float:
-    """Smallest F at which a pair of modes of `rod` becomes unstable, rounded to REFERENCE_DIGITS digits. inf
-    if no pair becomes unstable up to the end of the search. Raises FlutterSearchFailed if the search
-    overflows or cannot exclude a Hopf point at a smaller F."""
+    """Smallest F at which a pair of modes of `rod` becomes unstable, rounded to REFERENCE_FORCE_DIGITS
+    digits. inf if no pair becomes unstable up to the end of the search. Raises FlutterSearchFailed if the
+    search overflows or cannot exclude a Hopf point at a smaller F."""
     path = ParameterPath(rod, "F")
     find_first = _first_hopf_force_by_boxes if rod.is_uniform_and_linear else _first_hopf_force_of_varying_arm
     try:
         for end in (
             (FIRST_SEARCH_END, SEARCH_END) if rod.is_uniform_and_linear else SEARCH_ENDS_OF_VARYING_ARM
         ):
-            force = find_first(path, end_below_crushing(rod, end))
+            force = find_first(path, search_end_below_crushing(rod, end))
             if force < inf:
                 # The last digits of a solution differ between machines, and with them all points of a sweep.
-                return float(f"{force:.{REFERENCE_DIGITS}g}")
+                return float(f"{force:.{REFERENCE_FORCE_DIGITS}g}")
     except (ArithmeticError, MemoryError, np.linalg.LinAlgError) as error:
         reason = str(error) or type(error).__name__
         raise FlutterSearchFailed(
@@ -127,12 +127,12 @@ def _first_hopf_force_of_varying_arm(path: ParameterPath, end_force: float) -> f
     """Smallest F up to `end_force` at which a pair of modes of an arm that is not uniform or not of linear
     material becomes unstable; inf if no pair does. Raises FlutterSearchFailed if the search along F fails or
     a smaller F is not excluded."""
-    from ..solve.changes.thresholds_along_path import find_axis_crossings
-    from ..solve.point_outcome import FAILURES, cause_of
+    from ..solve.changes.thresholds_along_path import find_imaginary_axis_crossings
+    from ..solve.point_outcome import FAILURE_EXCEPTIONS, cause_of
 
     try:
-        located = find_axis_crossings(path, 0.0, end_force)
-    except FAILURES as error:
+        located = find_imaginary_axis_crossings(path, 0.0, end_force)
+    except FAILURE_EXCEPTIONS as error:
         raise FlutterSearchFailed(
             "the search for the flutter threshold to which a relative load refers fails: "
             f"{cause_of(error)}; give an absolute load"
@@ -142,7 +142,7 @@ def _first_hopf_force_of_varying_arm(path: ParameterPath, end_force: float) -> f
         default=inf,
     )
     # A search that ended early after the first Hopf point has all that is asked for.
-    if not located.proved or (located.ended_early and force == inf):
+    if not located.is_proved or (located.ended_early and force == inf):
         raise FlutterSearchFailed(
             "the flutter threshold to which a relative load refers is uncertain, because a Hopf point may be "
             "missing; give an absolute load"
@@ -152,7 +152,7 @@ def _first_hopf_force_of_varying_arm(path: ParameterPath, end_force: float) -> f
 
 def _becomes_unstable(path: ParameterPath, zero: LocatedEigenvalue) -> bool:
     """Whether the pair on the imaginary axis at `zero` becomes unstable as p grows: d Re w/dp > 0."""
-    value = determinant_along_path(
+    value = determinant_value_on_path(
         complex(0.0, zero.eta_or_x), coefficients_at(zero.p, path.origin, path.direction), path.direction
     )
     return bool((-value.D_p / value.D_w).real > 0)

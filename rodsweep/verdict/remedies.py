@@ -4,17 +4,17 @@ from math import isnan
 
 from ..model.arm.arm import SlenderArm
 from ..model.arm.neglected import Effect, Validity
-from ..model.arm.quantities import UNITS
+from ..model.arm.quantities import UNITS_AND_EXAMPLES
 from ..model.units import unit_of, value_in_unit
-from ..wording import two_digits
+from ..wording import two_significant_digits
 from .assessment import (
     Assessment,
     rounded_down,
     rounded_up,
     thickness_factor_for_small_inertia,
-    viscosity_factor,
+    viscosity_factor_for_small_inertia,
 )
-from .load import LoadFormatter
+from .load_texts import LoadFormatter
 
 MAX_FOUR_DIGIT_RATIO = 1.1
 """Ratios of an effect to its limit below this number are printed with four digits; two could read 1.0."""
@@ -25,22 +25,22 @@ def not_applicable_sentences(arm: SlenderArm, assessment: Assessment) -> list[st
     effects = assessment.effects_with(Validity.does_not_apply)
     # The first effect of each kind stays.
     *others, first = {effect_kind(effect): effect for effect in reversed(effects)}.values()
-    remedy = _remedy(first, arm, assessment)
+    remedy = _remedy_clause(first, arm, assessment)
     is_valid = assessment.validity_at_flutter != Validity.does_not_apply
     # At flutter itself the model applies then, so the sentence must say that the load is the reason.
     load_clause = f" at {LoadFormatter(arm).typed_text}" if is_valid else ""
-    excess = f"{_name_of(first, arm, assessment)} is {ratio_to_limit_text(first)} what the model allows"
+    excess = f"{_effect_name(first, arm, assessment)} is {ratio_to_limit_text(first)} what the model allows"
     sentences = [f"The model does not apply{load_clause}: {excess}; {remedy}."]
     for effect in reversed(others):
-        name = _name_of(effect, arm, assessment).capitalize()
+        name = _effect_name(effect, arm, assessment).capitalize()
         sentences.append(
             f"{name} is {ratio_to_limit_text(effect)} what the model allows, too; "
-            f"{_remedy(effect, arm, assessment)}."
+            f"{_remedy_clause(effect, arm, assessment)}."
         )
     return sentences
 
 
-def _name_of(effect: Effect, arm: SlenderArm, assessment: Assessment) -> str:
+def _effect_name(effect: Effect, arm: SlenderArm, assessment: Assessment) -> str:
     """Name of a neglected effect on an arm; compression under a pull is extension."""
     is_pulled = any(effect is loaded for loaded in assessment.compression_under_load) and arm.F < 0
     return "extension" if is_pulled else effect.name
@@ -55,16 +55,16 @@ def effect_kind(effect: Effect) -> str:
 def ratio_to_limit_text(effect: Effect) -> str:
     """Ratio of an effect to its limit: "2.5 times", with two digits, or four below MAX_FOUR_DIGIT_RATIO."""
     ratio = float(effect.value_over_limit)
-    return f"{two_digits(ratio)} times" if ratio >= MAX_FOUR_DIGIT_RATIO else f"{ratio:.4g} times"
+    return f"{two_significant_digits(ratio)} times" if ratio >= MAX_FOUR_DIGIT_RATIO else f"{ratio:.4g} times"
 
 
-def _remedy(effect: Effect, arm: SlenderArm, assessment: Assessment) -> str:
+def _remedy_clause(effect: Effect, arm: SlenderArm, assessment: Assessment) -> str:
     """Clause that names the change of arm, fluid or load by which the effect is reduced to its limit."""
     ratio = float(1 / effect.value_over_limit)
     if effect_kind(effect) == "inertia":
-        return _thicker_fluid_or_thinner_arm(arm, assessment)
+        return _inertia_remedy_clause(arm, assessment)
     if effect_kind(effect) == "weight":
-        si_unit = UNITS["density_difference"][0]
+        si_unit = UNITS_AND_EXAMPLES["density_difference"][0]
         unit = unit_of(arm.density_difference, si_unit)  # type: ignore[arg-type]
         limit = rounded_down(value_in_unit(abs(arm.si.density_difference) * ratio, unit, si_unit))
         return f"the model needs an arm whose density is within {limit:g} {unit} of the fluid's"
@@ -75,12 +75,12 @@ def _remedy(effect: Effect, arm: SlenderArm, assessment: Assessment) -> str:
     return "the model needs a longer or a thinner arm"
 
 
-def _thicker_fluid_or_thinner_arm(arm: SlenderArm, assessment: Assessment) -> str:
+def _inertia_remedy_clause(arm: SlenderArm, assessment: Assessment) -> str:
     """Clause with the smallest viscosity of the fluid, and the largest thickness of the arm if known, for
     which inertia is within its limit."""
-    si_unit = UNITS["viscosity"][0]
+    si_unit = UNITS_AND_EXAMPLES["viscosity"][0]
     unit = unit_of(arm.viscosity, si_unit)
-    factor = viscosity_factor(assessment.at_flutter)
+    factor = viscosity_factor_for_small_inertia(assessment.neglected_effects_at_flutter)
     viscosity = (
         f"{rounded_up(value_in_unit(arm.si.viscosity * factor, unit, si_unit)):g} {unit.replace('*', ' ')}"
     )

@@ -8,11 +8,11 @@ from ..model.arm.neglected import Validity
 from ..solve.changes.threshold_kinds import ThresholdKind
 from .assessment import Assessment
 from .flutter import RangeOverDrags, ThresholdsOverDrags
-from .load import LoadFormatter, percent_range_text, three_digit_range_text
+from .load_texts import LoadFormatter, percent_range_text, three_digit_range_text
 from .planes import PlaneOfMotion, PlanesOfMotion
 from .remedies import effect_kind, not_applicable_sentences
 
-CRUSHED_END_RATIO = 0.999
+MIN_CRUSHED_END_OVER_CRUSHING_FORCE = 0.999
 """A search ended at crushing if its end, in units of the crushing force, is above this fraction."""
 
 
@@ -22,13 +22,15 @@ def verdict_sentences(planes: PlanesOfMotion, assessment: Assessment) -> list[st
     The second plane is left out if the model applies at flutter but not under the load. If a search in the
     first plane failed, the list contains only the reason."""
     plane = planes.first
-    if plane.thresholds.failures:
+    if plane.thresholds.failure_texts:
         return [
-            "For some drags the thresholds could not be found: " + "; ".join(plane.thresholds.failures) + "."
+            "For some drags the thresholds could not be found: "
+            + "; ".join(plane.thresholds.failure_texts)
+            + "."
         ]
     headline, *others = _sentences_if_search_succeeded(planes, assessment)
     known_planes = [plane for plane in (planes.first, planes.second) if plane is not None]
-    doubts = sorted({doubt for plane in known_planes for doubt in plane.thresholds.uncertainties})
+    doubts = sorted({doubt for plane in known_planes for doubt in plane.thresholds.uncertainty_texts})
     doubt_sentences = [f"For some drags this is not certain: {'; '.join(doubts)}."] if doubts else []
     return [headline, *doubt_sentences, *others]
 
@@ -44,10 +46,10 @@ def _sentences_if_search_succeeded(planes: PlanesOfMotion, assessment: Assessmen
         kinds = " and ".join(dict.fromkeys(map(effect_kind, invalid_effects)))
         return [
             *headline,
-            *_flutter_without_effects(plane, kinds),
+            *_flutter_without_effects_sentences(plane, kinds),
             *_second_plane_sentences(planes, "would be"),
         ]
-    flutter = plane.thresholds.first_forces(ThresholdKind.hopf)
+    flutter = plane.thresholds.first_force_range(ThresholdKind.hopf)
     flutter_text = (
         "No flutter was found" if flutter is None else f"Flutter, at {_flutter_load_text(plane, flutter)},"
     )
@@ -59,15 +61,15 @@ def _valid_arm_sentences(plane: PlaneOfMotion) -> list[str]:
     arm = plane.arm
     thresholds = plane.thresholds
     load = LoadFormatter(plane.arm)
-    flutter = thresholds.first_forces(ThresholdKind.hopf)
-    restabilization = thresholds.first_forces(ThresholdKind.restabilization)
+    flutter = thresholds.first_force_range(ThresholdKind.hopf)
+    restabilization = thresholds.first_force_range(ThresholdKind.restabilization)
     if flutter is None:
         consequence = f": it stays straight at {load.typed_text}" if load.typed_text else ""
         if thresholds.end < arm.F:
             consequence = f": whether the arm beats at {load.typed_text} is not known"
         return [f"The arm does not flutter {_search_end_clause(plane, load)}{consequence}."]
     clause = _beating_clause(thresholds, " begins")
-    if arm.load is None:
+    if arm.load_name is None:
         sentences = [
             f"The arm flutters at {_flutter_load_text(plane, flutter)}: above, it gives way and{clause}."
         ]
@@ -76,10 +78,10 @@ def _valid_arm_sentences(plane: PlaneOfMotion) -> list[str]:
             _load_comparison_sentence(plane, flutter, load),
             f"Above, the straight arm gives way and{clause}.",
         ]
-    if not flutter.for_every_drag:
+    if not flutter.exists_for_every_drag:
         sentences.append("For part of the range of drag the arm does not flutter at all.")
     if restabilization is not None:
-        drag_note = "" if restabilization.for_every_drag else ", for part of the range of drag"
+        drag_note = "" if restabilization.exists_for_every_drag else ", for part of the range of drag"
         loads = f"{load.range_of_forces_text(restabilization)}{drag_note}"
         sentences.append(
             f"The straight arm is stable again above {loads}{_second_flutter_clause(thresholds, load)}."
@@ -91,7 +93,7 @@ def _valid_arm_sentences(plane: PlaneOfMotion) -> list[str]:
 
 def _beating_clause(thresholds: ThresholdsOverDrags, begins: str) -> str:
     """Clause on the frequency of flutter, after the verb `begins`; empty if the frequency is not known."""
-    frequency = thresholds.first_frequencies(ThresholdKind.hopf)
+    frequency = thresholds.first_frequency_range(ThresholdKind.hopf)
     if frequency is None:
         return ""
     return f"{begins} to beat at {three_digit_range_text(frequency.low, frequency.high)} Hz"
@@ -100,10 +102,10 @@ def _beating_clause(thresholds: ThresholdsOverDrags, begins: str) -> str:
 def _second_flutter_clause(thresholds: ThresholdsOverDrags, load: LoadFormatter) -> str:
     """Clause on the load at which an arm that is stable again flutters a second time; empty if it does not
     flutter again."""
-    forces = thresholds.second_flutter_forces
+    forces = thresholds.second_flutter_force_range
     if forces is None:
         return ""
-    drag_clause = "" if forces.for_every_drag else ", for part of the range of drag"
+    drag_clause = "" if forces.exists_for_every_drag else ", for part of the range of drag"
     return f", and flutters again above {load.range_of_forces_text(forces)}{drag_clause}"
 
 
@@ -149,20 +151,20 @@ def _excess_text(F: float, flutter: RangeOverDrags) -> str:
     )
 
 
-def _flutter_without_effects(plane: PlaneOfMotion, effect_names: str) -> list[str]:
+def _flutter_without_effects_sentences(plane: PlaneOfMotion, effect_names: str) -> list[str]:
     """Sentences on the flutter that an arm outside the model would have without the effects
     `effect_names`."""
     arm = plane.arm
     thresholds = plane.thresholds
     load = LoadFormatter(plane.arm)
-    flutter = thresholds.first_forces(ThresholdKind.hopf)
+    flutter = thresholds.first_force_range(ThresholdKind.hopf)
     if flutter is None:
         return [f"Without {effect_names} the arm would not flutter {_search_end_clause(plane, load)}."]
     clause = _beating_clause(thresholds, " and begin")
     sentences = [
         f"Without {effect_names} the arm would flutter at {_flutter_load_text(plane, flutter)}{clause}."
     ]
-    if arm.load is None or arm.F <= 0:
+    if arm.load_name is None or arm.F <= 0:
         return sentences
     if flutter.low > arm.F:
         position = f"{percent_range_text(1 - arm.F / flutter.low, 1 - arm.F / flutter.high)} % below"
@@ -179,14 +181,14 @@ def _second_plane_sentences(planes: PlanesOfMotion, verb: str) -> list[str]:
     second_plane = planes.second
     if second_plane is None:
         return []
-    if second_plane.thresholds.failures:
+    if second_plane.thresholds.failure_texts:
         return [f"The threshold in {second_plane.name} could not be found."]
     load = LoadFormatter(second_plane.arm)
-    flutter = second_plane.thresholds.first_forces(ThresholdKind.hopf)
+    flutter = second_plane.thresholds.first_force_range(ThresholdKind.hopf)
     if flutter is None:
         return [f"In {second_plane.name} there {verb} no flutter {_search_end_clause(second_plane, load)}."]
     drag_clause = ""
-    if not planes.is_first_for_every_drag:
+    if not planes.is_first_lowest_for_every_drag:
         drag_clause = "; for part of the range of drag, flutter starts in this plane"
     return [f"In {second_plane.name} flutter {verb} at {load.range_of_forces_text(flutter)}{drag_clause}."]
 
@@ -194,21 +196,21 @@ def _second_plane_sentences(planes: PlanesOfMotion, verb: str) -> list[str]:
 def _search_end_clause(plane: PlaneOfMotion, load: LoadFormatter) -> str:
     """Clause that states the load at which the search ends, and whether this load crushes the arm."""
     end = load.range_of_forces_text(RangeOverDrags(plane.thresholds.end, plane.thresholds.end))
-    if plane.thresholds.end > CRUSHED_END_RATIO * plane.arm.crushing_force:
+    if plane.thresholds.end > MIN_CRUSHED_END_OVER_CRUSHING_FORCE * plane.arm.crushing_force:
         return f"before it is crushed at {end}"
     return f"up to {end}, where the search ends"
 
 
 def _oscillation_onset_sentences(thresholds: ThresholdsOverDrags, load: LoadFormatter) -> list[str]:
     """Sentence on the loads at which a decaying disturbance oscillates; empty if no such load was found."""
-    onset = thresholds.first_forces(ThresholdKind.onset)
+    onset = thresholds.first_force_range(ThresholdKind.onset)
     if onset is None:
         return []
-    end = thresholds.first_forces(ThresholdKind.real_again)
-    flutter = thresholds.first_forces(ThresholdKind.hopf)
+    end = thresholds.first_force_range(ThresholdKind.real_again)
+    flutter = thresholds.first_force_range(ThresholdKind.hopf)
     range_text = f"From {load.range_of_forces_text(onset)} on"
     # Otherwise a window of flutter may lie between onset and end.
     if end is not None and (flutter is None or end.high < flutter.low):
-        drag_note = "" if end.for_every_drag else " for part of the range of drag"
+        drag_note = "" if end.exists_for_every_drag else " for part of the range of drag"
         range_text += f", up to {load.range_of_forces_text(end)}{drag_note}"
     return [f"{range_text}, a disturbed arm oscillates as it returns to rest."]

@@ -8,8 +8,8 @@ import pytest
 
 import rodsweep as rs
 from rodsweep.api.keyword_arguments import config_tree, job_of_tree
-from rodsweep.api.solved import DatasetResult
-from rodsweep.config.tasks import CONFIGS
+from rodsweep.api.task_results import DatasetResult
+from rodsweep.config.tasks import CONFIG_CLASSES_BY_TASK
 from rodsweep.post.tables.table_names import TABLE_NAMES
 
 ROD = {"F": 50, "k1": 1e4, "k2": 1e2, "gamma3": 1e-2}
@@ -69,9 +69,8 @@ def test_a_branch_tells_its_special_points_in_words(branch):
     for word in ("hopf", "fold", "special_points: 3", f"cycles: {branch.point_count} rows"):
         assert word in repr(branch.table())
     largest_y = branch.tip_y_max.max()
-    headline = (
-        f"1 branch of cycles from 2 Hopf points: {branch.point_count} cycles, largest tip y {largest_y:.5g} L"
-    )
+    cycles_clause = f"{branch.point_count} cycles, largest tip y {largest_y:.5g} L"
+    headline = f"1 branch of cycles from 2 Hopf points: {cycles_clause}"
     assert repr(branch).startswith(headline)
 
 
@@ -147,7 +146,7 @@ def test_an_answer_prints_its_numbers_with_their_units():
 
 
 def test_no_variable_hides_behind_an_attribute_of_answers():
-    for task, config in CONFIGS.items():
+    for task, config in CONFIG_CLASSES_BY_TASK.items():
         if config.needs_several_rods:
             continue
         tree = config_tree(task, {name: ROD[name] for name in config.rod_parameters_used({}) if name in ROD})

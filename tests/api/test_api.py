@@ -26,7 +26,7 @@ from rodsweep.api.keyword_arguments import config_tree, job_of_tree
 from rodsweep.cli import commands
 from rodsweep.config.base_config import Config
 from rodsweep.config.document.reading import tree_yaml
-from rodsweep.config.tasks import CONFIGS
+from rodsweep.config.tasks import CONFIG_CLASSES_BY_TASK
 from rodsweep.model.parameters import PARAMETERS
 from rodsweep.post.figures import draw
 from rodsweep.post.figures.request import FIGURE_KINDS, ROOT_CHOICES
@@ -126,7 +126,7 @@ def test_import_loads_nothing():
 
 def test_sweep_can_be_called_whatever_was_imported_first():
     code = (
-        "import rodsweep.sweep.points.grid, rodsweep as rs\n"
+        "import rodsweep.sweep.points.points_from_config, rodsweep as rs\n"
         "from rodsweep import sweep\n"
         "assert rs.sweep is sweep\n"
         "try: rs.sweep('nothing')\n"
@@ -158,8 +158,8 @@ def test_text_of_the_config_gives_the_same_points(tmp_path):
     """It is what ranks are given, and what the Dataset carries."""
     tree = config_tree("thresholds", {"k1": [200, np.inf], "k2": rs.logspace(10, 1e6, 31), "gamma3": 1e-300})
     again = job_of_tree(YAML(typ="safe").load(tree_yaml(tree)))
-    assert again.resolved == job_of_tree(tree).resolved
-    assert again.config_text == tree_yaml(tree)
+    assert again.resolved_config == job_of_tree(tree).resolved_config
+    assert again.given_config_yaml == tree_yaml(tree)
 
 
 @pytest.mark.parametrize("name", list(small.CONFIGS))
@@ -236,10 +236,10 @@ def test_numpy_scalars_as_values_and_as_names_are_those_of_python():
     }
     own |= {"k1": np.float32(1e4), "modes": np.int64(3), "certify": np.bool_(False)}
     plain = job_of_tree(config_tree("spectrum", asked | {"certify": False}))
-    assert job_of_tree(config_tree(np.str_("spectrum"), own)).config_text == plain.config_text
+    assert job_of_tree(config_tree(np.str_("spectrum"), own)).given_config_yaml == plain.given_config_yaml
     arm = {np.str_(name): np.str_(text) for name, text in SILICONE.items()}
     plain = job_of_tree(config_tree("thresholds", {"arm": SILICONE}))
-    assert job_of_tree(config_tree("thresholds", {"arm": arm})).config_text == plain.config_text
+    assert job_of_tree(config_tree("thresholds", {"arm": arm})).given_config_yaml == plain.given_config_yaml
     assert rs.Arm(**arm) == rs.Arm(**SILICONE)
 
 
@@ -329,13 +329,13 @@ def test_keywords_of_a_rods_tasks_are_the_keys_of_the_config():
         "branch": task_keywords.BranchKeywords,
     }
     for task, kind in kinds.items():
-        section = CONFIGS[task].model_fields[task].annotation
+        section = CONFIG_CLASSES_BY_TASK[task].model_fields[task].annotation
         assert set(kind.__annotations__) == {*section.model_fields, "accuracy", "title", "progress"}
 
 
 def test_no_key_is_in_two_sections():
     """So that keywords need none."""
-    for task, config in CONFIGS.items():
+    for task, config in CONFIG_CLASSES_BY_TASK.items():
         sections = [config.model_fields[name].annotation.model_fields for name in (task, "parameters")]
         names = [name for section in (*sections, Config.model_fields) for name in section]
         assert len(names) == len(set(names))
@@ -517,7 +517,7 @@ def test_a_cycle_without_stored_shapes_is_drawn_with_the_shapes_that_it_would_ha
     assert "shape_x" not in cycle.data
     picture = rs.plot(cycle)
     assert picture.shown.startswith("shapes through the cycle")
-    assert [*picture.choices["shapes"].solved] == [(1,)]
+    assert [*picture.choices["shapes"].views_by_point_numbers] == [(1,)]
     assert rs.plot(cycle, what="energy").shown.startswith("energy, injection and dissipation")
     with pytest.raises(
         rs.InputError, match="no cycle that could be drawn; the statuses of its points are: straight"
@@ -637,7 +637,7 @@ def test_ctrl_c_on_a_branch_is_a_keyboard_interrupt_and_the_next_solve_is_right(
             signal.raise_signal(signal.SIGINT)
 
     with monkeypatch.context() as patch:
-        patch.setattr("rodsweep.sweep.stop.RankListener.__call__", interrupt)
+        patch.setattr("rodsweep.sweep.stop.SolverReportListener.__call__", interrupt)
         with pytest.raises(KeyboardInterrupt):
             rod.branch(stop=40, accuracy=1e-4)
     assert (

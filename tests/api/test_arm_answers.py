@@ -97,9 +97,9 @@ def test_replace_changes_quantities_and_lets_one_load_or_section_take_the_place_
     assert arm.replace(length="30 cm").k1 == pytest.approx(4 * arm.k1)
     assert arm.replace(force="0.1 N").pressure is None
     flat = arm.replace(width="2 cm", height="1 cm")
-    assert (flat.radius, flat.inner_radius, flat.load) == (None, None, "pressure")
+    assert (flat.radius, flat.inner_radius, flat.load_name) == (None, None, "pressure")
     assert flat.replace(radius="4 mm").width is None
-    assert arm.replace(pressure=None).load is None
+    assert arm.replace(pressure=None).load_name is None
     assert isinstance(flat, rs.Arm)
     assert math.isnan(arm.replace(pressure=None).si.pressure)
 

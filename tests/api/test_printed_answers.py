@@ -13,15 +13,15 @@ from printed import WINDOW, flaws_of_columns, flaws_of_layout, unit_of
 from surveyed import few
 
 import rodsweep as rs
-from rodsweep.api.answers.frames import data_frame_of
-from rodsweep.api.solved import DatasetResult
+from rodsweep.api.answers.data_frames import data_frame_of
+from rodsweep.api.task_results import DatasetResult
 from rodsweep.cli.checking import print_job_check
 from rodsweep.post.headline.one_rod import ColumnTexts
 from rodsweep.post.headline.sentences import HEADLINES
 from rodsweep.post.summary import show_summary
 from rodsweep.post.tables.alignment import (
-    column_cells,
-    point_aligned,
+    aligned_at_decimal_points,
+    aligned_column_cells,
     rewrap_line,
     rows_with_prose,
     table_blocks,
@@ -93,7 +93,9 @@ def test_columns_are_aligned_in_blocks_within_the_window(seed):
         [f"{rng.uniform(-1, 1) * 10 ** rng.randint(-9, 9):.{rng.randint(1, 12)}g}" for _ in range(rows)]
         for _ in names[1:]
     ]
-    cells = [column_cells((name, "k3/L^2"), column) for name, column in zip(names, columns, strict=True)]
+    cells = [
+        aligned_column_cells((name, "k3/L^2"), column) for name, column in zip(names, columns, strict=True)
+    ]
     found = [line for block in table_blocks(cells) for line in (*block, "")]
     assert max(map(len, found)) <= WINDOW
     assert not list(flaws_of_columns("\n".join(["", *found])))
@@ -119,8 +121,8 @@ def test_prose_and_sentences_are_folded_within_the_window_and_whole(seed):
 
 
 def test_points_are_below_each_other_and_words_at_the_left():
-    assert point_aligned(["1", "-22.5", "3e-09"]) == ["  1    ", "-22.5  ", "  3e-09"]
-    assert point_aligned(["hopf", "fold", ""]) == ["hopf", "fold", "    "]
+    assert aligned_at_decimal_points(["1", "-22.5", "3e-09"]) == ["  1    ", "-22.5  ", "  3e-09"]
+    assert aligned_at_decimal_points(["hopf", "fold", ""]) == ["hopf", "fold", "    "]
 
 
 def test_every_task_of_one_rod_has_a_headline():

@@ -8,7 +8,7 @@ import pytest
 
 import rodsweep as rs
 from rodsweep.api.argument_hints import UNKNOWN_ARM_ARGUMENT_HINTS, UNKNOWN_ROD_ARGUMENT_HINTS
-from rodsweep.explore.state import PageState
+from rodsweep.explore.page_state import PageState
 from rodsweep.model.parameters import PARAMETERS
 
 ROD = {"k1": 200, "k2": 1e4, "gamma3": 1e-4}
@@ -141,7 +141,7 @@ def test_a_number_too_large_for_a_float_is_refused_in_one_short_sentence(number)
         lambda: rs.Rod(F=number, **ROD),
         lambda: rs.Arm(**ARM | {"length": number}),
         lambda: rs.sweep("spectrum", F=[1, number], **ROD),
-        state.subject,
+        state.rod_or_arm,
     ]
     sentences = []
     for call in calls:

@@ -11,10 +11,10 @@ from surveyed import few
 
 import rodsweep as rs
 from rodsweep.post.rod_portrait.paragraph import paragraph
-from rodsweep.post.rod_portrait.picture import portrait_figure
+from rodsweep.post.rod_portrait.portrait_drawing import draw_rod_portrait
 from rodsweep.results.layouts.si_variables import NEGLECTED_EFFECTS, VALIDITY_VARIABLES
 from rodsweep.tasks import rod_portrait
-from rodsweep.tasks.rod_portrait import three_forces_with_stable_cycle
+from rodsweep.tasks.rod_portrait import forces_of_three_stable_cycles
 
 FOLDED = rs.Rod(k1=200, k2=1e4, gamma3=1e-4)
 """Its branch of cycles passes a fold, beyond which straight rod and cycle are both stable."""
@@ -110,7 +110,7 @@ def test_the_paragraph_of_an_arm_judges_each_cycle_at_its_own_load(of_arm):
 
 def test_the_picture_of_an_arm_is_drawn_in_si_units(portrait, of_arm):
     of_rod = portrait.figure().axes
-    bar, upper, lower, *small = portrait_figure(of_arm).axes
+    bar, upper, lower, *small = draw_rod_portrait(of_arm).axes
     assert (lower.get_xlabel(), upper.get_ylabel()) == ("pressure (kPa)", "largest $y$ of the tip (cm)")
     for axes, before, y in ((upper, of_rod[1], 10.0), (lower, of_rod[2], 3.5)):
         for line, own in zip(axes.lines, before.lines, strict=True):
@@ -162,7 +162,7 @@ def test_branches_without_all_special_points_are_counted(portrait):
 
 def test_a_search_that_ended_early_is_not_said_to_end_where_the_rod_is_crushed(portrait):
     view = portrait.results.views["thresholds"]
-    early = next(value for value, word in view.flags.items() if word == "ended_early")
+    early = next(value for value, word in view.status_flags.items() if word == "ended_early")
     ended = {name: np.full_like(view.variables[name], x) for name, x in (("status", early), ("F_end", 60.0))}
     views = {**portrait.results.views, "thresholds": replace(view, variables={**view.variables, **ended})}
     text = paragraph(replace(portrait.results, views=views))
@@ -265,9 +265,9 @@ def test_bad_choices_are_refused():
 
 
 def test_three_forces_are_spread_over_all_ranges():
-    assert three_forces_with_stable_cycle([(10.0, 20.0), (50.0, 80.0)]) == [14.0, 60.0, 76.0]
-    assert three_forces_with_stable_cycle([]) == []
-    for force in three_forces_with_stable_cycle([(42.7219713, 42.7219719)]):
+    assert forces_of_three_stable_cycles([(10.0, 20.0), (50.0, 80.0)]) == [14.0, 60.0, 76.0]
+    assert forces_of_three_stable_cycles([]) == []
+    for force in forces_of_three_stable_cycles([(42.7219713, 42.7219719)]):
         assert 42.7219713 < force < 42.7219719
 
 

@@ -35,7 +35,7 @@ def test_solved_points_and_their_dataset_are_read_alike(config):
     for name, values in late.variables.items():
         assert np.array_equal(early.variables[name], values, equal_nan=True)
         assert early.variables[name].dtype == values.dtype
-    assert (early.task, early.config, early.flags) == (late.task, late.config, late.flags)
+    assert (early.task, early.config, early.status_flags) == (late.task, late.config, late.status_flags)
     assert (early.parameters, early.arm_axes, early.typed_units) == (
         late.parameters,
         late.arm_axes,

@@ -20,20 +20,20 @@ from rodsweep.bench.peers import (
     NO_PEERS,
     PEER_PHRASES_BY_STUDY,
     PeerContribution,
+    left_out_peers_sentence,
     peer_package,
-    peers_left_out,
     peers_of_study,
 )
-from rodsweep.bench.spectrum import arm_race
+from rodsweep.bench.spectrum import arm_spectra
 from rodsweep.bench.spectrum import study as spectrum
-from rodsweep.bench.spectrum.arm_race import (
+from rodsweep.bench.spectrum.arm_spectra import (
     ARM_RODS,
     UncachedArms,
     arm_table,
     exact_arm_spectrum,
     measure_arm_spectra,
 )
-from rodsweep.bench.spectrum.exact import (
+from rodsweep.bench.spectrum.rodsweep_and_exact_spectra import (
     CERTIFIED_NAME,
     KRYLOV_SCHUR,
     MODE_COUNT,
@@ -122,7 +122,7 @@ def test_no_arm_is_solved_twice():
 
 
 def test_table_of_arms_has_time_and_error_of_every_method(monkeypatch):
-    monkeypatch.setattr(arm_race, "ARM_RODS", {"cone": ARM_RODS["cone"]})
+    monkeypatch.setattr(arm_spectra, "ARM_RODS", {"cone": ARM_RODS["cone"]})
     bad = TimedMethod("coarse", "3", "a", lambda arm: np.ones(MODE_COUNT, complex))
     lines = arm_table(measure_arm_spectra([bad], 1), 1).splitlines()
     assert lines[2] == "| method | cone |"
@@ -173,16 +173,17 @@ def test_time_of_other_programs_is_counted():
     """The program ends when it has taken a tenth of a second of the processor, however long that may last."""
     words = [sys.executable, "-c", "import time\nwhile time.process_time() < 0.1: pass"]
     (timed,) = time_runs([lambda: subprocess.run(words, check=True)], [1])
-    assert timed.median > 0.05
+    assert timed.median_seconds > 0.05
 
 
 def test_study_of_the_spectrum_has_a_row_for_every_method(monkeypatch, tmp_path):
     monkeypatch.setattr(spectrum, "HARD_RODS", {"easy": EASY})
     monkeypatch.setattr(spectrum, "FORCE_COUNT", 1)
-    monkeypatch.setattr(arm_race, "ARM_RODS", {"cone": ARM_RODS["cone"]})
+    monkeypatch.setattr(arm_spectra, "ARM_RODS", {"cone": ARM_RODS["cone"]})
     exact = TimedMethod("a peer", "7", "g", partial(rodsweep_spectrum, certify=False))
     study = run_spectrum_study(
-        quick=True, peers=PeerContribution({SPECTRUM_RACE: [exact]}, skipped=["Another is skipped."])
+        quick=True,
+        peers=PeerContribution({SPECTRUM_RACE: [exact]}, skipped_peer_sentences=["Another is skipped."]),
     )
     for name in ("rodsweep, certificate on", "rodsweep, certificate off", KRYLOV_SCHUR, "a peer"):
         assert study.text.count(f"| {name} |") == (2 if name == "a peer" else 3)
@@ -200,7 +201,7 @@ def test_a_quick_run_takes_every_nth_setting_of_each_method():
 
 def test_numbers_of_a_study_are_in_the_file(tmp_path):
     rows = (
-        Measurement("c", "m", "s", 0.5, 1e-3, "g", extra={"steps": 3.0}),
+        Measurement("c", "m", "s", 0.5, 1e-3, "g", extra_columns={"steps": 3.0}),
         Measurement("c", "n", "", 1.0, np.inf),
     )
     write_measurements(
@@ -251,7 +252,7 @@ def test_command_without_the_folder_times_rodsweep_alone_and_says_who_is_left_ou
     done = command.afresh("bench", "spectrum", "--quick", "-o", "b.md", PYTHONPATH=str(tmp_path / "site"))
     assert done.returncode == 0, done.stderr
     text = (tmp_path / "b.md").read_text()
-    sentence = peers_left_out(["spectrum"])
+    sentence = left_out_peers_sentence(["spectrum"])
     assert f"\n\n{sentence}\n\n## spectrum" in text
     assert sentence in done.stdout
     assert sentence.count(". ") == 0
@@ -303,7 +304,7 @@ def test_a_study_without_peers_in_the_folder_has_none(tmp_path):
     assert package.__file__ == str(ROOT / "benchmarks" / "__init__.py")
     assert peers_of_study(package, "sweep", True, tmp_path) is NO_PEERS
     assert peers_of_study(None, "spectrum", True, tmp_path) is NO_PEERS
-    assert peers_left_out(["sweep"]) == ""
+    assert left_out_peers_sentence(["sweep"]) == ""
 
 
 @pytest.mark.parametrize("missing", ["pyproject.toml", "benchmarks/__init__.py"])

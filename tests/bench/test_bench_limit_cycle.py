@@ -10,16 +10,16 @@ from surveyed import survey_only
 from rodsweep.bench.limit_cycle.default_integrator import DEFAULT_INTEGRATOR, IntegrationTask
 from rodsweep.bench.limit_cycle.settling import SettlingMethod, settling_table
 from rodsweep.bench.limit_cycle.study import (
-    FOLLOWING_RACE,
-    WAITING_RACE,
-    following_table,
+    CYCLE_FOLLOWING_RACE,
+    SETTLING_TO_CYCLE_RACE,
+    cycle_following_table,
     run_limit_cycle_study,
     time_at_error,
     time_at_error_table,
 )
 from rodsweep.bench.limit_cycle.sweeping import (
     ACCURACY,
-    AccurateCycle,
+    MeshConvergedCycle,
     SweptRod,
     measure_sweep_points,
     solve_timed_points,
@@ -93,7 +93,7 @@ def test_table_at_equal_error_states_the_ratios():
 
 def test_tables_show_what_failed():
     failed = Measurement("", "a", "1e-05", 1.0, np.inf, failure="failed (ArithmeticError)")
-    assert "| a | 1e-05 | failed (ArithmeticError) |" in following_table([failed])
+    assert "| a | 1e-05 | failed (ArithmeticError) |" in cycle_following_table([failed])
     never = SettlingMethod(
         50.0, "waiting, a", "", np.nan, np.inf, print, failed_tolerances=("1e-06", "1e-07")
     )
@@ -109,7 +109,7 @@ def soft_rod():
 
 @cache
 def exact():
-    return AccurateCycle.converged_from_orbit(soft_rod())
+    return MeshConvergedCycle.converged_from_orbit(soft_rod())
 
 
 def test_the_reference_is_the_cycle_on_its_mesh():
@@ -125,8 +125,8 @@ def test_points_of_a_sweep_are_as_accurate_as_they_say():
     found = measure_sweep_points(QUICK_RODS, 1)
     assert [m.method for m in found] == ["sweep over F", "sweep over k1", *COLD]
     for m in found:
-        assert m.error <= m.extra["estimate"] <= ACCURACY
-        assert m.extra.get("multipliers", 7) > 6
+        assert m.error <= m.extra_columns["estimate"] <= ACCURACY
+        assert m.extra_columns.get("multipliers", 7) > 6
         assert m.seconds > 0
     text = sweep_table(found)
     assert "| 30, 10000, 100, 0.01, 1 | sweep over k1 |" in text
@@ -164,17 +164,19 @@ def test_the_benchmark_times_peers_beside_rodsweep(monkeypatch):
     def gives_up(leg):
         raise ArithmeticError("too stiff")
 
-    double = replace(DEFAULT_INTEGRATOR, name="double", tolerances=(1e-5, 1e-8), waiting_tolerances=(1e-7,))
+    double = replace(
+        DEFAULT_INTEGRATOR, name="double", following_tolerances=(1e-5, 1e-8), settling_tolerances=(1e-7,)
+    )
     failing = [TimedMethod("failing", tolerance, "failing", gives_up) for tolerance in ("1e-05", "1e-07")]
     further = Measurement("30", "continuation", "p = 14", 1.0, 1e-6)
     peers = PeerContribution(
         contenders={
-            FOLLOWING_RACE: double.following_contenders() + failing,
-            WAITING_RACE: double.settling_contenders() + failing,
+            CYCLE_FOLLOWING_RACE: double.following_contenders() + failing,
+            SETTLING_TO_CYCLE_RACE: double.settling_contenders() + failing,
         },
-        sections=[lambda rounds: ([f"a section of {rounds}"], [further])],
-        notes=["A note."],
-        skipped=["Another is skipped."],
+        section_functions=[lambda rounds: ([f"a section of {rounds}"], [further])],
+        contender_notes=["A note."],
+        skipped_peer_sentences=["Another is skipped."],
     )
     study = run_limit_cycle_study(quick=True, peers=peers)
     assert "\n\nA note.\n\n| method |" in study.text

@@ -47,9 +47,9 @@ def row(name, points, ranks, seconds, memory):
     runs = [
         CommandRunCost(
             seconds=s,
-            stated_seconds=s - 0.5,
+            printed_seconds=s - 0.5,
             solver_seconds=0.0,
-            first_and_other_peak_memory=tuple(memory[:ranks]),
+            first_and_other_rank_peak_bytes=tuple(memory[:ranks]),
             file_bytes=1000 + 62 * points,
             journal_bytes=74 * (points - 1),
             processors_busy_elsewhere=0.0,
@@ -98,7 +98,10 @@ def test_memory_of_a_rank_does_not_grow_with_the_grid(tmp_path):
         killed = run(case, 1)
         assert killed.journal_bytes > 74 * (points - 1)
         resumed = run(replace(case, solver_kind="instant"), 1, fresh=False)
-        peaks[points] = [killed.first_and_other_peak_memory[0], resumed.first_and_other_peak_memory[0]]
+        peaks[points] = [
+            killed.first_and_other_rank_peak_bytes[0],
+            resumed.first_and_other_rank_peak_bytes[0],
+        ]
     for few, many in zip(*peaks.values(), strict=True):
         assert 5e7 < few < many + 1e6 * FEW_MEGABYTES
         assert many < few + 1e6 * FEW_MEGABYTES
@@ -135,7 +138,7 @@ def test_two_ranks_are_skipped_without_a_launcher(monkeypatch):
         )
 
     monkeypatch.setattr(sweep, "measure_solved_sweeps", sweeps(solved, ["spectra"]))
-    monkeypatch.setattr(sweep, "measure_followed_sweeps", lambda *words: [])
+    monkeypatch.setattr(sweep, "measure_eigenvalue_following", lambda *words: [])
     monkeypatch.setattr(sweep, "measure_instant_sweeps", sweeps(instant, ["no solver", KILLED, "resumed"]))
     assert "Two ranks are skipped" in run_sweep_study(quick=True, command=()).text
     assert {m.method for m in solved + instant} == {"1 rank"}

@@ -83,7 +83,9 @@ def test_the_study_writes_its_text_and_its_figure(monkeypatch, tmp_path):
 def test_peers_take_part_in_the_race_of_their_threshold(monkeypatch):
     monkeypatch.setattr(thresholds, "QUICK_CASES", (CASE["filament"],))
     found = TimedMethod("of Hopf points", "a", "g", lambda case: FirstThreshold(case.hopf, 1))
-    peers = PeerContribution({HOPF: [found]}, notes=["A note."], skipped=["Another is skipped."])
+    peers = PeerContribution(
+        {HOPF: [found]}, contender_notes=["A note."], skipped_peer_sentences=["Another is skipped."]
+    )
     text = run_thresholds_study(quick=True, peers=peers).text
     introduction, onsets, hopf_points, of_arms, onsets_of_arms, hopf_points_of_arms, skipped = text.split(
         "\n\n"

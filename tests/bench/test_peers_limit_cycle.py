@@ -25,17 +25,17 @@ from benchmarks.limit_cycle.continuation import (
 )
 from benchmarks.limit_cycle.integrators import CVODE, CVODE_SKIPPED, installed_families
 from rodsweep.bench.limit_cycle.default_integrator import DEFAULT_INTEGRATOR, IntegrationTask
-from rodsweep.bench.limit_cycle.study import FOLLOWING_RACE, WAITING_RACE
-from rodsweep.bench.limit_cycle.sweeping import ACCURACY, AccurateCycle
+from rodsweep.bench.limit_cycle.study import CYCLE_FOLLOWING_RACE, SETTLING_TO_CYCLE_RACE
+from rodsweep.bench.limit_cycle.sweeping import ACCURACY, MeshConvergedCycle
 from rodsweep.bench.limit_cycle.swept_rods import RODS
 from rodsweep.bench.limit_cycle.tracking import (
     FOLLOWED_PERIODS,
     SMALL_STEP_SCHEME,
     cycle_request,
-    measure_following,
+    measure_cycle_following,
     orbit_of,
     solve_reference,
-    state_on_cycle,
+    system_and_state_on_cycle,
     trajectory_measurement_fields,
 )
 from rodsweep.bench.study import Measurement
@@ -68,10 +68,17 @@ def cycle():
 def rows():
     """Two tolerances of each family."""
     chosen = [
-        replace(f, tolerances=LOOSE_AND_TIGHT.get(f.name, (f.tolerances[0], f.tolerances[-1])))
+        replace(
+            f,
+            following_tolerances=LOOSE_AND_TIGHT.get(
+                f.name, (f.following_tolerances[0], f.following_tolerances[-1])
+            ),
+        )
         for f in FOLLOWED
     ]
-    return measure_following(cycle(), [c for family in chosen for c in family.following_contenders()], 1)
+    return measure_cycle_following(
+        cycle(), [c for family in chosen for c in family.following_contenders()], 1
+    )
 
 
 def of(name):
@@ -85,7 +92,7 @@ def test_every_method_follows_the_cycle_and_gains_from_a_tighter_tolerance(famil
     assert 0 < tight.error < 3e-5
     assert np.isfinite(loose.error)
     assert tight.error < loose.error / 5
-    assert tight.extra["steps"] > loose.extra["steps"]
+    assert tight.extra_columns["steps"] > loose.extra_columns["steps"]
     assert tight.seconds > 0
 
 
@@ -107,18 +114,22 @@ def test_order_of_the_errors(name):
 def test_cvode_is_left_out_in_one_sentence_where_it_is_not_installed(monkeypatch, tmp_path):
     monkeypatch.setattr(cycle_peers, "optional_module", lambda _: None)
     found = peers(quick=True, folder=tmp_path)
-    assert CVODE not in [contender.method for contender in found.of(FOLLOWING_RACE)]
-    assert found.skipped[0] == CVODE_SKIPPED
+    assert CVODE not in [contender.method for contender in found.contenders_of_race(CYCLE_FOLLOWING_RACE)]
+    assert found.skipped_peer_sentences[0] == CVODE_SKIPPED
 
 
 def test_every_integrator_takes_part_where_it_is_installed(tmp_path):
     found = peers(quick=True, folder=tmp_path)
-    assert {c.method for c in found.of(FOLLOWING_RACE)} == {family.name for family in installed_families()}
-    assert {c.method for c in found.of(WAITING_RACE)} == {
-        f.name for f in installed_families() if f.waiting_tolerances
+    assert {c.method for c in found.contenders_of_race(CYCLE_FOLLOWING_RACE)} == {
+        family.name for family in installed_families()
     }
-    assert (AUTO_SKIPPED in found.skipped) == (not found.sections)
-    assert (CVODE_SKIPPED in found.skipped) == (CVODE not in {family.name for family in installed_families()})
+    assert {c.method for c in found.contenders_of_race(SETTLING_TO_CYCLE_RACE)} == {
+        f.name for f in installed_families() if f.settling_tolerances
+    }
+    assert (AUTO_SKIPPED in found.skipped_peer_sentences) == (not found.section_functions)
+    assert (CVODE_SKIPPED in found.skipped_peer_sentences) == (
+        CVODE not in {family.name for family in installed_families()}
+    )
 
 
 @cache
@@ -129,7 +140,7 @@ def soft_rod():
 
 @cache
 def exact():
-    return AccurateCycle.converged_from_orbit(soft_rod())
+    return MeshConvergedCycle.converged_from_orbit(soft_rod())
 
 
 @pytest.fixture(scope="module")
@@ -142,7 +153,7 @@ def auto(tmp_path_factory):
 
 @pytest.mark.skipif(shutil.which("gfortran") is None, reason="gfortran is not installed")
 def test_equations_in_fortran_are_those_of_the_beam(tmp_path):
-    system, z = state_on_cycle(soft_rod())
+    system, z = system_and_state_on_cycle(soft_rod())
     n = len(z)
     (tmp_path / "rod").write_bytes(rod_file(soft_rod().form))
     # A library of its own, which finds the rod where it was written.
@@ -195,16 +206,19 @@ def test_auto_that_loses_its_branch_is_a_failure(auto):
 def test_auto_is_left_out_in_one_sentence_where_it_is_not_installed(monkeypatch, tmp_path):
     monkeypatch.setattr(auto_peer, "AUTO_LIBRARY", tmp_path / "nowhere")
     found = peers(quick=True, folder=tmp_path)
-    assert found.skipped[-1] == "AUTO-07p is skipped: it needs the program (Debian: auto-07p) and gfortran."
-    assert found.sections == ()
+    assert (
+        found.skipped_peer_sentences[-1]
+        == "AUTO-07p is skipped: it needs the program (Debian: auto-07p) and gfortran."
+    )
+    assert found.section_functions == ()
 
 
 @survey_only
 def test_the_section_of_auto_has_its_tables(tmp_path):
     found = peers(quick=True, folder=tmp_path)
-    if not found.sections:
+    if not found.section_functions:
         pytest.skip("AUTO-07p or gfortran is not installed")
-    (section,) = found.sections
+    (section,) = found.section_functions
     text, measurements = section(1)
     assert [block.count("\n| AUTO-07p | p = ") for block in text] == [0, 2, 0]
     assert text[2].count("\n| 1e-0") == 2

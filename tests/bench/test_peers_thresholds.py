@@ -68,7 +68,7 @@ def test_root_finding_reaches_its_tolerance(name, tolerance):
         for search in searches.values():
             found = search(tolerance, case)
             assert case.error_of(kind, found.force) < tolerance + FLOOR
-            assert found.solves < 60
+            assert found.eigenproblem_count < 60
 
 
 @pytest.mark.parametrize(
@@ -82,7 +82,7 @@ def test_order_of_interpolation(estimate, exact, order):
     for intervals in (16, 32, 64):
         top = truth * intervals / (0.625 * intervals + 0.5)  # the threshold is halfway between two forces
         found = threshold_on_grid(estimate, intervals + 1, replace(case, search_end=top))
-        assert found.solves == intervals + 1
+        assert found.eigenproblem_count == intervals + 1
         errors.append(abs(found.force - truth))
     assert np.log2(np.divide(errors[:-1], errors[1:])) == pytest.approx([order, order], abs=0.25)
 
@@ -122,7 +122,7 @@ def test_auto_finds_the_hopf_point_and_gains_from_its_tolerance(auto, case):
     loose, tight = (hopf_by_auto(auto, 1.0, tolerance, case) for tolerance in (1e-3, 1e-10))
     assert case.error_of(HOPF, loose.force) < 1e-3
     assert case.error_of(HOPF, tight.force) < 1e-9  # AUTO ends when F moves by less than the tolerance, 1e-10
-    assert case.hopf - 1 < loose.solves <= tight.solves < case.hopf + 20
+    assert case.hopf - 1 < loose.eigenproblem_count <= tight.eigenproblem_count < case.hopf + 20
 
 
 def test_auto_finds_nothing_where_nothing_is(auto):
@@ -137,7 +137,7 @@ def test_pycont_finds_the_hopf_point_in_silence(capsys):
     for name in ("filament", "Fig. 2b"):
         found = hopf_by_pycont(optional_module(PYCONT_MODULE), 0.25, CASE[name])
         assert CASE[name].error_of(HOPF, found.force) < 1e-7
-        assert found.products > 1000
+        assert found.matrix_vector_product_count > 1000
     assert capsys.readouterr().out == ""
 
 
@@ -158,18 +158,21 @@ def test_peers_that_are_not_installed_are_skipped_with_a_line(monkeypatch, tmp_p
     monkeypatch.setattr(continuation, "optional_module", lambda _: None)
     monkeypatch.setattr(shutil, "which", lambda _: None)
     found = peers(quick=True, folder=tmp_path)
-    assert [line.split(" is skipped")[0] for line in found.skipped] == ["AUTO-07p", "PyCont-Lite"]
-    assert {contender.group for contender in found.of(HOPF)} == {"grid and interpolation"}
-    assert not any("PyCont" in note for note in found.notes)
+    assert [line.split(" is skipped")[0] for line in found.skipped_peer_sentences] == [
+        "AUTO-07p",
+        "PyCont-Lite",
+    ]
+    assert {contender.group for contender in found.contenders_of_race(HOPF)} == {"grid and interpolation"}
+    assert not any("PyCont" in note for note in found.contender_notes)
 
 
 def test_peers_that_are_installed_take_part_and_are_explained(tmp_path):
     found = peers(quick=True, folder=tmp_path)
-    codes = {c.method for c in found.of(HOPF) if c.group == CONTINUATION_GROUP}
+    codes = {c.method for c in found.contenders_of_race(HOPF) if c.group == CONTINUATION_GROUP}
     assert (PYCONT in codes) == (optional_module(PYCONT_MODULE) is not None)
-    assert len(codes) + len(found.skipped) == 2
-    assert len(codes) == len(found.notes) - 1
-    assert not any(c.group == CONTINUATION_GROUP for c in found.of(ONSET))
+    assert len(codes) + len(found.skipped_peer_sentences) == 2
+    assert len(codes) == len(found.contender_notes) - 1
+    assert not any(c.group == CONTINUATION_GROUP for c in found.contenders_of_race(ONSET))
 
 
 def test_a_program_that_crashes_is_a_failure(tmp_path):

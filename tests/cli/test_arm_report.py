@@ -22,7 +22,7 @@ from rodsweep.solve.changes.thresholds import empty_thresholds
 from rodsweep.verdict.arm import arm_report
 from rodsweep.verdict.checks import THRESHOLD_DECREASE_PER_INERTIA_PHASE, relative_rubber_stiffening
 from rodsweep.verdict.flutter import ThresholdsOverDrags, ThresholdsWithDrag
-from rodsweep.verdict.load import LoadFormatter
+from rodsweep.verdict.load_texts import LoadFormatter
 from rodsweep.verdict.planes import PlaneOfMotion, PlanesOfMotion, with_absolute_load
 
 WATER = {"length": "12 cm", "radius": "6 mm", "young": "80 kPa", "poisson": 0.49, "viscosity": "1 mPa s"}
@@ -187,7 +187,7 @@ def test_the_headline_agrees_with_the_neglected_effects_of_random_arms(seed):
     report = arm_report(arm)
     plane = min(
         (
-            (rod, rs.Arm(**{n: getattr(rod, n) for n in QUANTITIES if getattr(rod, n) is not None}))
+            (rod, rs.Arm(**{n: getattr(rod, n) for n in GIVEN_QUANTITIES if getattr(rod, n) is not None}))
             for rod in planes(arm)
         ),
         key=lambda each: each[1].flutter.by_drag[0].first_force(ThresholdKind.hopf) * each[0].force_scale,
@@ -198,20 +198,20 @@ def test_the_headline_agrees_with_the_neglected_effects_of_random_arms(seed):
         first, angular_frequency_at_smallest_drag(first, abs(hopf.frequency)), hopf.value
     )
     worst = int(worst_validity(effects, of_cycles=False))
-    if arm.share_of_flutter is not None:
-        share = arm.share_of_flutter * hopf.value / first.k1
+    if arm.load_over_flutter is not None:
+        share = arm.load_over_flutter * hopf.value / first.k1
         worst = max(worst, 2 if share > 0.1 else 1 if share > 0.01 else 0)
     assert report.validity == worst
     assert report.verdict[0].startswith("The model does not apply") == (worst == 2)
     assert bool(report.warnings) == (worst == 1)
-    if worst < 2 and arm.share_of_flutter is not None:
-        spans = found.first_forces(ThresholdKind.hopf)
-        at = arm.share_of_flutter * hopf.value
+    if worst < 2 and arm.load_over_flutter is not None:
+        spans = found.first_force_range(ThresholdKind.hopf)
+        at = arm.load_over_flutter * hopf.value
         words = "stays straight" if at < spans.low else "drag decides" if at < spans.high else "the arm beats"
         assert words in report.verdict[0]
 
 
-QUANTITIES = ("length", "radius", "inner_radius", "width", "height", "young", "viscosity", "poisson")
+GIVEN_QUANTITIES = ("length", "radius", "inner_radius", "width", "height", "young", "viscosity", "poisson")
 
 
 def planes(arm):
@@ -225,8 +225,8 @@ def test_a_tall_rectangle_flutters_first_in_the_plane_of_its_width():
     flat = tall.turned
     assert (flat.width, flat.height) == ("12 mm", "8 mm")
     found, other = (
-        flat.flutter.first_forces(ThresholdKind.hopf),
-        tall.flutter.first_forces(ThresholdKind.hopf),
+        flat.flutter.first_force_range(ThresholdKind.hopf),
+        tall.flutter.first_force_range(ThresholdKind.hopf),
     )
     low, high = (F * flat.pressure_scale / 1000 for F in (found.low, found.high))
     report = tall.report()
@@ -248,16 +248,16 @@ def test_a_square_has_one_plane():
 def test_a_tall_arm_that_is_stiff_in_its_plane_of_motion_beats_in_the_other():
     """Below flutter in the plane that was meant, and above in the one that goes first."""
     tall = rs.Arm(**TALL, pressure="2 kPa")
-    assert tall.flutter.first_forces(ThresholdKind.hopf).low > tall.F
-    assert tall.turned.flutter.first_forces(ThresholdKind.hopf).high < tall.turned.F
+    assert tall.flutter.first_force_range(ThresholdKind.hopf).low > tall.F
+    assert tall.turned.flutter.first_force_range(ThresholdKind.hopf).high < tall.turned.F
 
 
 @pytest.mark.long
 def test_no_load_is_needed_to_ask_when_an_arm_flutters(command):
     arm = rs.Arm(**THICK)
     flutter, rate = (
-        arm.flutter.first_forces(ThresholdKind.hopf),
-        arm.flutter.first_frequencies(ThresholdKind.hopf),
+        arm.flutter.first_force_range(ThresholdKind.hopf),
+        arm.flutter.first_frequency_range(ThresholdKind.hopf),
     )
     said = headline(arm)
     stated = numbers_in(said)

@@ -13,8 +13,8 @@ from rodsweep import __version__
 from rodsweep.api.dataset import open_result
 from rodsweep.config.document.reading import resolved_config, validated_config
 from rodsweep.errors import InputError
-from rodsweep.results.file.combination.identity import fingerprint_of
-from rodsweep.results.file.validation import FORMAT
+from rodsweep.results.file.combination.config_comparison import fingerprint_of
+from rodsweep.results.file.validation import FORMAT_NUMBER
 
 SPECTRA = """
 task: spectrum
@@ -148,7 +148,7 @@ def test_kill_while_the_file_is_exchanged_loses_nothing(command, step):
     command.solved("small.yaml", "c.h5")
     path, words = command.directory / "c.h5", ("run", "large.yaml", "-o", "c.h5", "--extend")
     before = path.read_bytes()
-    module = "replacement" if step == "seal" else "store"
+    module = "replacement" if step == "seal" else "result_file_writer"
     patch = f"""
 import os, signal
 from rodsweep.results.file import {module}
@@ -334,12 +334,12 @@ def test_newer_format_is_refused_in_a_sentence(command, words):
     assert command("run", "c.yaml").returncode == 0
     path = command.directory / "c.h5"
     with h5py.File(path, "r+") as file:
-        assert file.attrs["format"] == FORMAT
-        file.attrs["format"] = FORMAT + 1
+        assert file.attrs["format"] == FORMAT_NUMBER
+        file.attrs["format"] = FORMAT_NUMBER + 1
     before = path.read_bytes()
     refused = command(*words)
     assert (refused.returncode, refused.stderr.count("\n")) == (2, 1)
-    assert f"has format {FORMAT + 1}, written by rodsweep" in refused.stderr
+    assert f"has format {FORMAT_NUMBER + 1}, written by rodsweep" in refused.stderr
     assert path.read_bytes() == before
     with pytest.raises(InputError, match="has format"):
         open_result(path)
@@ -351,7 +351,7 @@ def test_earlier_format_is_refused_in_a_sentence(command, words):
     assert command("run", "c.yaml").returncode == 0
     path = command.directory / "c.h5"
     with h5py.File(path, "r+") as file:
-        file.attrs["format"] = FORMAT - 1
+        file.attrs["format"] = FORMAT_NUMBER - 1
         del file.attrs["seal"]
     before = path.read_bytes()
     refused = command(*words)

@@ -24,7 +24,7 @@ def test_an_arm_is_the_arm_that_it_is_in_python(monkeypatch):
     assert found == DescribedRod(arm={**ARM, "law": "neo_hookean", "section": "swelling"})
     described = []
     monkeypatch.setattr(
-        "rodsweep.api.answers.rod_portrait.solved_portrait", lambda *words: described.append(words[1])
+        "rodsweep.api.answers.rod_portrait.solve_portrait", lambda *words: described.append(words[1])
     )
     arm.portrait()
     assert points_of(described[0].rod) == points_of(found)

@@ -160,7 +160,7 @@ def test_directory_that_a_rank_cannot_enter_is_refused(command):
 def test_bug_while_the_file_is_opened_ends_all_ranks(command):
     command.write("c.yaml", SMALL)
     patch = (
-        "import rodsweep.results.file.store as store\n"
+        "import rodsweep.results.file.result_file_writer as store\n"
         "def broken(self, *words): raise ValueError('a bug')\n"
         "store.ResultFileWriter.__init__ = broken\n"
         "def patched(rank, solve): return solve\n"
@@ -240,7 +240,7 @@ def test_fresh_leaves_a_file_that_is_no_result(command):
 def test_run_killed_before_its_end_was_written_writes_it_the_next_time(command):
     command.write("c.yaml", SMALL)
     patch = (
-        "import os, rodsweep.results.file.store as store\n"
+        "import os, rodsweep.results.file.result_file_writer as store\n"
         "def die(self, attributes): os._exit(9)\n"
         "writer = store.ResultFileWriter\n"
         "fold = writer.add_journals\n"

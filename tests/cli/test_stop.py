@@ -183,9 +183,10 @@ accuracy: 1.0e-4
 """
 FOR_EVER_INSIDE = """
 import os, pathlib, time
-from rodsweep.sweep.stop import RankListener
+from rodsweep.sweep.stop import SolverReportListener
 
-hear, rank = RankListener.__call__, os.environ.get("OMPI_COMM_WORLD_RANK", os.environ.get("PMI_RANK", "0"))
+hear = SolverReportListener.__call__
+rank = os.environ.get("OMPI_COMM_WORLD_RANK", os.environ.get("PMI_RANK", "0"))
 
 def hear_and_wait(self, text):
     hear(self, text)
@@ -195,7 +196,7 @@ def hear_and_wait(self, text):
             time.sleep(0.01)
             hear(self, text)
 
-RankListener.__call__ = hear_and_wait
+SolverReportListener.__call__ = hear_and_wait
 """
 """What every rank executes first: within a point but the first it stays on a branch until a stop ends it."""
 

@@ -326,10 +326,10 @@ def test_options_of_every_task_have_their_defaults(tmp_path):
 def test_thresholds_may_search_beyond_k1_and_their_points_have_no_force(tmp_path):
     points = job(tmp_path, thresholds(options="F_max: 1000")).points
     assert points.names == ("k1", "k2", "gamma3")
-    assert points.values(0) == {"k1": 9, "k2": 1, "gamma3": 0}
+    assert points.parameter_values_of_point(0) == {"k1": 9, "k2": 1, "gamma3": 0}
     (tmp_path / "p.csv").write_text("gamma3,k1,k2\n0,9,inf\n1,inf,3\n")
     points = job(tmp_path, thresholds("points: p.csv")).points
-    assert points.values(1) == {"k1": np.inf, "k2": 3, "gamma3": 1}
+    assert points.parameter_values_of_point(1) == {"k1": np.inf, "k2": 3, "gamma3": 1}
     for table, word in {
         "F,k1,k2,gamma3\n1,9,1,0\n": "it must name k1, k2 and gamma3",
         "k1,k2,gamma3\n9,1,-1\n": "line 2: gamma3 = -1.0 is not",
@@ -358,7 +358,7 @@ def test_rows_of_a_phase_diagram_lie_along_the_first_of_its_two_axes(tmp_path, a
     assert made.config.plane_parameters == (line, row)
     assert made.points.names == tuple(name for name in ("F", "k1", "k2", "gamma3") if name != line)
     assert made.points.count == 2
-    assert made.points.values(0)[row] != made.points.values(1)[row]
+    assert made.points.parameter_values_of_point(0)[row] != made.points.parameter_values_of_point(1)[row]
     assert made.layout.extents[line] == 2
     assert made.task.coordinates()[line].tolist() == made.config.parameters.axes[line].array().tolist()
 
@@ -447,7 +447,7 @@ def test_a_list_may_have_a_column_of_tapers_in_every_task(tmp_path, task):
     assert made.points.rod(1).k2 == 50
     assert made.layout.parameters == (*names, "taper")
     assert not made.config.is_uniform_and_linear
-    assert config_from_resolved(made.resolved) == made.config
+    assert config_from_resolved(made.resolved_config) == made.config
     assert job(tmp_path, config_yaml(made.config)).points.identifying_arrays[-1].tolist() == [0.5, 0.8]
 
 

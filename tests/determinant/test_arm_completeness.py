@@ -57,7 +57,7 @@ def test_a_number_that_is_no_eigenvalue_proves_nothing():
         assert not prove_complete(line, more, np.append(error, 0.0), determinant, hull)[0]
 
 
-@pytest.mark.parametrize("k", COMPLETENESS_SETTINGS.point_counts)
+@pytest.mark.parametrize("k", COMPLETENESS_SETTINGS.real_point_counts)
 @pytest.mark.parametrize(
     "hull",
     [
@@ -77,7 +77,7 @@ def test_every_term_is_positive_in_the_hull_and_as_large_as_stated_right_of_the_
     assert (phi.real >= 0).all()
     rod = Rod(F=5.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5)
     none, level = np.empty(0, complex), ArmDeterminant(rod).propagators_for(points[-1])
-    least = remainder_of_sum(line, none, np.empty(0), hull, points, level).min_contribution
+    least = remainder_of_sum(line, none, np.empty(0), hull, points, level).min_unknown_contribution
     right = v.real >= line
     contribution = np.where(v.imag == 0, 1, 2) * phi.real
     assert least <= contribution[right].min() * (1 + 1e-12)

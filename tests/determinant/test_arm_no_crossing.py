@@ -21,7 +21,7 @@ def proves(path, found, line, ends, kept):
     points = sampled_point_indices(*ends)
     known = found.track.w[points][:, kept], found.track.error[points][:, kept]
     rods = [path.rod_at(p) for p in found.p[points].tolist()]
-    return proves_no_crossing_of_arms(line, rods, found.p[points], known, found.family, found.hulls)
+    return proves_no_crossing_of_arms(line, rods, found.p[points], known, found.arm_family, found.hulls)
 
 
 def followed_path(rng):

@@ -188,7 +188,7 @@ def test_no_exponent_of_an_element_exceeds_its_limit(name):
     rod, _ = THIN_CONES[name]
     for W in (16.0, 1e4, 1e7):
         elements = elements_for([rod], coefficient_samples([rod]), W)
-        nu, c2, c3, gamma2, gamma3, g = elements.local[:, 0]
+        nu, c2, c3, gamma2, gamma3, g = elements.local_coefficients[:, 0]
         squares = (c2 * gamma2 + c3 * gamma3) * W + abs(rod.F * c3 * g)
         squares += 2 * np.sqrt(W * abs(g * nu * gamma2 * c3) + W**2 * c2 * c3 * gamma2 * gamma3)
         _, weights = np.polynomial.legendre.leggauss(squares.shape[1])

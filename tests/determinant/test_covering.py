@@ -7,22 +7,22 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from rodsweep.determinant.certificate.box import (
-    frequency_bound,
-    frequency_bound_on_path,
-    zero_free_radius,
-)
 from rodsweep.determinant.certificate.covering import (
     box_outcome_and_costs,
     cover_with_boxes,
     distance_from_zero_bound,
 )
 from rodsweep.determinant.certificate.discs import bidisc_centre, bound_on_bidisc
+from rodsweep.determinant.certificate.eigenvalue_box import (
+    frequency_bound,
+    frequency_bound_on_path,
+    zero_free_radius,
+)
 from rodsweep.determinant.certificate.first_crossing_boxes import first_crossing_boxes, path_intervals
 from rodsweep.determinant.parameter_path import (
     ParameterPath,
     coefficients_at,
-    determinant_along_path,
+    determinant_value_on_path,
     dispersion_coefficient_derivatives,
 )
 from rodsweep.determinant.roots.newton import eigenvalue_by_newton
@@ -51,7 +51,7 @@ def test_derivative_along_a_path_is_that_of_the_determinant(path):
     p = path.coordinate(getattr(path.rod, path.name))
     w = complex(-3.0, 41.0)
     assert coefficients_at(p, path.origin, path.direction) == pytest.approx(path.rod.coefficients, rel=1e-12)
-    D, D_w, D_p, S, _ = determinant_along_path(w, path.rod.coefficients, path.direction)
+    D, D_w, D_p, S, _ = determinant_value_on_path(w, path.rod.coefficients, path.direction)
     assert (D, D_w, S) == scaled_determinant(w, path.rod.coefficients)[:3]
 
     def value(x):
@@ -67,10 +67,10 @@ def test_derivative_along_a_path_is_that_of_the_determinant(path):
 def test_a_small_error_of_the_path_variable_becomes_that_of_the_parameter(path):
     value = getattr(path.rod, path.name)
     p = path.coordinate(value)
-    assert path.value(p, 0.0) == (pytest.approx(value, rel=1e-15), 0.0)
+    assert path.value_and_error(p, 0.0) == (pytest.approx(value, rel=1e-15), 0.0)
     error = 1e-6 * abs(p)
-    apart = abs(path.value(p + error, 0.0)[0] - path.value(p - error, 0.0)[0]) / 2
-    assert path.value(p, error)[1] == pytest.approx(apart, rel=1e-8)
+    apart = abs(path.value_and_error(p + error, 0.0)[0] - path.value_and_error(p - error, 0.0)[0]) / 2
+    assert path.value_and_error(p, error)[1] == pytest.approx(apart, rel=1e-8)
 
 
 @pytest.mark.long
@@ -83,7 +83,7 @@ def test_bound_on_a_bidisc_holds_for_the_determinant_in_complex_p(path):
     sharpest = inf
     for eta in (2.0, 190.0, 2500.0):
         w = complex(0.0, eta)
-        D, D_w, D_p, S, _ = determinant_along_path(w, c, direction)
+        D, D_w, D_p, S, _ = determinant_value_on_path(w, c, direction)
         centre = bidisc_centre(w, c, dispersion_coefficient_derivatives(c, direction), S)
         for share in (0.3, 0.05):
             for rates in ((0j, 0j), (D_w / D, D_p / D)):
@@ -103,7 +103,7 @@ def test_bound_on_a_bidisc_holds_for_the_determinant_in_complex_p(path):
 
 
 def complex_determinant(w, path, p):
-    """D at complex w and p, from the formula in `rodsweep.determinant.value`, in 30 digits."""
+    """D at complex w and p, from the formula in `rodsweep.determinant.value_and_error`, in 30 digits."""
     with mp.workdps(30):
         w, p = mp.mpmathify(complex(w)), mp.mpmathify(complex(p))
         F, nu, c2, gamma3 = (mp.mpf(a) + p * b for a, b in zip(path.origin, path.direction, strict=True))

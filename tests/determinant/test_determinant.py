@@ -7,7 +7,7 @@ from hard.exact import derivatives
 from reference import determinant as reference
 from rods import rod_of
 
-from rodsweep.determinant.parameter_path import determinant_along_path
+from rodsweep.determinant.parameter_path import determinant_value_on_path
 from rodsweep.determinant.roots.newton import refine_eigenvalue
 from rodsweep.determinant.roots.roots import root_error_and_scales
 from rodsweep.determinant.rounding_at_root import rounding_error_at_root
@@ -128,9 +128,9 @@ def test_errors_cover_eigenvalues_whose_square_underflows(F, k1, gamma3, guess):
 def test_the_typical_rounding_fraction_is_typical():
     errors = [rounding(*case.values) for case in cases()]
     assert (
-        DETERMINANT_SETTINGS.typical_rounding_fraction / 10
+        DETERMINANT_SETTINGS.typical_rounding_error_over_bound / 10
         < np.median(errors)
-        < DETERMINANT_SETTINGS.typical_rounding_fraction
+        < DETERMINANT_SETTINGS.typical_rounding_error_over_bound
     )
 
 
@@ -149,7 +149,7 @@ def test_nothing_is_lost_where_exponents_vanish(rod, place):
     w, known = complex(at(place, *rod)[0]), rod_of(*rod)
     exact = derivatives(w, rod, ("w", "F", "c1", "c2", "gamma3"))
     for name, along in zip(("F", "k1", "k2", "gamma3"), exact[1:], strict=True):
-        found = determinant_along_path(w, known.coefficients, known.coefficient_derivative(name))
+        found = determinant_value_on_path(w, known.coefficients, known.coefficient_derivative(name))
         size = mp.exp(-mp.mpf(found[3]))
         assert abs(mp.mpc(found[0]) - reference.D(w, *rod, digits=40) * size) < min(found[4], 1e-12)
         assert abs(mp.mpc(found[1]) - exact[0] * size) < 1e-12 * abs(found[1])

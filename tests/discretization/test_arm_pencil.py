@@ -92,7 +92,7 @@ def test_coefficients_are_sampled_at_the_nodes_and_on_their_own_side_of_a_jump()
     assert (np.diff(points) > 0).all()
     assert (points[:, 0] > edges[:-1]).all()
     assert (points[:, -1] < edges[1:]).all()
-    assert np.abs(points.ravel() - mesh.node_positions[mesh.element_nodes]).max() < 2e-15
+    assert np.abs(points.ravel() - mesh.node_positions[mesh.element_node_indices]).max() < 2e-15
 
 
 @pytest.mark.parametrize("F", [-1e13, -1e25])

@@ -9,9 +9,9 @@ from numpy.polynomial import Polynomial
 from rodsweep.discretization.elements.basis import differentiation_matrix, lagrange_interpolation_matrix
 from rodsweep.discretization.elements.mesh import mesh_with_edges, shape_from_strains, uniform_mesh
 from rodsweep.discretization.elements.node_spacing import (
-    halved_spacing_ratios,
+    coordinates_at_positions,
+    node_spacing_ratios_of_halves,
     position_slopes,
-    spaced_coordinates,
 )
 from rodsweep.discretization.elements.quadrature import gauss_legendre_rule, gauss_lobatto_rule
 from rodsweep.discretization.elements.resolution import (
@@ -119,20 +119,23 @@ def test_elements_of_unequal_orders_are_exact_for_polynomials_of_these_orders():
     element = np.clip(np.searchsorted(grid.edges, u, side="right") - 1, 0, 2)
     exact = np.array([pieces[e](at) for e, at in zip(element, u, strict=True)])
     assert np.abs(grid.evaluation_matrix(u) @ values - exact).max() < 1e-12
-    both_sides = values[grid.element_nodes]
+    both_sides = values[grid.element_node_indices]
     assert np.abs(grid.one_sided_evaluation_matrix(u) @ both_sides - exact).max() < 1e-12
     integral = sum(
         p.integ()(b) - p.integ()(a) for p, a, b in zip(pieces, grid.edges[:-1], grid.edges[1:], strict=True)
     )
     # Lobatto's rule with p + 1 nodes is exact up to the order 2 p - 1.
-    assert grid.quadrature @ values == pytest.approx(integral, abs=1e-13)
-    slopes = grid.matrices.D @ values
+    assert grid.quadrature_weights @ values == pytest.approx(integral, abs=1e-13)
+    slopes = grid.node_matrices.differentiation_matrix @ values
     for piece, nodes in zip(pieces, grid.node_ranges, strict=True):
         inner = slice(nodes.start + 1, nodes.stop - 1)
         assert np.abs(slopes[inner] - piece.deriv()(grid.node_positions[inner])).max() < 1e-10
     sent = pickle.loads(pickle.dumps(grid))
     assert sent == grid
-    assert sent.matrices.D.tobytes() == grid.matrices.D.tobytes()
+    assert (
+        sent.node_matrices.differentiation_matrix.tobytes()
+        == grid.node_matrices.differentiation_matrix.tobytes()
+    )
 
 
 SPACED = mesh_with_edges((0.0, 0.4, 1.0), 18, (0.75, 1.0), (2.5, 0.25))
@@ -142,15 +145,20 @@ def test_spaced_nodes_keep_the_accuracy_of_equally_spaced_ones():
     """Positions, quadrature, slopes and interpolation of a smooth field; nodes are closer where s says so."""
     u = np.linspace(0, 1, 29)
     values = np.sin(3 * SPACED.node_positions)
-    assert SPACED.quadrature @ values == pytest.approx((1 - np.cos(3)) / 3, abs=1e-12)
-    assert np.abs(SPACED.matrices.D @ values - 3 * np.cos(3 * SPACED.node_positions)).max() < 1e-7
+    assert SPACED.quadrature_weights @ values == pytest.approx((1 - np.cos(3)) / 3, abs=1e-12)
+    assert (
+        np.abs(
+            SPACED.node_matrices.differentiation_matrix @ values - 3 * np.cos(3 * SPACED.node_positions)
+        ).max()
+        < 1e-7
+    )
     assert np.abs(SPACED.evaluation_matrix(u) @ values - np.sin(3 * u)).max() < 1e-10
     assert np.abs(SPACED.evaluation_matrix(SPACED.node_positions) - np.eye(len(values))).max() < 1e-12
-    for nodes, s in zip(SPACED.node_ranges, SPACED.spacing_ratios, strict=True):
+    for nodes, s in zip(SPACED.node_ranges, SPACED.node_spacing_ratios, strict=True):
         steps = np.diff(SPACED.node_positions[nodes])
         assert steps[-1] / steps[0] == pytest.approx(s, rel=0.1)
     # A field linear in u turns an arm of constant curvature into an arc, whatever the spacing.
-    strains = np.zeros((3, SPACED.element_nodes.size))
+    strains = np.zeros((3, SPACED.element_node_indices.size))
     strains[0] = 1.0
     strains[2] = 2.0
     arc = shape_from_strains(SPACED, strains, np.zeros(3))
@@ -159,14 +167,14 @@ def test_spaced_nodes_keep_the_accuracy_of_equally_spaced_ones():
 
 @pytest.mark.parametrize("s", [0.25, 1.0, 3.0])
 def test_halved_elements_have_the_spacing_of_the_whole(s):
-    start, middle, end = position_slopes(spaced_coordinates(np.array([0.0, 0.5, 1.0]), s), s)
-    assert halved_spacing_ratios((s,)) == pytest.approx((middle / start, end / middle), rel=1e-14)
+    start, middle, end = position_slopes(coordinates_at_positions(np.array([0.0, 0.5, 1.0]), s), s)
+    assert node_spacing_ratios_of_halves((s,)) == pytest.approx((middle / start, end / middle), rel=1e-14)
 
 
 @pytest.mark.parametrize("grid", [uniform_mesh(1, 15), uniform_mesh(3, 6), UNEQUAL_ORDERS, SPACED])
 def test_the_compiled_motion_of_the_tip_is_that_of_the_whole_shape(grid):
     rng = np.random.default_rng(5)
-    strains, rates = rng.standard_normal((2, 3, 4, grid.element_nodes.size))
+    strains, rates = rng.standard_normal((2, 3, 4, grid.element_node_indices.size))
     tip, velocity = np.empty((2, 4, 3))
     write_tip_motion(strains, rates, tip_matrices(grid), tip, velocity)
     tiny = 1e-30

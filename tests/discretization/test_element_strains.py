@@ -10,7 +10,7 @@ from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.material.laws import LAWS
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.material.rod_material import RodMaterial
-from rodsweep.model.material.stress_strain import LocalSection, stress_beyond_rest
+from rodsweep.model.material.stress_strain import LocalSection, stress_minus_rest_stress
 from rodsweep.model.rod import Rod
 
 LINEAR_ARM = "linear", "fixed"
@@ -65,8 +65,10 @@ def test_both_sides_of_a_jump_have_one_stress_and_its_strain_on_average(names, r
     stresses = []
     for strain, nu, factors in zip(sides.T, rest, ((1, 1, 1), FACTORS[:3]), strict=True):
         c1, c2, c3 = 1 / (np.array([VALUES["k1"], VALUES["k2"], 1.0]) * factors)
-        law = form.nodal_rod.law
-        beyond_rest = stress_beyond_rest(law, LocalSection(nu, c1, c3), (strain[0] - nu) / c1, strain[2] / c3)
+        law = form.nodal_rod.law_number
+        beyond_rest = stress_minus_rest_stress(
+            law, LocalSection(nu, c1, c3), (strain[0] - nu) / c1, strain[2] / c3
+        )
         stresses.append([beyond_rest.N, strain[1] / c2, beyond_rest.M])
     assert stresses[0] == pytest.approx(stresses[1], rel=1e-12)
     # Lobatto's weight at an end is the length over p (p + 1).

@@ -32,7 +32,7 @@ def stepped(rng):
 def tip_stress(rod, w):
     """K x' at the tip for x(0) = 0, K x'(0) = 1, of an arm with constant segments, in thirty digits."""
     breaks = rod.material.breaks
-    here = rod.sections((breaks[:-1] + breaks[1:]) / 2)
+    here = rod.cross_sections_at((breaks[:-1] + breaks[1:]) / 2)
     stiffness = rod.material.constitutive_law.stiffness(here.nu) / here.compliance[0]
     x, stress = mpmath.mpf(0), mpmath.mpf(1)
     for length, K, drag in zip(
@@ -82,7 +82,7 @@ def test_cones_with_a_jump_have_the_eigenvalues_of_integration_along_the_arm(law
         for start, stop in ((0.0, 0.4), (0.4, 1.0)):
 
             def change(u, y, inside=(start + 1e-13, stop - 1e-13)):
-                here = rod.sections(np.array([np.clip(u, *inside)]))
+                here = rod.cross_sections_at(np.array([np.clip(u, *inside)]))
                 tangent = material.constitutive_law.stiffness(here.nu[0]) / here.compliance[0, 0]
                 return [y[1] / tangent, w * here.drag[0, 0] * y[0]]
 

@@ -49,7 +49,10 @@ def consistent(form, X):
     S, _ = form.stresses_and_velocities(X)
     Sigma = S + form.rod.balance_coefficients.tip_stress[:, None]
     return form.layout.state(
-        S, velocity(form.rod.balance_coefficients, Sigma, Sigma @ form.mesh.matrices.D.T)
+        S,
+        velocity(
+            form.rod.balance_coefficients, Sigma, Sigma @ form.mesh.node_matrices.differentiation_matrix.T
+        ),
     )
 
 
@@ -126,9 +129,9 @@ def test_bilinear_form_is_symmetric_and_linear(rod, elements, order):
     form = mixed_form(rod.with_values(gamma1=GAMMA1), elements, order)
     X, Y, Z = (some_state(form, seed, imaginary=True) for seed in (1, 2, 3))
     close = {"rel": 1e-12, "abs": 1e-9}
-    assert form.bilinear(X, Y) == pytest.approx(form.bilinear(Y, X), **close)
-    twice = form.bilinear(X, Y) + 2j * form.bilinear(X, Z)
-    assert form.bilinear(X, Y + 2j * Z) == pytest.approx(twice, **close)
+    assert form.bilinear_form(X, Y) == pytest.approx(form.bilinear_form(Y, X), **close)
+    twice = form.bilinear_form(X, Y) + 2j * form.bilinear_form(X, Z)
+    assert form.bilinear_form(X, Y + 2j * Z) == pytest.approx(twice, **close)
     many = np.stack([X, Y, Z]).reshape(3, 1, -1)
     assert mixed.rate(form, many)[2, 0] == pytest.approx(mixed.rate(form, Z), **close)
 
@@ -174,13 +177,13 @@ def test_equations_are_the_balance_weighted_by_the_quadrature(elements, order):
 @MESHES
 def test_derivative_is_summed_by_parts(elements, order):
     WD, ends = (
-        -uniform_mesh(elements, order).matrices.weak_derivative.T,
+        -uniform_mesh(elements, order).node_matrices.weak_derivative_matrix.T,
         np.zeros((elements * order + 1,) * 2),
     )
     ends[0, 0], ends[-1, -1] = -1, 1
     assert np.abs(WD + WD.T - ends).max() <= 1e-13
     form = mixed_form(FILAMENT.with_values(gamma1=GAMMA1), elements, order)
-    u, W = form.mesh.node_positions, form.mesh.quadrature
+    u, W = form.mesh.node_positions, form.mesh.quadrature_weights
     assert WD @ u**order == pytest.approx(W * order * u ** (order - 1), abs=1e-13)
 
 
@@ -237,7 +240,7 @@ def test_row_of_the_tip_is_the_slope_of_the_reconstructed_tip(rod, elements, ord
     )
     S = np.concatenate([np.sin(k * u + k) * (1 - u) for k in (1, 2, 3)])
     exact = system.tip_position_and_velocity(np.zeros(system.layout.unknown_count), root * S)[1][1]
-    assert form.tip_y_row @ np.append(S, np.zeros(form.unknown_count - len(S))) == pytest.approx(
+    assert form.tip_y_functional @ np.append(S, np.zeros(form.unknown_count - len(S))) == pytest.approx(
         exact, rel=1e-12
     )
 
@@ -249,7 +252,7 @@ def test_tip_of_a_small_motion_moves_with_the_reaction(rod):
     X = 1j * 1e-30 * some_state(form)
     u = form.mesh.node_positions[:-1]
     test = np.concatenate([0 * u, 1 + 0 * u, rod.nu * (1 - u)])  # tip_y = test W C
-    assert form.tip_y_row[: 3 * form.mesh.node_count] == pytest.approx(
+    assert form.tip_y_functional[: 3 * form.mesh.node_count] == pytest.approx(
         test * form.M[: 3 * form.mesh.node_count], rel=1e-14
     )
     rate = test @ mixed.rate(form, X).imag[: 3 * form.mesh.node_count]

@@ -29,11 +29,11 @@ def states(layout, *many):
 def test_a_state_is_made_of_its_fields_and_taken_apart_again(layout, many):
     x = states(layout, *many)
     S, known = layout.stresses(x), layout.velocities(x)
-    assert S.shape == (layout.components, *many, layout.node_count + 1)
-    assert known.shape == (len(layout.unknown_velocities), *many, layout.node_count + 1)
+    assert S.shape == (layout.component_count, *many, layout.node_count + 1)
+    assert known.shape == (len(layout.unknown_velocity_components), *many, layout.node_count + 1)
     assert not S[..., -1].any()
     V = np.full(S.shape, np.nan)
-    V[list(layout.unknown_velocities)] = known
+    V[list(layout.unknown_velocity_components)] = known
     assert np.array_equal(layout.state(S, V), x)
 
 
@@ -56,7 +56,7 @@ def test_a_field_is_known_by_its_name():
 def test_a_symmetry_maps_motions_to_motions(form, symmetry):
     def motion(x):
         V, G = np.empty((2, 3, form.mesh.node_count + 1))
-        write_balance(x, V, G, form.nodal_rod, form.mesh.matrices)
+        write_balance(x, V, G, form.nodal_rod, form.mesh.node_matrices)
         return V, form.layout.state(G, V)
 
     x = states(form.layout)
@@ -78,8 +78,8 @@ def test_the_reflection_is_the_one_of_the_mixed_form(form):
 
 @pytest.mark.parametrize("layout", [StateLayout(3, 4, (2,)), StateLayout(6, 3)], ids=["plane", "space"])
 def test_a_symmetry_is_a_matrix_and_is_undone(layout):
-    turn, _ = np.linalg.qr(np.random.default_rng(1).standard_normal((layout.components,) * 2))
-    if layout.unknown_velocities:  # what leaves Omega alone
+    turn, _ = np.linalg.qr(np.random.default_rng(1).standard_normal((layout.component_count,) * 2))
+    if layout.unknown_velocity_components:  # what leaves Omega alone
         turn = np.array([[0.6, -0.8, 0.0], [0.8, 0.6, 0.0], [0.0, 0.0, -1.0]])
     symmetry, x, P = Symmetry(turn, 3), states(layout, 2), states(layout, layout.unknown_count)
     S = symmetry.matrix(layout)

@@ -5,8 +5,8 @@ import pytest
 
 from rodsweep.discretization.elements.trigonometric import (
     fourier_coefficients,
-    hermite_coefficients,
-    hermite_coefficients_of_columns,
+    hermite_fourier_coefficients,
+    hermite_fourier_coefficients_of_columns,
     interpolate_samples,
     series_maxima,
     series_minima,
@@ -66,7 +66,7 @@ def test_values_and_slopes_tell_twice_as_many_harmonics_as_values(m):
     exact[0], exact[m] = exact[0].real, 1j * exact[m].imag  # at the nodes harmonic m shows as a sine only
     waves = np.exp(2j * np.pi * np.outer(np.arange(m) / m, k))
     values, slopes = (waves @ exact).real, (waves @ (2j * np.pi * k[:, None] * exact)).real
-    found = hermite_coefficients(values, slopes)
+    found = hermite_fourier_coefficients(values, slopes)
     assert np.abs(found - exact).max() < 1e-13 * np.abs(exact).max()
     for count in (7, 8, 4 * m, 4 * m + 1):
         t = np.arange(count) / count
@@ -78,9 +78,9 @@ def test_half_a_period_tells_what_the_whole_does_where_the_other_half_repeats_or
     signs, rng = np.array([1.0, -1.0, -1.0]), np.random.default_rng(nodes)
     half = rng.standard_normal((2, nodes, 3))
     whole = np.concatenate([half, signs * half], axis=1)
-    exact = hermite_coefficients(whole[0], whole[1])
-    assert np.abs(hermite_coefficients_of_columns(half[0], half[1], signs) - exact).max() < 1e-14
-    assert np.all(hermite_coefficients_of_columns(half[0], half[1], signs)[::2, 1:] == 0)
+    exact = hermite_fourier_coefficients(whole[0], whole[1])
+    assert np.abs(hermite_fourier_coefficients_of_columns(half[0], half[1], signs) - exact).max() < 1e-14
+    assert np.all(hermite_fourier_coefficients_of_columns(half[0], half[1], signs)[::2, 1:] == 0)
 
 
 def test_extrema_are_those_of_dense_samples():

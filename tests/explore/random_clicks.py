@@ -22,8 +22,8 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from explore.browser import Browser
 
 from rodsweep.errors import UserError
+from rodsweep.explore.page_state import MATERIAL_SECTION_BY_LAW, SECOND_PARAMETERS, TAB_DEFAULTS, PageState
 from rodsweep.explore.slider_scales import SLIDER_SCALES
-from rodsweep.explore.state import MATERIAL_SECTION_BY_LAW, SECOND_PARAMETERS, TAB_DEFAULTS, PageState
 
 SECONDS = 600.0
 SEED = 35
@@ -238,11 +238,11 @@ class Checks:
         )
         try:
             state.largest_force()
-            answers = [state.subject().spectrum(modes=6, progress=False)]
+            answers = [state.rod_or_arm().spectrum(modes=6, progress=False)]
             if "thresholds" in shown["kinds"]:
                 self.unsolved += 1
             else:
-                answers.append(state.subject().thresholds(F_max=state.largest_force(), progress=False))
+                answers.append(state.rod_or_arm().thresholds(F_max=state.largest_force(), progress=False))
         except UserError as refusal:
             self.refused += 1
             if unescape(shown["refusal"]) != str(refusal):

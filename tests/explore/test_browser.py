@@ -14,9 +14,9 @@ from surveyed import few, survey_only
 
 import rodsweep as rs
 from rodsweep.errors import InputError
+from rodsweep.explore.page_state import PageState
 from rodsweep.explore.pictures.card import STABLE_COLOUR
-from rodsweep.explore.pictures.numbers import number_text
-from rodsweep.explore.state import PageState
+from rodsweep.explore.pictures.numbers_table import number_text
 
 pytestmark = needs_browser
 SOLVED = "Bokeh.documents[0].get_model_by_name('working').text == ''"
@@ -225,7 +225,7 @@ def test_a_bad_value_has_its_sentence_in_place_of_the_picture_until_it_is_mended
     change(browser, f"{name}_field", value)
     browser.wait_for("Bokeh.documents[0].get_model_by_name('spectrum_message').visible")
     with pytest.raises(InputError) as refusal:
-        PageState().with_values(**{name: value}).subject()
+        PageState().with_values(**{name: value}).rod_or_arm()
     assert unescape(browser.model("spectrum_message", "text")) == str(refusal.value)
     assert "<b>" not in browser.model("spectrum_message", "text")
     assert not browser.model("spectrum_figure", "visible")

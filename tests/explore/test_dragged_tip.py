@@ -9,16 +9,16 @@ from PIL import Image
 
 import rodsweep as rs
 from rodsweep.explore.page import Page
-from rodsweep.explore.pictures.card import NO_TITLE
-from rodsweep.explore.pictures.moving_arm import PERIOD_SECONDS
+from rodsweep.explore.page_state import PageState
+from rodsweep.explore.pictures.card import BLANK_TITLE
+from rodsweep.explore.pictures.moving_arm import SCREEN_SECONDS_PER_PERIOD
 from rodsweep.explore.solving.dragged_tip import motion_in_page_units
-from rodsweep.explore.solving.request_inputs import INSTANT_KINDS
+from rodsweep.explore.solving.request_inputs import INSTANT_REQUEST_KINDS
 from rodsweep.explore.solving.requests import SHAPE_COUNT, Reply, SolveRequest, answer_to
-from rodsweep.explore.state import PageState
 from rodsweep.post.figures.cycle.animation import motion_film
 from rodsweep.post.figures.cycle.tip_path import SEGMENTS_BETWEEN_SHAPES, smooth_tip_path
 
-KINDS = (*INSTANT_KINDS, "bent", "motion", "film")
+KINDS = (*INSTANT_REQUEST_KINDS, "bent", "motion", "film")
 
 
 def drag(page: Page, phase: str, x: float, y: float) -> None:
@@ -49,9 +49,9 @@ def test_a_fluttering_arm_that_is_let_go_moves_from_there_into_its_cycle():
     assert ends(picture.reached_source)[:, 1] == pytest.approx(cycle.data["shape_y"].values[:, -1], abs=1e-5)
     assert picture.card.figure.title.text == "Let go at (0.6, 0.5) L: it beats"
     per_shape, period = picture.motion_source.tags
-    assert period == PERIOD_SECONDS
+    assert period == SCREEN_SECONDS_PER_PERIOD
     # Returns of a motion that is not settled yet differ from the period by some percent.
-    assert per_shape == pytest.approx(PERIOD_SECONDS / 32, rel=0.1)
+    assert per_shape == pytest.approx(SCREEN_SECONDS_PER_PERIOD / 32, rel=0.1)
 
 
 def test_the_drawn_path_of_the_tip_is_smooth_and_leads_through_the_shapes():
@@ -92,7 +92,7 @@ def test_a_change_of_the_rod_forgets_the_motion():
     run_callbacks(page.document)
     picture = page.contents.beating
     assert (len(picture.motion_source.data["x"]), len(picture.bent_source.data["x"])) == (0, 0)
-    assert picture.card.figure.title.text == NO_TITLE
+    assert picture.card.figure.title.text == BLANK_TITLE
 
 
 def test_an_answer_to_another_place_of_the_tip_is_not_shown():
@@ -146,7 +146,7 @@ def test_the_film_of_a_motion_is_in_the_units_of_the_page():
     state = PageState(tab="arm")
     motion = motion_in_page_units(state, found)
     assert (motion.length, motion.units) == (pytest.approx(10), ("cm", "s"))
-    assert motion.step == pytest.approx(0.5 * state.subject().tau2)
+    assert motion.shape_interval == pytest.approx(0.5 * state.rod_or_arm().tau2)
     assert motion.y[:, -1] == pytest.approx([1, 2])
     film = Image.open(BytesIO(motion_film(motion)))
     assert (film.format, film.n_frames) == ("GIF", 2)

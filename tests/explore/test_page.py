@@ -10,27 +10,27 @@ from bokeh.models import HoverTool, LogTicker
 
 import rodsweep as rs
 from rodsweep.errors import UserError
-from rodsweep.explore.page import SOLVE_STOPPED_SENTENCE, Page
+from rodsweep.explore.page import Page
 from rodsweep.explore.page_contents import NO_CYCLE_CURVES_FOUND_SENTENCE
-from rodsweep.explore.pictures.card import AXIS_ALPHA_NAMES, STABLE_COLOUR
+from rodsweep.explore.page_state import PageState
+from rodsweep.explore.page_state_from_file import state_and_answers_from_file
+from rodsweep.explore.pictures.card import AXIS_OPACITY_PROPERTIES, STABLE_COLOUR
 from rodsweep.explore.pictures.diagram import (
     BOUNDARY_COLOURS,
     DiagramCell,
     diagram_cells,
     log_axis_ticker,
-    region_table,
+    unstable_count_grid,
     unstable_count_words,
 )
-from rodsweep.explore.pictures.numbers import NumbersTable, number_text
-from rodsweep.explore.pictures.over_load import threshold_title
+from rodsweep.explore.pictures.growth_and_branches import threshold_title
+from rodsweep.explore.pictures.numbers_table import NumbersTable, number_text
 from rodsweep.explore.slider_scales import PictureAxis
-from rodsweep.explore.solving.curves_and_counts import DiagramCurve
-from rodsweep.explore.solving.diagrams import CRUSHED_CODE, UNKNOWN_CODE
-from rodsweep.explore.solving.request_inputs import INSTANT_KINDS
+from rodsweep.explore.solving.diagram_curves_and_counts import DiagramCurve
+from rodsweep.explore.solving.diagrams import CRUSHED_UNSTABLE_COUNT, UNKNOWN_UNSTABLE_COUNT
+from rodsweep.explore.solving.request_inputs import INSTANT_REQUEST_KINDS
 from rodsweep.explore.solving.requests import Reply, SolveRequest, answer_to, answer_variables
-from rodsweep.explore.state import PageState
-from rodsweep.explore.state_of_file import page_state_of_file
-from rodsweep.explore.texts import template_text
+from rodsweep.explore.templates_and_texts import SOLVE_STOPPED_SENTENCE, template_text
 from rodsweep.verdict import relative_load
 
 PLANE = """task: phase_diagram
@@ -41,7 +41,7 @@ parameters: {F: {start: 0, stop: 60, num: 31}, k1: [100, 200, 400], k2: 1.0e4, g
 class ImmediateSolvers:
     """Answers at once, in this process. requests: all that were asked."""
 
-    def __init__(self, kinds: tuple[str, ...] = INSTANT_KINDS):
+    def __init__(self, kinds: tuple[str, ...] = INSTANT_REQUEST_KINDS):
         self.kinds = kinds
         self.requests: list[SolveRequest] = []
 
@@ -109,7 +109,7 @@ def test_a_change_of_the_load_asks_no_thresholds_again():
     assert {request.kind for request in solvers.requests} == {"spectrum", "cycle"}
     solvers.requests.clear()
     page.change({"k2": "200"})
-    assert {request.kind for request in solvers.requests} == set(INSTANT_KINDS)
+    assert {request.kind for request in solvers.requests} == set(INSTANT_REQUEST_KINDS)
 
 
 def test_a_rod_at_rest_says_so_above_the_straight_arm():
@@ -196,15 +196,15 @@ def test_branches_wait_until_the_page_rests_and_cones_until_the_button():
 def test_a_file_brings_its_diagram_and_only_the_rest_is_solved(command):
     command.write("plane.yaml", PLANE)
     assert command("run", "plane.yaml").returncode == 0
-    state, stored = page_state_of_file(command.directory / "plane.h5")
+    state, stored = state_and_answers_from_file(command.directory / "plane.h5")
     solvers = ImmediateSolvers()
     page = page_with(solvers, state=state, stored=stored)
     run_callbacks(page.document, seconds=True)
-    assert (state.rod["k1"], state.second, state.F_max) == ("200", "k1", "60")
+    assert (state.rod["k1"], state.second_parameter, state.F_max) == ("200", "k1", "60")
     assert "diagram" not in {request.kind for request in solvers.requests}
     counts = rs.open(command.directory / "plane.h5")["unstable_count"].squeeze()
     drawn = page.contents.diagram.cell_source.data
-    assert max(drawn["unstable"]) == int(counts.max())
+    assert max(drawn["unstable_count"]) == int(counts.max())
 
 
 def test_the_reset_button_returns_to_what_was_drawn_last():
@@ -235,9 +235,9 @@ def test_a_short_logarithmic_axis_has_ticks_in_its_lower_part_too():
 
 def test_the_diagram_names_its_areas_under_the_pointer_and_nothing_else():
     picture = page_with(ImmediateSolvers(())).contents.diagram
-    counts = np.array([[0, 1, 2, UNKNOWN_CODE, CRUSHED_CODE]])
+    counts = np.array([[0, 1, 2, UNKNOWN_UNSTABLE_COUNT, CRUSHED_UNSTABLE_COUNT]])
     cells = diagram_cells(np.arange(5.0), np.ones(1), counts)
-    assert [unstable_count_words(cell.unstable) for cell in cells] == [
+    assert [unstable_count_words(cell.unstable_count) for cell in cells] == [
         "stable", "1 unstable mode", "2 unstable modes", "not searched, or not known", "crushed by the load",
     ]  # fmt: skip
     (hover,) = picture.card.figure.select(HoverTool)
@@ -254,18 +254,18 @@ def test_areas_of_a_diagram_end_at_its_curves_of_hopf_points():
         "between_x": np.full(2, 1.96), "between_y": y, "between_count": np.full(2, 4),
         "crushing_load": np.array([1.98, 19.8]),
     }  # fmt: skip
-    sides, levels, counts = region_table(found)
+    sides, levels, counts = unstable_count_grid(found)
     middles = (sides[1:] + sides[:-1]) / 2
     for level, row in zip(np.log10(levels[1:] * levels[:-1]) / 2, counts, strict=True):
         hopf = 0.2 + 1.7 * level
         assert (row[middles < hopf - 0.01] == 0).all()
         assert (row[(middles > hopf + 0.01) & (middles < 1.94)] == 2).all()
         assert row[np.abs(middles - 1.96).argmin()] == 4
-        assert row[-1] == (CRUSHED_CODE if 1.98 * 10**level < sides[-2] else 2)
+        assert row[-1] == (CRUSHED_UNSTABLE_COUNT if 1.98 * 10**level < sides[-2] else 2)
     assert (levels[0], levels[-1]) == pytest.approx((1, 10))
-    assert region_table(found | {"curves": found["curves"][1:2]}) is None
-    rigid = region_table(found | {"crushing_load": np.full(2, np.inf)})
-    assert (rigid.counts[:, -1] == 2).all()
+    assert unstable_count_grid(found | {"curves": found["curves"][1:2]}) is None
+    rigid = unstable_count_grid(found | {"crushing_load": np.full(2, np.inf)})
+    assert (rigid.unstable_counts[:, -1] == 2).all()
 
 
 def test_cells_join_neighbours_of_equal_count_and_fill_the_rows():
@@ -302,23 +302,23 @@ def test_a_long_solve_says_how_far_it_is_and_can_be_stopped():
     run_callbacks(page.document)
     assert page.contents.sign.text == "solving folds and torus points (curve 1 of &lt;2&gt;, 50%) ..."
     assert sign.is_stoppable
-    page.stop()
+    page.stop_long_solves()
     assert (sign.text, sign.is_stoppable, solvers.cancelled) == ("", False, ["cycles"])
 
 
 def test_stopping_the_folds_leaves_the_diagram_and_stopping_a_motion_the_arm():
-    solvers = ImmediateSolvers((*INSTANT_KINDS, "bent"))
+    solvers = ImmediateSolvers((*INSTANT_REQUEST_KINDS, "bent"))
     page = page_with(solvers)
     run_callbacks(page.document, seconds=True)
     diagram, *_ = [request for request in solvers.requests if request.kind == "diagram"]
     page._on_answer(diagram, Reply("refused", {"sentence": ""}, 0.0))
     page.solve("cycles")
-    page.stop()
+    page.stop_long_solves()
     page.request_tip_answer("bent", (0.6, 0.5))
     run_callbacks(page.document)
     assert len(page.contents.beating.bent_source.data["x"]) > 0
     page.request_tip_answer("motion", (0.6, 0.5))
-    page.stop()
+    page.stop_long_solves()
     assert len(page.contents.beating.bent_source.data["x"]) == 0
     solvers.requests.clear()
     page.change({"F": "51"})
@@ -349,10 +349,13 @@ def test_folds_are_added_to_the_drawn_diagram_while_the_rod_is_inside():
     for k2, around in (("300", "100"), ("2e3", "2e3")):
         page.change({"k2": k2})
         page.solve("cycles")
-        assert (solvers.requests[-1].kind, solvers.requests[-1].state.values["k2"]) == ("cycles", around)
+        assert (solvers.requests[-1].kind, solvers.requests[-1].state.visible_texts["k2"]) == (
+            "cycles",
+            around,
+        )
     page.change({"k2": "300", "gamma3": "0.02"})
     page.solve("cycles")
-    assert solvers.requests[-1].state.values["k2"] == "300"
+    assert solvers.requests[-1].state.visible_texts["k2"] == "300"
 
 
 def test_folds_of_an_arm_are_asked_around_the_arm_and_refused():
@@ -418,7 +421,7 @@ def test_the_pictures_of_an_arm_are_in_si_units():
 def test_a_stopped_solve_has_a_sentence_in_place_of_its_picture():
     page = page_with(ImmediateSolvers(("spectrum", "thresholds", "growth")))
     run_callbacks(page.document, seconds=True)
-    page.stop()
+    page.stop_long_solves()
     contents = page.contents
     for picture in (contents.branches, contents.diagram, contents.beating):
         assert picture.card.message.text == SOLVE_STOPPED_SENTENCE
@@ -431,7 +434,7 @@ def test_pictures_without_an_answer_have_no_axes():
     page = page_with(ImmediateSolvers(kinds=("spectrum",)))
     contents = page.contents
     for card in contents.cards:
-        alphas = {getattr(axis, name) for axis in card.figure.axis for name in AXIS_ALPHA_NAMES}
+        alphas = {getattr(axis, name) for axis in card.figure.axis for name in AXIS_OPACITY_PROPERTIES}
         assert alphas == ({1.0} if card in (contents.spectrum.card, contents.mode.card) else {0.0})
 
 
@@ -493,7 +496,7 @@ def test_a_config_with_a_relative_load_opens_with_this_load(tmp_path):
     config.write_text(
         f"task: limit_cycle\nparameters: {{arm: {{{arm}, pressure: [1.1 of flutter, 1.2 of flutter]}}}}\n"
     )
-    state, stored = page_state_of_file(config)
+    state, stored = state_and_answers_from_file(config)
     assert (state.arm["pressure"], stored) == ("1.2 of flutter", None)
     assert "1.2 of flutter" in state.yaml("limit_cycle")
 

@@ -15,8 +15,8 @@ from tornado.httpclient import AsyncHTTPClient, HTTPClientError, HTTPRequest
 from tornado.web import Application, RequestHandler
 from tornado.websocket import websocket_connect
 
-from rodsweep.explore.server import LISTEN_ADDRESS, ExploreServer, UndelayedServer
-from rodsweep.explore.state import PageState
+from rodsweep.explore.page_state import PageState
+from rodsweep.explore.server import LISTEN_ADDRESS, ExploreServer, TcpNoDelayServer
 
 LONGEST = 60
 """Seconds that a loaded machine may need to start or to end the server."""
@@ -93,7 +93,7 @@ def test_small_changes_are_sent_at_once():
             seen.append(stream.socket.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY))
 
     async def run() -> None:
-        server = UndelayedServer(Application([("/", Seen)]))
+        server = TcpNoDelayServer(Application([("/", Seen)]))
         server.listen(0, LISTEN_ADDRESS)
         (listening,) = server._sockets.values()
         await AsyncHTTPClient().fetch(f"http://{LISTEN_ADDRESS}:{listening.getsockname()[1]}/")

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 import rodsweep as rs
+from rodsweep.explore.page_state import PageState
 from rodsweep.explore.solving.requests import Reply, SolveRequest
-from rodsweep.explore.solving.solvers import CancellationDelays, SolverProcess, Solvers
-from rodsweep.explore.state import PageState
+from rodsweep.explore.solving.solver_processes import CancellationDelays, SolverProcess, SolverProcesses
 
 HARD = PageState().with_values(taper="0.6")
 """A rod whose branches take half a minute."""
@@ -48,7 +48,9 @@ def loop():
 @pytest.fixture(scope="module")
 def solver():
     """One process for the tests that leave it idle: to start it takes a second."""
-    made = SolverProcess(CancellationDelays(interrupt_seconds=0.05, kill_seconds=LONGEST))
+    made = SolverProcess(
+        CancellationDelays(min_age_of_cancelled_solve=0.05, kill_after_cancellation_seconds=LONGEST)
+    )
     yield made
     made.close()
 
@@ -124,7 +126,9 @@ def test_a_page_that_ends_takes_its_requests_along(solver):
 
 
 def test_a_solver_that_does_not_answer_is_killed_and_started_again():
-    solver = SolverProcess(CancellationDelays(interrupt_seconds=0.05, kill_seconds=0.2))
+    solver = SolverProcess(
+        CancellationDelays(min_age_of_cancelled_solve=0.05, kill_after_cancellation_seconds=0.2)
+    )
     try:
         replies: list[Reply] = []
         solver.ask(("page", "branch"), SLOW, replies.append)
@@ -163,7 +167,7 @@ def test_what_is_forked_has_started_neither_mpi_nor_petsc_nor_threads():
 
 
 def test_closing_ends_all_processes():
-    solvers = Solvers()
+    solvers = SolverProcesses()
     solvers.warm_up()
     pids = [solver.pid for solver in solvers.groups.values() if solver.pid is not None]
     assert len(pids) == 3
@@ -177,8 +181,8 @@ def test_a_solver_ends_in_the_middle_of_a_solve_when_its_page_is_killed():
     lines = [
         "import asyncio, sys, time",
         "from rodsweep.explore.solving.requests import SolveRequest",
-        "from rodsweep.explore.solving.solvers import SolverProcess",
-        "from rodsweep.explore.state import PageState",
+        "from rodsweep.explore.solving.solver_processes import SolverProcess",
+        "from rodsweep.explore.page_state import PageState",
         "asyncio.set_event_loop(asyncio.new_event_loop())",
         "solver = SolverProcess()",
         "request = SolveRequest('branch', PageState().with_values(taper='0.6'))",

@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 
 import rodsweep as rs
 from rodsweep.errors import InputError
-from rodsweep.explore.sharing import state_from_config_text
-from rodsweep.explore.state import (
+from rodsweep.explore.export_panel import state_from_config_text
+from rodsweep.explore.page_state import (
     DEFAULT_ARM,
     DEFAULT_ROD,
     MATERIAL_SECTION_BY_LAW,
@@ -63,7 +63,7 @@ def test_an_address_with_an_unknown_key_or_choice_is_refused(query, named):
 @pytest.mark.parametrize("law", MATERIAL_SECTION_BY_LAW)
 def test_a_loaded_config_is_the_state_that_saved_it(law):
     state = PageState(rod=OTHER, law=law)
-    assert state_from_config_text(state.yaml("limit_cycle")).subject() == state.subject()
+    assert state_from_config_text(state.yaml("limit_cycle")).rod_or_arm() == state.rod_or_arm()
 
 
 def test_a_loaded_config_of_an_arm_is_the_arm_that_saved_it():
@@ -74,7 +74,7 @@ def test_a_loaded_config_of_an_arm_is_the_arm_that_saved_it():
 
 def test_a_saved_config_keeps_every_digit():
     rod = PageState(rod=OTHER | {"F": "49.7580049161915", "k1": "1234567.5"})
-    assert state_from_config_text(rod.yaml("limit_cycle")).subject() == rod.subject()
+    assert state_from_config_text(rod.yaml("limit_cycle")).rod_or_arm() == rod.rod_or_arm()
     arm = PageState(tab="arm", arm=DEFAULT_ARM | {"pressure": "3.2731121 kPa"})
     assert state_from_config_text(arm.yaml("limit_cycle")).arm["pressure"] == "3.2731121 kPa"
 
@@ -91,7 +91,7 @@ def test_a_diagram_with_crushed_points_opens_with_a_rod_that_is_not_crushed():
     plane = "{F: {start: 0, stop: 100, num: 101}, k1: [20, 30, 40], k2: 1.0e4, gamma3: 1.0e-4}"
     state = state_from_config_text(f"task: phase_diagram\nparameters: {plane}\n")
     assert (state.rod["F"], state.rod["k1"], state.F_max) == ("15", "30", "100")
-    state.subject()
+    state.rod_or_arm()
 
 
 @pytest.mark.parametrize("text", ["", "- 1", "task: spectrum", "task: [", "parameters: {F: 3}"])
@@ -137,7 +137,7 @@ def test_a_branch_along_another_parameter_opens_with_the_middle_of_its_range():
 def test_the_python_lines_make_the_subject_of_the_state(tab):
     state = PageState(tab=tab, rod=OTHER, law="fixed")
     line = next(line for line in state.python().splitlines() if line.startswith(tab))
-    assert eval(line.partition(" = ")[2], {"rs": rs, "inf": float("inf")}) == state.subject()
+    assert eval(line.partition(" = ")[2], {"rs": rs, "inf": float("inf")}) == state.rod_or_arm()
 
 
 @pytest.mark.parametrize(
@@ -147,7 +147,7 @@ def test_the_python_lines_make_the_subject_of_the_state(tab):
 def test_a_bad_value_has_the_sentence_of_the_command_line(name, text):
     state = PageState().with_values(**{name: text})
     with pytest.raises(InputError) as refusal:
-        state.subject()
+        state.rod_or_arm()
     assert name in str(refusal.value)
     with pytest.raises(InputError) as same:
         rs.Rod(**state.parameters())
@@ -167,7 +167,7 @@ def test_the_page_and_the_command_refuse_with_one_sentence(command, name, text):
     done = command("check", "rod.yaml", "--set", f"parameters.{name}={text}")
     assert done.returncode == 2
     with pytest.raises(InputError) as refusal:
-        PageState().with_values(**{name: text}).subject()
+        PageState().with_values(**{name: text}).rod_or_arm()
     sentence = str(refusal.value).partition(": ")[2] or str(refusal.value)
     assert done.stderr.rstrip().endswith(sentence)
 

@@ -11,10 +11,10 @@ from surveyed import few
 import rodsweep as rs
 from rodsweep.explore.answers_from_file import AnswersFromFile
 from rodsweep.explore.page import Page
+from rodsweep.explore.page_state_from_file import state_and_answers_from_file, stored_diagram
 from rodsweep.explore.pictures.card import TORUS_COLOUR
-from rodsweep.explore.pictures.numbers import number_text
+from rodsweep.explore.pictures.numbers_table import number_text
 from rodsweep.explore.solving.requests import answer_to
-from rodsweep.explore.state_of_file import page_state_of_file, stored_diagram
 from rodsweep.results.layouts.branch import SPECIAL_KINDS
 
 ROD = "k1: 1.0e4, k2: 100, gamma3: 0.01"
@@ -42,7 +42,7 @@ class Filmed(NamedTuple):
 def opened_page(command, text: str, query: str = "") -> tuple[Page, NoSolvers]:
     """The page of the result of a config, after it has rested."""
     command.write("result.yaml", text)
-    state, stored = page_state_of_file(command.solved("result.yaml"))
+    state, stored = state_and_answers_from_file(command.solved("result.yaml"))
     solvers = NoSolvers()
     page = page_with(solvers, query, state, stored)
     run_callbacks(page.document, seconds=True)
@@ -72,22 +72,22 @@ def test_the_film_of_a_stored_cycle_is_drawn_from_its_stored_shapes(command, mon
     page.solve("film")
     request = solvers.requests[-1]
     stored = rs.open(command.directory / "result.h5").sel(F=[40])
-    assert (request.kind, request.stored["shape_y"].equals(stored["shape_y"])) == ("film", True)
+    assert (request.kind, request.stored_cycle["shape_y"].equals(stored["shape_y"])) == ("film", True)
     monkeypatch.setattr("rodsweep.explore.solving.requests.plot", lambda cycle, what: Filmed(cycle))
     monkeypatch.setattr(rs.Rod, "cycle", None)  # no solve is needed
-    assert answer_to(request)["gif"] is request.stored
+    assert answer_to(request)["gif"] is request.stored_cycle
 
 
 @pytest.mark.parametrize(("shapes", "query"), few([(16, "F=41"), (16, "F=20"), (7, "")], 1))
 def test_a_film_that_the_file_does_not_hold_is_solved(command, shapes, query):
     page, solvers = opened_page(command, CYCLES.replace("16", str(shapes)), query)
     page.solve("film")
-    assert solvers.requests[-1].stored is None
+    assert solvers.requests[-1].stored_cycle is None
 
 
 def test_a_click_beside_a_stored_force_shows_its_cycle(command):
     page, solvers = opened_page(command, CYCLES)
-    page._move_load(type("Click", (), {"x": 51.3}))
+    page._select_load(type("Click", (), {"x": 51.3}))
     assert page.state.rod["F"] == "50"
     assert "cycle" not in asked(solvers)
 
@@ -140,7 +140,7 @@ def test_stored_curves_of_torus_points_are_drawn_dashed_in_a_colour_of_their_own
     """On the smallest plane with folds, whose curves become torus points: real ones take 5 s."""
     command.write("result.yaml", PLANE)
     path = command.solved("result.yaml")
-    state, _ = page_state_of_file(path)
+    state, _ = state_and_answers_from_file(path)
     data = rs.open(path).load()
     kind = data["cycle_curve_kind"]
     kind.values[:] = SPECIAL_KINDS.index("torus")
@@ -189,7 +189,7 @@ def test_stored_cycles_of_arms_are_drawn_and_not_solved_again(command):
     assert drawn["y"] == pytest.approx([0, *10 * arms["tip_y_max"].values[1:]])
     loads = page.contents.branches.card.figure.x_range
     assert (loads.start < 1, loads.end > 5) == (True, True)  # no dot is cut at an edge
-    page._move_load(type("Click", (), {"x": 4.9}))
+    page._select_load(type("Click", (), {"x": 4.9}))
     assert page.state.arm["pressure"] == "5 kPa"
     page.change({"length": "8 cm"})
     assert not {"cycle", "branch"} & asked(solvers)
@@ -200,7 +200,7 @@ def test_stored_cycles_of_arms_are_drawn_and_not_solved_again(command):
 def test_stored_thresholds_of_arms_are_the_diagram(command):
     page, solvers = opened_page(command, THRESHOLDS_OF_ARMS)
     data = rs.open(command.directory / "result.h5")
-    assert (page.state.law, page.state.second) == ("fixed", "length")
+    assert (page.state.law, page.state.second_parameter) == ("fixed", "length")
     assert "diagram" not in asked(solvers)
     drawn = page.contents.diagram.crossing_source.data
     stored = data["crossing_pressure"].values / 1e3
@@ -211,7 +211,7 @@ def test_stored_thresholds_of_arms_are_the_diagram(command):
 def test_a_diagram_without_a_force_axis_is_solved_over_the_force(command):
     axes = "{k1: {start: 20, stop: 300, num: 6}, k2: [10, 100], F: 30, gamma3: 0}"
     page, solvers = opened_page(command, f"task: phase_diagram\nparameters: {axes}\n")
-    assert (page.state.rod["F"], page.state.second) == ("30", "k1")
+    assert (page.state.rod["F"], page.state.second_parameter) == ("30", "k1")
     assert {"diagram", "branch"} <= asked(solvers)
 
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from random import Random
 from typing import Any
 
-from rodsweep.config.tasks import CONFIGS
+from rodsweep.config.tasks import CONFIG_CLASSES_BY_TASK
 from rodsweep.post.tables.table_names import BRANCHES_TABLE, GRID_TABLE, POINTS_TABLE, TABLE_NAMES
 
 TASKS = ("spectrum", "thresholds", "modes", "limit_cycle", "criticality", "branch")
@@ -163,7 +163,7 @@ def call(rng: Random) -> Call:
 
 def misspelt(rng: Random, key: str) -> str:
     """A key with one letter left out, doubled, exchanged or of the other case; never a known one."""
-    known = {name for task in CONFIGS for name in OPTIONS.get(task, {})} | {
+    known = {name for task in CONFIG_CLASSES_BY_TASK for name in OPTIONS.get(task, {})} | {
         "F",
         "k1",
         "k2",
@@ -190,7 +190,9 @@ def config(rng: Random) -> str:
     task = rng.choice([*TASKS, "phase_diagram"])
     rod = drawn_rod(rng) | {"F": rng.uniform(5, 28)}
     names = (
-        [*CONFIGS[task].rod_parameters_used({})] if task != "phase_diagram" else ["F", "k1", "k2", "gamma3"]
+        [*CONFIG_CLASSES_BY_TASK[task].rod_parameters_used({})]
+        if task != "phase_diagram"
+        else ["F", "k1", "k2", "gamma3"]
     )
     values: dict[str, Any] = {name: f"{rod.get(name, 1):.6g}" for name in names}
     values["k2"] = f"[{100 + 400 * rng.random():.4g}, {1e3 + 4e3 * rng.random():.5g}]"

@@ -15,7 +15,7 @@ from typing import Any
 from pydantic import BaseModel
 from ruamel.yaml import YAML
 
-from rodsweep.config.tasks import CONFIGS
+from rodsweep.config.tasks import CONFIG_CLASSES_BY_TASK
 
 from . import wrong
 
@@ -69,7 +69,7 @@ def is_section(field: Any) -> bool:
 def keys_of(tree: dict) -> list[Keys]:
     """Every key that the tree has or might have; those of its ranges too."""
     found: list[Keys] = []
-    for name, field in CONFIGS[tree["task"]].model_fields.items():
+    for name, field in CONFIG_CLASSES_BY_TASK[tree["task"]].model_fields.items():
         found.append((name,))
         if is_section(field):
             found += [(name, inner) for inner in field.annotation.model_fields]
@@ -117,7 +117,7 @@ def renamed(tree: dict, keys: Keys, name: str) -> dict:
 
 def refused_values(tree: dict, keys: Keys) -> list[str]:
     """The texts of YAML that may not be the value of a key."""
-    field = CONFIGS[tree["task"]].model_fields[keys[0]]
+    field = CONFIG_CLASSES_BY_TASK[tree["task"]].model_fields[keys[0]]
     if len(keys) == 3:
         return wrong.NEVER + wrong.NO_NUMBER
     if len(keys) == 1 and is_section(field):
@@ -199,7 +199,7 @@ def odd_keys(tree: dict, rng: Random) -> Iterator[Case]:
     for keys in [(), *(keys for keys in places if isinstance(at(tree, keys), dict))]:
         for key in wrong.KEYS:
             yield Case(f"{'.'.join(keys)} with {key[:40]!a}", text_of(with_value(tree, (*keys, key), 1)))
-    for task in CONFIGS:
+    for task in CONFIG_CLASSES_BY_TASK:
         if task != tree["task"]:
             for value in ("{}", "3", "~", "{modes: 3}"):
                 yield Case(f"{task}: {value}", text_of(tree | {task: Verbatim(value)}), says=task)

@@ -254,7 +254,7 @@ def be_rank(request: dict, streams: list[int]) -> None:
     if str(patch.parent.absolute()) in os.environ.get("PYTHONPATH", ""):
         exec(patch.read_text(), {"__name__": "sitecustomize"})
     if request["words"][:2] == MEASURED:
-        from rodsweep.cli.measured_command import run_measured as main
+        from rodsweep.cli.measured_command import run_and_record_memory as main
 
         sys.argv = request["words"][1:]
     else:
@@ -349,7 +349,7 @@ def load_changes() -> None:
 def load_arms() -> None:
     """Loads what arms that vary along their length call beside, and keeps no solver for them."""
     from rodsweep.solve.backend.solver_pools import destroy_pooled_solvers
-    from rodsweep.solve.seldom_used_kernels import warm_up_arms
+    from rodsweep.solve.seldom_used_functions import warm_up_arms
 
     warm_up_arms()
     destroy_pooled_solvers()

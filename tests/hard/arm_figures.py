@@ -13,7 +13,7 @@ from matplotlib.patches import Patch
 from rodsweep.model.arm.drag import DRAG_ESTIMATE_NAMES
 from rodsweep.model.arm.neglected import Validity
 
-from .arm_sentences import NAMED, UNIT, UNITS, force_unit, in_si, quantities_at_points
+from .arm_sentences import NAMED, UNIT, UNITS_AND_EXAMPLES, force_unit, in_si, quantities_at_points
 from .drawing import (
     PARAMETERS,
     cells,
@@ -226,7 +226,7 @@ def quantities_told(d, view):
     ):
         name = NAMED.get(match[1], match[1].strip().replace(" ", "_"))
         if name in each[0]:
-            values = np.unique([q[name] for q in each]) / UNITS.get(match[3], 1.0)
+            values = np.unique([q[name] for q in each]) / UNITS_AND_EXAMPLES.get(match[3], 1.0)
             why = one_of(match[2], values, 4)
             found.append(
                 (line, why if not match[4] or int(match[4]) == len(values) else f"{len(values)} values")

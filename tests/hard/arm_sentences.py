@@ -30,11 +30,14 @@ from .truths import changes_on_lines, changes_over_force, leading, rods_of, time
 
 PREFIXES = {"p": 1e-12, "n": 1e-9, "µ": 1e-6, "m": 1e-3, "c": 1e-2, "": 1.0, "k": 1e3, "M": 1e6, "G": 1e9}
 BASES = ("Pa s", "Pa", "N m^2", "N", "Hz", "1/s", "s", "m^2", "m^4", "m", "J", "W", "kg/m^3")
-UNITS = {f"{p}{base}": factor for base in BASES for p, factor in PREFIXES.items()} | {"P": 0.1, "1/s": 1.0}
-UNITS |= {"m^2": 1.0, "mm": 1e-3, "g/cm^3": 1e3}
-UNIT = "|".join(sorted(map(re.escape, UNITS), key=len, reverse=True))
+UNITS_AND_EXAMPLES = {f"{p}{base}": factor for base in BASES for p, factor in PREFIXES.items()} | {
+    "P": 0.1,
+    "1/s": 1.0,
+}
+UNITS_AND_EXAMPLES |= {"m^2": 1.0, "mm": 1e-3, "g/cm^3": 1e3}
+UNIT = "|".join(sorted(map(re.escape, UNITS_AND_EXAMPLES), key=len, reverse=True))
 SIDES = ("radius", "inner_radius", "width", "height")
-LOADS = ("pressure", "force")
+LOAD_NAMES = ("pressure", "force")
 WITHOUT_CYCLE = {
     "straight": "does not beat",
     "unstable": "has an unstable cycle",
@@ -176,8 +179,8 @@ def _quantity_lines(view, page):
             continue
         for line, why, low, high, unit in parameter_lines(page, name, true):
             ends = (
-                as_stated(low, true.min() / UNITS.get(unit, 1.0)),
-                as_stated(high, true.max() / UNITS.get(unit, 1.0)),
+                as_stated(low, true.min() / UNITS_AND_EXAMPLES.get(unit, 1.0)),
+                as_stated(high, true.max() / UNITS_AND_EXAMPLES.get(unit, 1.0)),
             )
             found.append((line, "; ".join(filter(None, (why, *ends)))))
     return found
@@ -203,12 +206,12 @@ def _item(view, page, line, match, fine, scales):
     """An item of what is said of a whole file, such as "period = 1 to 2 s"."""
     page.mark(line, match.span(2))
     name, text, unit = match.groups()
-    base = UNITS[unit]
+    base = UNITS_AND_EXAMPLES[unit]
     event = re.fullmatch(r"frequency_(hopf|restabilization)", name)
     name = (
         f"{event[1]}_frequency"
         if event
-        else "_".join("F" if word in LOADS else word for word in name.split("_"))
+        else "_".join("F" if word in LOAD_NAMES else word for word in name.split("_"))
     )
     stored_there = name in view.variables and view.task == "branch" and not name.startswith("special")
     values = np.asarray((view if stored_there else fine).variables[name], float)  # its cycles are elsewhere
@@ -248,7 +251,7 @@ def _thresholds(view, page, scales):
     rods = _rods_without_load(view)
     every = [changes_over_force(rod, top) for rod, top in zip(rods, _tops(view), strict=True)]
     for line, match in read(page, rf"^(\w+) at {value}: .*?(?:; frequency {value})?$"):
-        unit = UNITS[match[3]]
+        unit = UNITS_AND_EXAMPLES[match[3]]
         near = min(every[0], key=lambda c: abs(c.value * to_load[0] / unit - float(match[2])))
         why = _in_units(match.groups()[1:], [near.value * to_load[0]], [near.frequency * to_hertz[0]])
         found.append((line, why if near.kind.name == match[1] else f"it is {near.kind.name}"))
@@ -267,7 +270,9 @@ def _in_units(groups, *true):
     """Why ranges with their units, texts one after another, are not those of arrays in SI."""
     pairs = zip(groups[::2], groups[1::2], true, strict=False)
     return "; ".join(
-        filter(None, (range_as_stated(t, np.asarray(x) / UNITS[unit]) for t, unit, x in pairs if t))
+        filter(
+            None, (range_as_stated(t, np.asarray(x) / UNITS_AND_EXAMPLES[unit]) for t, unit, x in pairs if t)
+        )
     )
 
 
@@ -320,12 +325,12 @@ def region_as_stated(view, text, mask):
             why.append(range_as_stated(match[1], columns[name][mask]))
         elif match := re.fullmatch(rf"(.*?) ({NUMBER}(?: to {NUMBER})?)(?: (\S.*))?", item):
             name = NAMED.get(match[1], match[1].replace(" ", "_"))
-            why.append(range_as_stated(match[2], columns[name][mask] / UNITS.get(match[3], 1.0)))
+            why.append(range_as_stated(match[2], columns[name][mask] / UNITS_AND_EXAMPLES.get(match[3], 1.0)))
         else:
             return f"nothing reads {item}"
         told.add(name)
     whole = "drag" in columns and set(columns["drag"][mask]) == set(columns["drag"])
-    left = {n for n in columns if not n.startswith(LOADS) or n + "_over_flutter" not in columns} - told
+    left = {n for n in columns if not n.startswith(LOAD_NAMES) or n + "_over_flutter" not in columns} - told
     left -= {"drag"} if whole else set()
     return "; ".join(filter(None, [*why, f"{sorted(left)} are left out" if left else ""]))
 
@@ -335,7 +340,7 @@ def _alike_but_for_drag(view):
     columns = varied_quantities(view)
     columns.pop("drag", None)
     load = [name for name in columns if name.endswith("over_flutter")]
-    names = [name for name in columns if not load or name not in LOADS]
+    names = [name for name in columns if not load or name not in LOAD_NAMES]
     table = np.array([np.zeros(len(quantities_at_points(view))), *(columns[name] for name in names)])
     return np.unique(table, axis=1, return_inverse=True)[1].ravel()
 
@@ -398,7 +403,7 @@ def _answer(view, page, fine, scales):
             for k, values in enumerate(true):
                 text, unit = groups[2 + 2 * k : 4 + 2 * k]
                 if text is not None:
-                    why.append(range_as_stated(text, np.asarray(values) / UNITS[unit]))
+                    why.append(range_as_stated(text, np.asarray(values) / UNITS_AND_EXAMPLES[unit]))
             found.append((line, "; ".join(filter(None, why))))
 
     if view.task in ("thresholds", "criticality", "phase_diagram"):
@@ -422,7 +427,7 @@ def _answer(view, page, fine, scales):
             hertz[chosen],
             y[chosen],
         )
-        codes = {word: code for code, word in view.flags.items()}
+        codes = {word: code for code, word in view.status_flags.items()}
         for status, words in WITHOUT_CYCLE.items():
             told(
                 rf"{re.escape(words)}{some}$",
@@ -483,7 +488,9 @@ def _compression(view, page, scales):
             found += [(line, "no load is as large") for line, _ in lines]
             continue
         loads = (share * limits * scales[force_unit(view)])[np.isfinite(limits)]
-        told = [(line, range_as_stated(match[1], loads / UNITS[match[2]])) for line, match in lines]
+        told = [
+            (line, range_as_stated(match[1], loads / UNITS_AND_EXAMPLES[match[2]])) for line, match in lines
+        ]
         found += told or [("", f"it is not said above which load compression {verdict}")]
     return found
 
@@ -519,7 +526,7 @@ def _validity_line(view, page, fine):
             effects = neglected_effects(
                 arm, angular_frequency_at_smallest_drag(arm, rate), F, amplitude=amplitude
             )
-        of = [e for e in effects if cycles or not e.of_cycles_only]
+        of = [e for e in effects if cycles or not e.is_of_cycles_only]
         applies.append(int(np.max(worst_validity(effects, of_cycles=cycles))))
         excess.append(max(float(np.nanmax(np.append(e.value_over_limit, -1.0))) for e in of))
     found, count = [], len(excess)
@@ -639,8 +646,8 @@ class ArmTruth:
         self.q, self.own = planes[first], each[first]
         self.other = each[1 - first] if len(each) > 1 else None
         self.name = "" if not self.other else f" in the plane of its {('height', 'width')[first]}"
-        load = next((name for name in LOADS if getattr(arm, name) is not None), None)
-        self.load_name, self.share = load or "pressure", arm.share_of_flutter if load else None
+        load = next((name for name in LOAD_NAMES if getattr(arm, name) is not None), None)
+        self.load_name, self.share = load or "pressure", arm.load_over_flutter if load else None
         unit = scales_of(self.q)["force_scale" if load == "force" else "pressure_scale"]
         self.unit = unit
         if load is None:
@@ -685,7 +692,7 @@ class ArmTruth:
             for line, match in read(page, pattern):
                 pairs = zip(match.groups()[::2], match.groups()[1::2], strict=True)
                 why = [
-                    range_as_stated(text, np.asarray(values) / UNITS[unit])
+                    range_as_stated(text, np.asarray(values) / UNITS_AND_EXAMPLES[unit])
                     for (text, unit), values in zip(pairs, true, strict=True)
                 ]
                 found.append((line, "; ".join(filter(None, why))))
@@ -765,17 +772,17 @@ class ArmTruth:
             off = abs(float(match[2]) - excess) > TWO_DIGITS * excess
             found.append((line, f"{name} is {excess}" if off else ""))
         for line, match in read(page, rf"at least NUMBER times as viscous \(NUMBER ({UNIT})\)"):
-            true = float(match[2]) * UNITS[match[3]] / self.q["viscosity"]
+            true = float(match[2]) * UNITS_AND_EXAMPLES[match[3]] / self.q["viscosity"]
             why = "" if abs(true / float(match[1]) - 1) < 2 * TWO_DIGITS else f"it is {true} times"
             found.append((line, why or self._no_remedy(match[1], -1, "viscosity")))
         for line, match in read(page, r"at most NUMBER times as thick"):
             found.append((line, self._no_remedy(match[1], 2, *(side for side in SIDES if side in self.q))))
         for line, match in read(page, rf"a (?:load|pull) of at most NUMBER ({UNIT})(?=[.;])"):
-            F = float(match[1]) * UNITS[match[2]] / self.unit
+            F = float(match[1]) * UNITS_AND_EXAMPLES[match[2]] / self.unit
             excess = abs(F) / self.own["k1"] / 0.1
             found.append((line, "" if 0.98 < excess <= 1 else f"it is {excess} times the limit"))
         for line, match in read(page, r"within NUMBER (\S+) of the fluid's"):
-            q = self.q | {"density_difference": float(match[1]) * UNITS.get(match[2], 1.0)}
+            q = self.q | {"density_difference": float(match[1]) * UNITS_AND_EXAMPLES.get(match[2], 1.0)}
             weight = next(
                 float(e.value_over_limit)
                 for e in neglected_effects(SlenderArm(**q), np.nan, np.nan)
@@ -783,7 +790,7 @@ class ArmTruth:
             )
             found.append((line, "" if 0.85 < weight <= 1 + 1e-9 else f"it is {weight} times the limit"))
         for line, match in read(page, rf"^NUMBER ({UNIT}) is NUMBER of flutter with the likeliest drag"):
-            true = float(match[3]) * self.own["hopf"][0] * self.unit / UNITS[match[2]]
+            true = float(match[3]) * self.own["hopf"][0] * self.unit / UNITS_AND_EXAMPLES[match[2]]
             found.append((line, as_stated(match[1], true)))
         load = re.compile(
             rf"({NUMBER}) ({UNIT}) (?:is|lies|would|does)\b|(?:at|straight at) ({NUMBER}) ({UNIT})(?=[:.])"
@@ -795,7 +802,7 @@ class ArmTruth:
                 k = next(i for i, group in enumerate(match.groups(), 1) if group)
                 if not any(a <= match.start(k) < b for a, b in page.seen[line]):
                     page.mark(line, match.span(k))
-                    found.append((line, as_stated(text, self.F * self.unit / UNITS[unit])))
+                    found.append((line, as_stated(text, self.F * self.unit / UNITS_AND_EXAMPLES[unit])))
         return found
 
     def _no_remedy(self, factor, towards, *names):

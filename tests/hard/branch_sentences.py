@@ -10,7 +10,7 @@ import numpy as np
 from rods import rod_of
 
 import rodsweep as rs
-from rodsweep.post.branch_curves import RodBranches, branch_ends
+from rodsweep.post.branch_curves import RodBranches, followed_range
 from rodsweep.post.range_unions import intersection_of_ranges, union_of_ranges
 
 from .page import NUMBER, as_stated, counts, range_as_stated, ranges, read, with_error
@@ -47,7 +47,10 @@ def branch_sentences(view, page, keywords, fine):
     true = {rod: RodBranches(fine, rod).curves for rod in rods}
     own = {rod: RodBranches(view, rod).curves for rod in rods}
     kinds = [
-        {rod: [[(s.kind, s.reason) for s in curve.special] for curve in each] for rod, each in some.items()}
+        {
+            rod: [[(s.kind, s.reason) for s in curve.special_points] for curve in each]
+            for rod, each in some.items()
+        }
         for some in (own, true)
     ]
     if kinds[0] != kinds[1]:
@@ -114,7 +117,7 @@ def _one_rod(view, page, fine, own, true):
 
 def _branch_line(view, page, line, own, true):
     """From where to where a branch leads, its cycles, and how wide they beat."""
-    first, last, found = true.special[0], true.special[-1], []
+    first, last, found = true.special_points[0], true.special_points[-1], []
     places = read(page, rf"F = NUMBER \(\+- ({NUMBER})\)", only=line)
     ends = (last,) if first.kind == "end" else (first, last)
     for _, match in read(page, "from beyond [a-z ]*, F = NUMBER,", only=line):
@@ -126,7 +129,7 @@ def _branch_line(view, page, line, own, true):
             found.append((line, "" if reason in (last.reason, last.kind) else f"it ends by {last.reason}"))
             for _, match in read(page, rf"to {word}, F = NUMBER:", only=line):
                 found.append((line, as_stated(match[1], last.at)))
-    cycles = own.cycles
+    cycles = own.is_cycle
     for _, match in read(page, r": NUMBER cycles?, F = RANGE, largest tip y RANGE L", only=line):
         why = [] if int(match[1]) == cycles.sum() else [f"there are {cycles.sum()} cycles"]
         why.append(range_as_stated(match[2], own.parameter[cycles]))
@@ -146,27 +149,27 @@ def _ends(text):
 
 def _size(true, own, text, pick):
     """Why the smallest or the largest of the stored sizes is not that of the true branch at its place."""
-    i = pick(np.where(own.cycles, own.y, np.inf if pick is np.argmin else -np.inf))
-    at, y = float(own.parameter[i]), float(own.y[i])
+    i = pick(np.where(own.is_cycle, own.tip_y_max, np.inf if pick is np.argmin else -np.inf))
+    at, y = float(own.parameter[i]), float(own.tip_y_max[i])
     s = np.concatenate(
         [
             [0.0],
             np.cumsum(
                 np.hypot(
                     np.diff(true.parameter) / np.ptp(true.parameter),
-                    np.diff(true.y) / np.ptp(true.y),
+                    np.diff(true.tip_y_max) / np.ptp(true.tip_y_max),
                 )
             ),
         ]
     )
     step = np.linspace(0, s[-1], 20001)
     along, sizes = (
-        np.interp(step, s, values) for values in (true.parameter, true.y**2)
+        np.interp(step, s, values) for values in (true.parameter, true.tip_y_max**2)
     )  # y^2 is smooth at Hopf points
     near = np.flatnonzero(np.diff(np.sign(along - at)) != 0)
     places = np.append(near, np.argmin(np.abs(along - at)))
     size = min(np.sqrt(sizes[places]), key=lambda one: abs(one - y))
-    return as_stated(text, size, CURVED * size + 0.02 * np.ptp(true.y) * (len(true.parameter) < 12))
+    return as_stated(text, size, CURVED * size + 0.02 * np.ptp(true.tip_y_max) * (len(true.parameter) < 12))
 
 
 def _special_line(page, line, kind, true):
@@ -176,7 +179,7 @@ def _special_line(page, line, kind, true):
     for _, match in read(
         page, stated + rf", largest tip y (?:NUMBER|({NUMBER}) \(\+- ({NUMBER})\)) L", only=line
     ):
-        near = min((s for s in true.special if s.kind == kind), key=lambda s: abs(s.at - float(match[1])))
+        near = min((s for s in true.special_points if s.kind == kind), key=lambda s: abs(s.at - float(match[1])))
         why = [with_error(match[1], match[2], near.at)]
         for (plain, stated_, error), value in zip(
             ((match[3], match[4], match[5]), (match[6], match[7], match[8])),
@@ -211,7 +214,9 @@ def _beside(fine, rod):
     stable = union_of_ranges(
         piece for curve in RodBranches(fine, rod).curves for piece in curve.stable_ranges
     )
-    return intersection_of_ranges(stable, RodBranches(fine, rod).straight_ranges(branch_ends(fine))[0])
+    return intersection_of_ranges(
+        stable, RodBranches(fine, rod).straight_rod_stability_ranges(followed_range(fine))[0]
+    )
 
 
 def _pairs(curves):
@@ -263,14 +268,14 @@ def _unstable(view, some, rod):
 
 def first_end(curve):
     """1 for a branch that begins at an end of the range, beyond which it comes from; else 0."""
-    return int(curve.special[0].kind == "end")
+    return int(curve.special_points[0].kind == "end")
 
 
 def _grid(view, page, fine, own, true):
     count = len(true)
     curves = [curve for each in own.values() for curve in each]
     with_one = sum(bool(each) for each in own.values())
-    cycles = int(sum(curve.cycles.sum() for curve in curves))
+    cycles = int(sum(curve.is_cycle.sum() for curve in curves))
     found = counts(
         page,
         r"^NUMBER branch(?:es)? at NUMBER of NUMBER rods?, NUMBER cycles?",
@@ -287,10 +292,10 @@ def _grid(view, page, fine, own, true):
         (rod, s)
         for rod, each in true.items()
         for number, curve in enumerate(each, 1)
-        for s in curve.special[first_end(curve) :]
+        for s in curve.special_points[first_end(curve) :]
         if not 0 < s.meets < number
     ]
-    entries = [curve.special[0].at for each in true.values() for curve in each if first_end(curve)]
+    entries = [curve.special_points[0].at for each in true.values() for curve in each if first_end(curve)]
     for line, match in read(page, r"^NUMBER branch(?:es)? enters? the range from beyond: F = RANGE"):
         why = [] if int(match[1]) == len(entries) else [f"there are {len(entries)}"]
         found.append((line, "; ".join(filter(None, [*why, range_as_stated(match[2], entries)]))))

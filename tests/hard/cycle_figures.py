@@ -14,11 +14,11 @@ from matplotlib.quiver import Quiver
 
 import rodsweep as rs
 from rodsweep.discretization.elements.trigonometric import interpolate_samples
-from rodsweep.model.parameters import NON_OPTIONAL_LINEAR_PARAMETERS
+from rodsweep.model.parameters import NON_OPTIONAL_LINEAR_PARAMETER_NAMES
 from rodsweep.model.rod import Rod
 from rodsweep.post.branch_curves import RodBranches
 
-from .arm_sentences import UNIT, UNITS, in_si
+from .arm_sentences import UNIT, UNITS_AND_EXAMPLES, in_si
 from .drawing import (
     LINE,
     PARAMETERS,
@@ -142,7 +142,9 @@ def _normal_form_sizes(view):
         top = min(float(view.point_columns["F"].max()), 0.999 * rod.k1)
         sizes = _sizes_of_rod(replace(rod, F=0.0), float(view.point_columns["gamma1"][i]), top)
         scale = (
-            in_si(view)["length"][i] / UNITS[view.typed_units.get("length", "m")] if view.quantities else 1.0
+            in_si(view)["length"][i] / UNITS_AND_EXAMPLES[view.typed_units.get("length", "m")]
+            if view.quantities
+            else 1.0
         )
         found += (sizes[np.isfinite(sizes)] * scale).tolist()
     return np.array(found)
@@ -209,7 +211,7 @@ def _on_hopf_rows(d, axes, vertices, view, x, y):
     d.marks += len(vertices[0])
     for value in np.unique(columns[y]):
         on = np.isclose(vertices[1], value, rtol=1e-9)
-        rod = Rod(**{n: (shared | {y: float(value)})[n] for n in NON_OPTIONAL_LINEAR_PARAMETERS})
+        rod = Rod(**{n: (shared | {y: float(value)})[n] for n in NON_OPTIONAL_LINEAR_PARAMETER_NAMES})
         low, high = float(columns[x].min()), float(columns[x].max())
         for at in vertices[0][on]:
             rate = (
@@ -253,7 +255,7 @@ def _titles_of_cycle(d, axes, cycle):
         if line not in title or not line:
             continue
         for _, match in read(d.page, rf"T ?= NUMBER ({UNIT}|tau2)", only=line):
-            unit = 1.0 if match[2] == "tau2" else cycle.scale("tau2") / UNITS[match[2]]
+            unit = 1.0 if match[2] == "tau2" else cycle.scale("tau2") / UNITS_AND_EXAMPLES[match[2]]
             found.append((line, cycle.number(match[1], "period", unit, 4 if unit != 1 else 6)))
         for _, match in read(d.page, r"(?:^|[^T]) = NUMBER tau1", only=line):
             tau1 = cycle.columns["gamma3"] / cycle.columns["k2"]
@@ -261,7 +263,12 @@ def _titles_of_cycle(d, axes, cycle):
         for _, match in read(d.page, rf"mean power NUMBER(?: ({UNIT}))?", only=line):
             power = cycle.scale("force_scale") * cycle.scale("length") / cycle.scale("tau2")
             found.append(
-                (line, cycle.number(match[1], "injection_mean", power / UNITS[match[2]] if match[2] else 1.0))
+                (
+                    line,
+                    cycle.number(
+                        match[1], "injection_mean", power / UNITS_AND_EXAMPLES[match[2]] if match[2] else 1.0
+                    ),
+                )
             )
         for _, match in read(d.page, r"imbalance NUMBER", only=line):
             found.append((line, nearly(match[1], float(cycle.own["energy_imbalance"]), 2)))
@@ -426,13 +433,13 @@ def branch_figure(d, view, fine):
     own = {rod: RodBranches(view, rod).curves for rod in range(view.variables["status"].size)}
     true = {rod: RodBranches(fine(), rod).curves for rod in own}
     upper, lower, *third = d.panels
-    rods = [rod for rod in own if any(curve.cycles.any() for curve in own[rod])]
+    rods = [rod for rod in own if any(curve.is_cycle.any() for curve in own[rod])]
     colours = {colour_of(handle): told(text) for handle, text in entries if told(text)}
     straight = upper and d.lines(
         upper, lambda one: colour_of(one) == "#000000" and one.get_marker() == "None"
     )
     found += [("straight rod", _straight(d, upper, line, view, rods[0])) for line in straight]
-    for axes, name in ((upper, "y"), (lower, "period")):
+    for axes, name in ((upper, "tip_y_max"), (lower, "period")):
         for mark, text in entries:
             if text in BRANCH_WORDS:
                 marks = d.lines(
@@ -445,10 +452,10 @@ def branch_figure(d, view, fine):
                     s
                     for each in own.values()
                     for curve in each
-                    for s in curve.special
+                    for s in curve.special_points
                     if BRANCH_WORDS[text] in (s.kind, s.reason)
                 ]
-                values = [s.tip_y_max if name == "y" else s.period for s in of_kind]
+                values = [s.tip_y_max if name == "tip_y_max" else s.period for s in of_kind]
                 found.append((text, d.compare(axes, xy(marks), ([s.at for s in of_kind], values))))
         every = d.lines(axes)
         found.append((name, _smooth(d, axes, every, [c for rod in rods for c in true[rod]], name)))
@@ -479,8 +486,8 @@ def branch_figure(d, view, fine):
 
 def _beside(curve):
     """(|at/at_H - 1|, y/|a|) of the cycles beside the Hopf points at both ends, until they turn back."""
-    for special, order in ((curve.special[0], 1), (curve.special[-1], -1)):
-        a, at, y = special.amplitude_coefficient, curve.parameter[::order], curve.y[::order]
+    for special, order in ((curve.special_points[0], 1), (curve.special_points[-1], -1)):
+        a, at, y = special.amplitude_coefficient, curve.parameter[::order], curve.tip_y_max[::order]
         if special.kind != "hopf" or y[0] != 0 or not np.isfinite(a) or a == 0:
             continue
         away = np.sign(a) * (at / special.at - 1)
@@ -493,10 +500,10 @@ def _straight(d, axes, line, view, rod):
     """Why the straight rod is not as stable as its line says, in the middle of it and inside of its ends."""
     columns, (low, high) = view.point_columns, line.get_xdata()
     stable = line.get_linestyle() == "-"
-    name = next(n for n in NON_OPTIONAL_LINEAR_PARAMETERS if f"branch_{n}" in view.variables)
+    name = next(n for n in NON_OPTIONAL_LINEAR_PARAMETER_NAMES if f"branch_{n}" in view.variables)
     d.marks += 1
     for share in (0.001, 0.5, 0.999):
-        values = {n: float(columns[n][rod]) for n in NON_OPTIONAL_LINEAR_PARAMETERS if n in columns} | {
+        values = {n: float(columns[n][rod]) for n in NON_OPTIONAL_LINEAR_PARAMETER_NAMES if n in columns} | {
             name: low + share * (high - low)
         }
         rate = leading(Rod(**values))[0].real
@@ -514,7 +521,7 @@ def _smooth(d, axes, lines, curves, name):
     begins, ends = (np.array(some) for some in zip(*drawn, strict=True))
     worst, where = 0.0, None
     for curve in curves:
-        some = curve.cycles
+        some = curve.is_cycle
         places = d.places(axes, curve.parameter[some], getattr(curve, name)[some])
         inside = (np.abs(places - 0.5) <= 0.5).all(axis=1)
         off = np.array([_beside_pieces(begins, ends, place) for place in places])
@@ -540,10 +547,10 @@ def _stable(d, line, own, rods, colours, columns, view):
     said = STYLE_OF_STABILITY[line.get_linestyle()]
     for rod in rods:
         for curve in own[rod] if here[rod] else ():
-            for i in np.flatnonzero(curve.cycles):
-                on = np.hypot(x - curve.parameter[i], y - curve.y[i])[1:-1]
+            for i in np.flatnonzero(curve.is_cycle):
+                on = np.hypot(x - curve.parameter[i], y - curve.tip_y_max[i])[1:-1]
                 if len(on) and on.min() == 0:
-                    beside = set(curve.stable[max(i - 1, 0) : i + 1].tolist())
+                    beside = set(curve.stability[max(i - 1, 0) : i + 1].tolist())
                     if said not in beside:
                         return f"stability at {curve.parameter[i]} is {beside}, not {said}"
     return ""

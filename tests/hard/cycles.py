@@ -13,16 +13,16 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
 from rodsweep.solve.cycle.accuracy.refined_cycle import RefinedCycle
 from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
-from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
-from rodsweep.solve.cycle.neighbour import CycleStart, cycle_from_neighbour
+from rodsweep.solve.cycle.cycle_of_neighbouring_rod import CycleStart, cycle_from_neighbour
+from rodsweep.solve.cycle.hopf_start import hopf_point_below_force, orbit_from_hopf
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CycleMotion
 from rodsweep.solve.orbit.newton import (
-    newton,
     newton_step_if_matrix_distant,
     nontrivial_multipliers_and_error,
+    solve_by_newton,
 )
-from rodsweep.solve.orbit.orbit_mesh import mesh_of
+from rodsweep.solve.orbit.orbit_mesh import mesh_of_orbit
 from rodsweep.solve.unsolvable import Unsolvable
 
 MOST_FORCE = 200.0
@@ -70,7 +70,9 @@ def cycle_of(case) -> RefinedCycle | None:
     if hopf is None or hopf * case.beyond >= case.k1:
         return None
     rod = Rod(F=hopf * case.beyond, k1=case.k1, k2=case.k2, gamma3=case.gamma3, gamma1=case.gamma1)
-    start = orbit_from_hopf(StressForm(rod, uniform_mesh(1, 16)), hopf_point_below(rod), NewtonWorkspace())
+    start = orbit_from_hopf(
+        StressForm(rod, uniform_mesh(1, 16)), hopf_point_below_force(rod), NewtonWorkspace()
+    )
     return refined_cycle(start, case.accuracy, NewtonWorkspace())
 
 
@@ -84,7 +86,7 @@ def chain_of(case, parameter, ratio, points):
 def chain_from(form, accuracy, parameter, ratio, points):
     """The cycles of a chain in steps of a parameter, behind that of the rod of a form, as far as it goes."""
     rod, memory = form.rod, NewtonWorkspace()
-    start = orbit_from_hopf(form, hopf_point_below(rod), memory)
+    start = orbit_from_hopf(form, hopf_point_below_force(rod), memory)
     found = refined_cycle(start, accuracy, memory, parameter)
     neighbour = CycleStart.from_cycle(found, None, parameter, accuracy)
     for _ in range(points):
@@ -99,22 +101,22 @@ def chain_from(form, accuracy, parameter, ratio, points):
 
 def finer(orbit):
     """The same cycle on a mesh that is far finer, converged to rounding, with its matrix."""
-    here = mesh_of(orbit)
-    grid = mesh_with_edges(here.edges, here.order + ceil(FINER_ORDER / here.element_count))
+    here = mesh_of_orbit(orbit)
+    grid = mesh_with_edges(here.element_edges, here.order + ceil(FINER_ORDER / here.element_count))
     intervals = max(LEAST_INTERVALS, ceil(FINER_SHARE * here.interval_count))
     return newton_step_if_matrix_distant(
-        newton(orbit.on_mesh(grid, intervals, FINER_STAGES), 1e-13, NewtonWorkspace()), 0.0
+        solve_by_newton(orbit.on_mesh(grid, intervals, FINER_STAGES), 1e-13, NewtonWorkspace()), 0.0
     )
 
 
 def broken_promises(found, accuracy):
     """What of a cycle is less accurate than its estimates say, or than asked for: sentences."""
     exact = finer(found.orbit)
-    extrema, measures, errors = CycleMotion(exact.orbit).extrema, found.measures, found.errors
+    extrema, measures, errors = CycleMotion(exact.orbit).tip_extrema, found.measures, found.errors
     period = abs(measures.period / exact.orbit.period - 1)
     off = {name: abs(getattr(measures, name) - extrema[name]) / extrema["tip_y_max"] for name in EXTREMA}
     multipliers, rounding = nontrivial_multipliers_and_error(exact)
-    multiplier = abs(found.largest_multiplier - abs(multipliers[0])) - MULTIPLIERS_ROUNDING * rounding
+    multiplier = abs(found.largest_multiplier_modulus - abs(multipliers[0])) - MULTIPLIERS_ROUNDING * rounding
     promised = {
         "period": (period, errors.period_error),
         "multiplier": (multiplier, errors.multiplier_error),

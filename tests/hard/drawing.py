@@ -18,11 +18,11 @@ from matplotlib.spines import Spine
 from matplotlib.text import Annotation, Text
 from scipy.spatial import cKDTree
 
-from rodsweep.model.parameters import NON_OPTIONAL_LINEAR_PARAMETERS
+from rodsweep.model.parameters import NON_OPTIONAL_LINEAR_PARAMETER_NAMES
 from rodsweep.model.rod import Rod
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
-from .arm_sentences import UNIT, UNITS
+from .arm_sentences import UNIT, UNITS_AND_EXAMPLES
 from .page import NUMBER, Page, read
 from .truths import changes_over_force
 
@@ -293,8 +293,8 @@ def unloaded(view):
     """The rods of a file at F = 0, and up to where these were searched."""
     columns, tops = view.point_columns, view.variables["F_end"].ravel()
     rods = [
-        Rod(F=0.0, **dict(zip(NON_OPTIONAL_LINEAR_PARAMETERS[1:], map(float, row), strict=True)))
-        for row in zip(*(columns[n] for n in NON_OPTIONAL_LINEAR_PARAMETERS[1:]), strict=True)
+        Rod(F=0.0, **dict(zip(NON_OPTIONAL_LINEAR_PARAMETER_NAMES[1:], map(float, row), strict=True)))
+        for row in zip(*(columns[n] for n in NON_OPTIONAL_LINEAR_PARAMETER_NAMES[1:]), strict=True)
     ]
     return [(rod, float(top)) for rod, top in zip(rods, tops, strict=True)]
 
@@ -370,7 +370,7 @@ def words_of(view):
 def unit_factor(label):
     """The unit at the end of a label, in SI; 1 where it has none."""
     match = re.search(rf"\(({UNIT})\)$", label)
-    return UNITS[match[1]] if match else None
+    return UNITS_AND_EXAMPLES[match[1]] if match else None
 
 
 def first_forces(view):

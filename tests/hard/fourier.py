@@ -31,7 +31,7 @@ def guess_at(orbit, m):
     form, V = orbit.form, np.empty((m, 3, orbit.form.mesh.node_count + 1))
     states, reaction = orbit.states_at_time_fractions(np.arange(m) / m), np.empty(V.shape[1:])
     for x, velocities in zip(states, V, strict=True):
-        write_balance(x, velocities, reaction, form.nodal_rod, form.mesh.matrices)
+        write_balance(x, velocities, reaction, form.nodal_rod, form.mesh.node_matrices)
     mixed = MixedForm(form.rod, form.mesh)
     return mixed.layout.state(form.stresses(states), V.swapaxes(0, 1))
 
@@ -50,8 +50,10 @@ def solved_cycle(form, X, frequency):
         blocks[:, r, :, r] = frequency * form.M[:, None, None] * D
         blocks[each, :, each, :] -= np.array([mixed.jacobian(form, x) for x in X])
         J[:-1, -1] = (form.M * dX).ravel()
-        J[-1, :-1] = (odd[0][:, None] * form.tip_y_row).ravel()
-        residual = np.append((frequency * form.M * dX - mixed.rate(form, X)).ravel(), dX[0] @ form.tip_y_row)
+        J[-1, :-1] = (odd[0][:, None] * form.tip_y_functional).ravel()
+        residual = np.append(
+            (frequency * form.M * dX - mixed.rate(form, X)).ravel(), dX[0] @ form.tip_y_functional
+        )
         step = np.linalg.solve(J, -residual)
         X, frequency = X + step[:-1].reshape(m, unknowns), frequency + step[-1]
         moved = np.abs(step[:-1].reshape(m, unknowns)[:, stresses]).max()
@@ -65,8 +67,8 @@ def period_and_largest_y(orbit, phases):
     form = MixedForm(orbit.form.rod, orbit.form.mesh)
     X, frequency = solved_cycle(form, guess_at(orbit, phases), 2 * np.pi / orbit.period)
     S, _ = form.stresses_and_velocities(X)
-    E = np.empty((*S.shape[:-1], form.mesh.element_nodes.size))
-    write_element_strains(np.ascontiguousarray(S), orbit.form.nodal_rod, form.mesh.element_nodes, E)
+    E = np.empty((*S.shape[:-1], form.mesh.element_node_indices.size))
+    write_element_strains(np.ascontiguousarray(S), orbit.form.nodal_rod, form.mesh.element_node_indices, E)
     y = shape_from_strains(form.mesh, E, np.zeros(3))[1, :, -1]
     whole = np.append(y, -y)[:, None]
     return 2 * np.pi / frequency, float(series_maxima(fourier_coefficients(whole), whole)[0])

@@ -18,7 +18,7 @@ import rodsweep as rs
 from rodsweep.api.dataset import view_of_dataset
 from rodsweep.determinant.certificate.winding_number import count_right_of
 from rodsweep.model.arm.arm import SlenderArm
-from rodsweep.model.parameters import NON_OPTIONAL_LINEAR_PARAMETERS
+from rodsweep.model.parameters import NON_OPTIONAL_LINEAR_PARAMETER_NAMES
 from rodsweep.model.rod import Rod
 from rodsweep.post.branch_curves import RodBranches
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
@@ -211,7 +211,7 @@ def wrong_sentences(task, keywords):
 def table_sentences(view, page, keywords):
     """The check of the tables of statuses and of parameters."""
     status, found = view.variables["status"].ravel().tolist(), []
-    for word, number in ((word, number) for number, word in view.flags.items()):
+    for word, number in ((word, number) for number, word in view.status_flags.items()):
         found += counts(page, rf"^{word} +NUMBER  ", status.count(number))
     along = {"F": view.variables["F"]} if view.task == "phase_diagram" and "F" in view.variables else {}
     for name, column in (view.quantities | view.point_columns | along).items():
@@ -231,7 +231,7 @@ FAILURE = re.compile(r"(\w+), for example at ([^:]+): .+")
 def failure_sentences(view, page):
     """The check of the example points of failures, which have this status; the solver says the reason."""
     found = []
-    values = {word: value for value, word in view.flags.items()}
+    values = {word: value for value, word in view.status_flags.items()}
     for line in page:
         if not (match := FAILURE.fullmatch(line)):
             continue
@@ -280,10 +280,10 @@ def threshold_sentences(view, page):
             columns = np.concatenate(list(view.point_columns.values()))
             why += [near_one_of(text, columns) for text in match.groups() if text]
         for _, match in read(page, r", found on NUMBER of NUMBER lines? of points along", only=line):
-            lines = [each for each in lines_along(view.point_columns, name) if len(each.x) > 1]
+            lines = [each for each in lines_along(view.point_columns, name) if len(each.values) > 1]
             having = len(
                 {
-                    tuple(getattr(rod, n) for n in NON_OPTIONAL_LINEAR_PARAMETERS if n != name)
+                    tuple(getattr(rod, n) for n in NON_OPTIONAL_LINEAR_PARAMETER_NAMES if n != name)
                     for rod, *_ in true
                 }
             )
@@ -396,7 +396,7 @@ def thresholds_sentences(view, page, keywords, _):
     columns, v = view.point_columns, view.variables
     count = v["status"].size
     rods = [
-        rod_of(0.0, *(float(columns[name][i]) for name in NON_OPTIONAL_LINEAR_PARAMETERS[1:]))
+        rod_of(0.0, *(float(columns[name][i]) for name in NON_OPTIONAL_LINEAR_PARAMETER_NAMES[1:]))
         for i in range(count)
     ]
     top = keywords.get("F_max", 200.0)
@@ -640,7 +640,8 @@ OUTCOMES = {
 def cycle_sentences(view, page, keywords, fine):
     own, shape = view.variables, view.variables["status"].shape
     words = [
-        np.array([each.flags[int(s)] for s in each.variables["status"].ravel()]) for each in (view, fine)
+        np.array([each.status_flags[int(s)] for s in each.variables["status"].ravel()])
+        for each in (view, fine)
     ]
     same = (words[0] == words[1]).reshape(shape)  # next to a Hopf point a motion may take long
     v = {}
@@ -777,7 +778,7 @@ def diagram_sentences(view, page, keywords, fine):
     fixed = {
         name: float(view.parameter_values[name][0])
         for name in view.parameters
-        if name in NON_OPTIONAL_LINEAR_PARAMETERS
+        if name in NON_OPTIONAL_LINEAR_PARAMETER_NAMES
     }
     every, table = [], []
     for value in rows:
@@ -969,7 +970,9 @@ def _states_of(view, row, fixed, table):
     """
     F, gamma1 = view.variables["F"], float(view.attributes.get("gamma1", 1.0))
     states, kinds, at = [], [], []
-    own = [view.by_point(name) for name in ("stable_states", "cycle_special_kind", "cycle_special_F")]
+    own = [
+        view.flattened_by_point(name) for name in ("stable_states", "cycle_special_kind", "cycle_special_F")
+    ]
     for value, motions in zip(view.parameter_values[row], table, strict=True):
         if value in _detached(view, row):
             number = list(view.parameter_values[row]).index(value)

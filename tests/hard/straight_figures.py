@@ -14,7 +14,7 @@ from matplotlib.text import Annotation
 from scipy.spatial import cKDTree
 
 import rodsweep as rs
-from rodsweep.model.parameters import NON_OPTIONAL_LINEAR_PARAMETERS
+from rodsweep.model.parameters import NON_OPTIONAL_LINEAR_PARAMETER_NAMES
 from rodsweep.model.rod import Rod
 
 from .drawing import (
@@ -481,12 +481,12 @@ SPECIAL = {
 def diagram_figure(d, view, _):
     v, columns, found = view.variables, view.point_columns, []
     (axes,) = d.panels
-    line = next(name for name in NON_OPTIONAL_LINEAR_PARAMETERS if name not in view.parameters)
+    line = next(name for name in NON_OPTIONAL_LINEAR_PARAMETER_NAMES if name not in view.parameters)
     row = next((name for name in view.parameters if len(view.parameter_values[name]) > 1), view.parameters[0])
     fixed = {
         name: float(view.parameter_values[name][0])
         for name in view.parameters
-        if name in NON_OPTIONAL_LINEAR_PARAMETERS and name != row
+        if name in NON_OPTIONAL_LINEAR_PARAMETER_NAMES and name != row
     }
 
     def rods(x, y):

@@ -18,16 +18,19 @@ from surveyed import few
 from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.arc_length_step import BranchCycle, next_cycle
-from rodsweep.solve.branch.bordered.scale import deflection_of
+from rodsweep.solve.branch.bordered.scale import deflection_at_time_zero
 from rodsweep.solve.branch.branch_curve import StoredBranchCycle
-from rodsweep.solve.branch.branch_mesh_choice import is_measurement_due, with_errors_within_accuracy
+from rodsweep.solve.branch.branch_mesh_choice import (
+    cycles_with_errors_within_accuracy,
+    is_error_measurement_due,
+)
 from rodsweep.solve.branch.start.first_cycle import first_cycle
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
-from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings
+from rodsweep.solve.changes.thresholds_along_path import find_imaginary_axis_crossings
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CycleMotion
-from rodsweep.solve.orbit.newton import newton, newton_step, nontrivial_multipliers_and_error
-from rodsweep.solve.orbit.orbit_mesh import mesh_of
+from rodsweep.solve.orbit.newton import newton_step, nontrivial_multipliers_and_error, solve_by_newton
+from rodsweep.solve.orbit.orbit_mesh import mesh_of_orbit
 from rodsweep.solve.unsolvable import Unsolvable
 
 RODS, BATCH = int(os.environ.get("RODSWEEP_RODS", "4")), 2
@@ -81,7 +84,7 @@ def random_case(index: int) -> Case:
 def cycles_of(case: Case) -> Iterator[BranchCycle]:
     """The cycles of the first branch, with the errors that it states, as far as MOST_CYCLES."""
     rod = Rod(F=0.0, k1=case.k1, k2=case.k2, gamma3=case.gamma3)
-    crossings = find_axis_crossings(ParameterPath(rod, "F"), 0.0, case.stop).thresholds
+    crossings = find_imaginary_axis_crossings(ParameterPath(rod, "F"), 0.0, case.stop).thresholds
     if not crossings:
         return
     here = last = first_cycle(
@@ -98,13 +101,13 @@ def cycles_of(case: Case) -> Iterator[BranchCycle]:
             return
         outside = (
             not 0 < here.parameter_coordinate < case.stop
-            or deflection_of(here.orbit) * deflection_of(last.orbit) < 0
+            or deflection_at_time_zero(here.orbit) * deflection_at_time_zero(last.orbit) < 0
         )
-        if outside or mesh_of(here.orbit).cost > LARGEST_MESH:
+        if outside or mesh_of_orbit(here.orbit).elimination_cost > LARGEST_MESH:
             return
         waiting.append(here)
-        if is_measurement_due(here, case.accuracy):
-            yield from (points := with_errors_within_accuracy(last, waiting, case.accuracy, None))
+        if is_error_measurement_due(here, case.accuracy):
+            yield from (points := cycles_with_errors_within_accuracy(last, waiting, case.accuracy, None))
             here = last = points[-1]
             waiting = []
 
@@ -113,13 +116,13 @@ def broken_promises(case: Case) -> list[str]:
     """What of the cycles of a case is further off than it says, or than the accuracy."""
     wrong = []
     for point in islice(cycles_of(case), 0, None, EACH):
-        stored, mesh = StoredBranchCycle.from_cycle(point, case.accuracy), mesh_of(point.orbit)
+        stored, mesh = StoredBranchCycle.from_cycle(point, case.accuracy), mesh_of_orbit(point.orbit)
         longer = ceil(1.7 * mesh.interval_count) + 1
         fine = replace(
             mesh, order=mesh.order + 6, interval_count=longer, stage_count=min(mesh.stage_count + 1, 6)
         )
-        exact = newton_step(newton(fine.interpolated_orbit(point.orbit), 1e-11, NewtonWorkspace()))
-        extrema, slope = CycleMotion(exact.orbit).extrema, point.calibration.sensitivity
+        exact = newton_step(solve_by_newton(fine.interpolated_orbit(point.orbit), 1e-11, NewtonWorkspace()))
+        extrema, slope = CycleMotion(exact.orbit).tip_extrema, point.calibration.tip_y_sensitivity
         y, multipliers = extrema["tip_y_max"], nontrivial_multipliers_and_error(exact)[0]
         others = max(abs(getattr(stored.measures, name) - value) for name, value in extrema.items())
         errors = stored.errors
@@ -158,6 +161,8 @@ def test_branches_of_random_rods_keep_their_promises(first):
 
 def test_branch_is_exercised_where_it_is_steep_and_where_it_is_not():
     """The fold and the Hopf point of Fig. 2c's branch are steep; the promise there is another one."""
-    slopes = [point.calibration.sensitivity for point in cycles_of(CASES["a fold close to the Hopf point"])]
+    slopes = [
+        point.calibration.tip_y_sensitivity for point in cycles_of(CASES["a fold close to the Hopf point"])
+    ]
     assert min(slopes) < 2
     assert max(slopes) > STEEP

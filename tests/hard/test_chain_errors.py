@@ -14,7 +14,7 @@ from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
-from rodsweep.solve.cycle.hopf_start import hopf_point_below
+from rodsweep.solve.cycle.hopf_start import hopf_point_below_force
 from rodsweep.solve.cycle.transient.motion_mesh import motion_mesh
 from rodsweep.solve.unsolvable import Unsolvable
 
@@ -164,7 +164,7 @@ def random_arm(index):
     rod |= {"material": RodMaterial(law, profile=profile) if profile else RodMaterial(law)}
     crushing = Rod(F=0.0, **rod).crushing_force
     try:
-        hopf = hopf_point_below(Rod(F=min(150.0, 0.8 * crushing), **rod))
+        hopf = hopf_point_below_force(Rod(F=min(150.0, 0.8 * crushing), **rod))
     except Unsolvable:
         return None
     parameter = random.choice(["F", "k2"])

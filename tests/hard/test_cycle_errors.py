@@ -17,7 +17,7 @@ import rodsweep as rs
 from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
-from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
+from rodsweep.solve.cycle.hopf_start import hopf_point_below_force, orbit_from_hopf
 from rodsweep.solve.cycle.status import CycleStatus
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CycleMotion
@@ -80,7 +80,7 @@ FOURIER = {
 def test_true_errors_are_at_most_the_estimates_and_these_at_most_the_accuracy(case):
     found = cycle_of(case)
     assert broken_promises(found, case.accuracy) == []
-    assert found.verdict(case.accuracy)[0] in (CycleStatus.cycle, CycleStatus.unstable)
+    assert found.status_and_message(case.accuracy)[0] in (CycleStatus.cycle, CycleStatus.unstable)
 
 
 def test_the_angle_of_a_cycle_that_a_motion_led_to_is_within_its_error():
@@ -103,7 +103,7 @@ def test_meshes_that_agree_by_luck_are_not_believed(point, accuracy, parameter):
     *rod, gamma1 = point
     form = StressForm(rod_of(*rod, gamma1=gamma1), uniform_mesh(1, 16))
     memory = NewtonWorkspace()
-    start = orbit_from_hopf(form, hopf_point_below(form.rod), memory)
+    start = orbit_from_hopf(form, hopf_point_below_force(form.rod), memory)
     found = refined_cycle(start, accuracy, memory, parameter)
     assert broken_promises(found, accuracy) == []
 
@@ -115,7 +115,7 @@ def test_fourier_collocation_of_the_mixed_form_has_the_same_cycle(name):
     exact = finer(found.orbit).orbit
     period, y = period_and_largest_y(exact, phases)
     assert exact.period == pytest.approx(period, rel=1e-12)
-    assert CycleMotion(exact).extrema["tip_y_max"] == pytest.approx(y, rel=1e-9)
+    assert CycleMotion(exact).tip_extrema["tip_y_max"] == pytest.approx(y, rel=1e-9)
     assert abs(found.measures.period / period - 1) <= found.errors.period_error + 1e-12
     assert abs(found.measures.tip_y_max / y - 1) <= found.errors.amplitude_error + 1e-9
 

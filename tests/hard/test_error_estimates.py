@@ -111,7 +111,7 @@ def test_followed_near_a_double_eigenvalue_no_error_is_larger_than_its_estimate(
     assert followed.is_solved.sum() > 30
     ratios = []
     for i in np.flatnonzero(followed.is_solved):
-        exact = leading((float(rods.values[i]), k1, k2, gamma3), 2)
+        exact = leading((float(rods.parameter_values[i]), k1, k2, gamma3), 2)
         for w, estimate, root in zip(
             followed.spectra.eigenvalues[i], followed.spectra.error_estimate[i], exact, strict=True
         ):

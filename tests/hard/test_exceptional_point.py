@@ -84,7 +84,7 @@ def test_condition_number_and_splitting_follow_the_square_root(place):
     for sign in (1, -1):
         at = [solve(rod_at(place, sign * size)) for size in (1e-4, 1e-6, 1e-8)]
         apart = [abs(np.subtract(*result.spectrum.eigenvalues)) for result in at]
-        numbers = [result.vectors.condition[0] for result in at]
+        numbers = [result.mode_vectors.condition[0] for result in at]
         assert np.diff(np.log10(apart)) == pytest.approx([-1, -1], abs=5e-3)
         assert np.diff(np.log10(numbers)) == pytest.approx([1, 1], abs=5e-3)
 
@@ -105,9 +105,9 @@ def least_condition(place, there):
     beside = rod_at(place, 1e-8)
     first, second = leading(beside, 4)[:2]
     c_over_b = float(condition(beside, first) * abs(first - second))
-    mesh = assemble_pencil(there.vectors.resolution.element_count, there.vectors.resolution.order)
+    mesh = assemble_pencil(there.mode_vectors.resolution.element_count, there.mode_vectors.resolution.order)
     shapes = mode_vectors(rod_of(*rod_at(place)), mesh, there.spectrum.eigenvalues, np.array([0.0, 1.0]))
-    return np.sqrt(c_over_b * shapes.condition / shapes.rounding) / 2
+    return np.sqrt(c_over_b * shapes.condition / shapes.eigenvalue_rounding) / 2
 
 
 WORST_ROUNDING = 4.0
@@ -120,17 +120,18 @@ def test_condition_numbers_at_and_beside_a_double_root_are_as_accurate_as_they_s
     """At F* they are as large as rounding allows, and not called accurate; beside it ok means right."""
     there = solve(rod_at(place))
     assert there.status == SpectrumStatus.accuracy_not_reached
-    assert (there.vectors.condition > least_condition(place, there) / np.sqrt(WORST_ROUNDING)).all()
-    assert there.vectors.condition_error.min() > 1
+    assert (there.mode_vectors.condition > least_condition(place, there) / np.sqrt(WORST_ROUNDING)).all()
+    assert there.mode_vectors.condition_error.min() > 1
     broken = []
     for offset in (1e-10, 1e-8, -1e-8, 1e-6, -1e-6, 1e-4):
         rod = rod_at(place, offset)
         found = solve(rod)
-        error = abs(found.vectors.condition[0] / float(condition(rod, leading(rod, 4)[0])) - 1)
-        if error > 10 * found.vectors.condition_error[0] or (
+        error = abs(found.mode_vectors.condition[0] / float(condition(rod, leading(rod, 4)[0])) - 1)
+        if error > 10 * found.mode_vectors.condition_error[0] or (
             found.status == SpectrumStatus.ok and error > 1e-8
         ):
             broken.append(
-                f"{rod} {found.status.name}: error {error:.1e}, said {found.vectors.condition_error[0]:.1e}"
+                f"{rod} {found.status.name}: error {error:.1e}, "
+                f"said {found.mode_vectors.condition_error[0]:.1e}"
             )
     assert broken == []

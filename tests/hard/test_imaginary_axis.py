@@ -76,4 +76,4 @@ def test_modes_at_a_hopf_point_are_given_but_whether_they_grow_is_undecided():
     for *rod, event in CROSSINGS[:3]:
         found = solve_modes(rod_of(*at_force(event["F"], 0, *rod)), ModesRequest(2, 1e-8, 9, True))
         assert (found.status, found.spectrum.unstable_count) == (SpectrumStatus.undecided, -1)
-        assert found.vectors.condition_error.max() < 1e-8
+        assert found.mode_vectors.condition_error.max() < 1e-8

@@ -95,16 +95,18 @@ def test_condition_numbers_leave_the_limit_at_first_order(path):
     limit = conditions(path, 0.0)
     exact = [condition(rod_on(path, at), leading(rod_on(path, at), 4)[0]) for at in (0.0, 1e-10)]
     assert limit.status == SpectrumStatus.ok
-    assert limit.vectors.condition[0] == pytest.approx(float(exact[0]), rel=1e-10)
+    assert limit.mode_vectors.condition[0] == pytest.approx(float(exact[0]), rel=1e-10)
     slope = float((exact[1] - exact[0]) / rate_of(1e-10))
     for epsilon in EPSILONS:
         found = conditions(path, epsilon)
         assert found.status == SpectrumStatus.ok
-        off, bend = deviation(found.vectors.condition[0], limit.vectors.condition[0], slope, epsilon)
+        off, bend = deviation(
+            found.mode_vectors.condition[0], limit.mode_vectors.condition[0], slope, epsilon
+        )
         rounding = (
             10
-            * (found.vectors.condition_error[0] + limit.vectors.condition_error[0])
-            * limit.vectors.condition[0]
+            * (found.mode_vectors.condition_error[0] + limit.mode_vectors.condition_error[0])
+            * limit.mode_vectors.condition[0]
         )
         assert off <= bend + rounding + 1e-12, epsilon
 

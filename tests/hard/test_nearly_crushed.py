@@ -75,7 +75,7 @@ def test_thresholds_of_a_partial_beam_mirror_each_other(k1, changes):
     """F (1 - F/k1) is the same at F and k1 - F: two thresholds for every one of the filament below k1/4."""
     found = mirrored(k1, 0.999 * k1)
     assert len(found.thresholds) == changes
-    assert (found.status, found.search_result.proved) == (ThresholdStatus.ok, True)
+    assert (found.status, found.search_result.is_proved) == (ThresholdStatus.ok, True)
 
 
 @pytest.mark.parametrize("k1", [100.0, 160.0])

@@ -29,7 +29,7 @@ from numba.core.dispatcher import Dispatcher
 import rodsweep.determinant
 import rodsweep.discretization
 import rodsweep.solve
-from rodsweep.determinant.certificate.box import box_from_sqrt_bound
+from rodsweep.determinant.certificate.eigenvalue_box import box_from_sqrt_frequency_bound
 from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.determinant.parameter_plane import ParameterPlane, PlaneAxis
 from rodsweep.determinant.stability_changes import crossings_between
@@ -46,12 +46,12 @@ from rodsweep.solve.branch import branches
 from rodsweep.solve.branch.branch_limits import BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
 from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem
-from rodsweep.solve.branch.special.special_point import SpecialKind
+from rodsweep.solve.branch.special.special_point import SpecialPointKind
 from rodsweep.solve.changes.diagram.boundaries import boundary_curves_through, seed_of
 from rodsweep.solve.changes.diagram.boundary_curves import trace_boundary
 from rodsweep.solve.changes.diagram.rows import RowRequest, solve_row
 from rodsweep.solve.changes.thresholds import Thresholds, ThresholdsRequest, solve_thresholds
-from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings
+from rodsweep.solve.changes.thresholds_along_path import find_imaginary_axis_crossings
 from rodsweep.solve.cycle.by_integration import solve_by_integration
 from rodsweep.solve.cycle.limit_cycle import CycleOutcome, CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.straight_rod import (
@@ -64,11 +64,11 @@ from rodsweep.solve.hopf.bautin_points import curve_criticality
 from rodsweep.solve.hopf.hopf_coefficients import hopf_coefficients
 from rodsweep.solve.hopf.subcritical_hopf import subcritical_hopf_near
 from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
-from rodsweep.solve.motion.fixed_tip import bent_state_with_tip_at
 from rodsweep.solve.motion.integrator import EndReason, destroy_integrators, integrator
 from rodsweep.solve.motion.time_scheme import TimeScheme
+from rodsweep.solve.motion.tip_target import bent_state_with_tip_at
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
-from rodsweep.solve.point_outcome import FAILURES
+from rodsweep.solve.point_outcome import FAILURE_EXCEPTIONS
 from rodsweep.solve.spectrum.path.followed_leader import follow_leading_eigenvalue
 from rodsweep.solve.spectrum.path.leader_in_range import next_range
 from rodsweep.solve.spectrum.path.neighbouring_rods import NeighbouringRods
@@ -86,7 +86,7 @@ NEAR_CLOSED_BRANCH = Rod(F=0.0, k1=133.3, k2=1e4, gamma3=0.006)
 FIG_2C = Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4)
 WITH_FOLD = Rod(F=0.0, k1=149.9, k2=1e4, gamma3=1e-4)
 ANOTHER_START = {
-    ("INTEGRATOR_SETTINGS", "relaxation_duration_ratio"),
+    ("INTEGRATOR_SETTINGS", "relaxation_duration_over_period"),
     ("INTEGRATOR_SETTINGS", "relaxation_steps_per_period"),
     ("INTEGRATOR_SETTINGS", "stored_relaxation_shortening"),
     ("INTEGRATOR_SETTINGS", "relaxation_tolerance"),
@@ -122,7 +122,7 @@ def branch_answer(
 def within_range_only() -> Iterator[None]:
     """Turns the search for branches beyond the range off."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(branches, "regions_beyond", lambda *_: [])
+        patch.setattr(branches, "regions_beyond_range", lambda *_: [])
         yield
 
 
@@ -145,7 +145,7 @@ def fold() -> Any:
     """The fold of a branch, from which a curve of folds is followed."""
     request = BranchRequest("F", 60.0, 110.0, 1e-7, False, 500, 50)
     points = [point for curve in solve_branches(WITH_FOLD, request).curves for point in curve.special_points]
-    return next(point for point in points if point.kind is SpecialKind.fold)
+    return next(point for point in points if point.kind is SpecialPointKind.fold)
 
 
 def detached_branch(accuracy: float) -> Answer:
@@ -163,13 +163,16 @@ def curve_of_folds(accuracy: float) -> Answer:
     """End of a curve of folds on an edge of the plane; the curve's accuracy is a setting itself."""
     plane = PlaneAxis("F", 60.0, 110.0), PlaneAxis("k1", 149.5, 150.0)
     try:
-        points, end = SpecialCurveProblem(SpecialKind.fold, *plane, NewtonWorkspace(), 1.0).follow_from(
+        points, end = SpecialCurveProblem(SpecialPointKind.fold, *plane, NewtonWorkspace(), 1.0).follow_from(
             fold(), 149.9
         )
-    except FAILURES:
+    except FAILURE_EXCEPTIONS:
         return None
     last = points[-1]
-    return {f"{end.name} at": (last.parameter, last.error), "row": (last.row_parameter, ROUNDING)}
+    return {
+        f"{end.name} at": (last.branch_parameter, last.branch_parameter_error),
+        "row": (last.row_parameter, ROUNDING),
+    }
 
 
 @cache
@@ -178,30 +181,30 @@ def fold_near_closed_branch() -> Any:
     request = BranchRequest("F", 60.0, 120.0, 1e-7, False, 500, 50)
     curves = solve_branches(NEAR_CLOSED_BRANCH, request).curves
     points = (point for curve in curves for point in curve.special_points)
-    return next(point for point in points if point.kind is SpecialKind.fold)
+    return next(point for point in points if point.kind is SpecialPointKind.fold)
 
 
 def extremum_of_folds(accuracy: float) -> Answer:
     """Smallest k1 of a curve of folds, where both parameters exchange their roles."""
     plane = PlaneAxis("F", 60.0, 120.0), PlaneAxis("k1", 133.0, 134.0)
-    problem = SpecialCurveProblem(SpecialKind.fold, *plane, NewtonWorkspace(), -1.0)
+    problem = SpecialCurveProblem(SpecialPointKind.fold, *plane, NewtonWorkspace(), -1.0)
     try:
         points, _ = problem.follow_from(fold_near_closed_branch(), NEAR_CLOSED_BRANCH.k1)
-    except FAILURES:
+    except FAILURE_EXCEPTIONS:
         return None
     answer = {}
-    for number, point in enumerate(p for p in points if p.row_extremum_error):
-        answer[f"extremum {number}, F"] = point.parameter, point.error
-        answer[f"extremum {number}, k1"] = point.row_parameter, point.row_extremum_error
+    for number, point in enumerate(p for p in points if p.row_parameter_error_at_extremum):
+        answer[f"extremum {number}, F"] = point.branch_parameter, point.branch_parameter_error
+        answer[f"extremum {number}, k1"] = point.row_parameter, point.row_parameter_error_at_extremum
     return answer
 
 
 def coefficients(accuracy: float) -> Answer:
     """Normal form of a Hopf point of a rod that is soft in shear, at a high force."""
-    crossing = find_axis_crossings(ParameterPath(SOFT_IN_SHEAR, "F"), 0.0, 25.0).thresholds[-1]
+    crossing = find_imaginary_axis_crossings(ParameterPath(SOFT_IN_SHEAR, "F"), 0.0, 25.0).thresholds[-1]
     try:
         found = hopf_coefficients(SOFT_IN_SHEAR.with_values(F=crossing.value), crossing, accuracy)
-    except FAILURES:
+    except FAILURE_EXCEPTIONS:
         return None
     c, slope = found.landau, found.growth_slope
     return {
@@ -216,16 +219,20 @@ def coefficients(accuracy: float) -> Answer:
 def hopf_curve() -> tuple[ParameterPlane, Any]:
     axes = PlaneAxis("F", 60.0, 110.0), PlaneAxis("k1", 145.0, 160.0)
     plane = ParameterPlane(Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4), axes)
-    start = tuple(axis.coordinate(value) for axis, value in zip(axes, GENERALISED_HOPF_AT[:2], strict=True))
+    start = tuple(
+        axis.scaled_coordinate(value) for axis, value in zip(axes, GENERALISED_HOPF_AT[:2], strict=True)
+    )
     return plane, trace_boundary(0.0, plane, start, GENERALISED_HOPF_AT[2])
 
 
 def generalised_hopf(accuracy: float) -> Answer:
     found = curve_criticality(*hopf_curve(), accuracy)
-    if found.unlocated_count or len(found.points) != 1:
+    if found.unlocated_sign_change_count or len(found.points) != 1:
         return None
     (point,) = found.points
-    return {name: (point.values[i], point.errors[i]) for i, name in enumerate(("F", "k1"))}
+    return {
+        name: (point.parameter_values[i], point.parameter_errors[i]) for i, name in enumerate(("F", "k1"))
+    }
 
 
 def curve_of_generalised_hopf(accuracy: float) -> Answer:
@@ -234,14 +241,14 @@ def curve_of_generalised_hopf(accuracy: float) -> Answer:
     (point,) = curve_criticality(plane, curve, 1e-10).points
     asked = np.array([8e3, 1.2e4, 1e4])
     space = BautinProblem(plane.rod, (*plane.axes, PlaneAxis("k2", 8e3, 1.2e4)), asked, accuracy)
-    found = bautin_curve(space, space.curve_point(point, 2, 1e4))
+    found = bautin_curve(space, space.as_curve_point(point, 2, 1e4))
     answer = {}
     for value in asked[:2]:
-        at = [each for each in found.points if abs(each.values[2] / value - 1) < 1e-12]
+        at = [each for each in found.points if abs(each.parameter_values[2] / value - 1) < 1e-12]
         if not at:
             return None
         for i, name in enumerate(("F", "k1")):
-            answer[f"{name} at k2 = {value}"] = at[0].values[i], at[0].errors[i]
+            answer[f"{name} at k2 = {value}"] = at[0].parameter_values[i], at[0].parameter_errors[i]
     return answer
 
 
@@ -250,7 +257,10 @@ def beside(accuracy: float) -> Answer:
     found = subcritical_hopf_near(WITH_FOLD.with_values(k1=200.0, F=156.0))
     if found is None:
         return None
-    return {"F": (found.F, 1e-9 * found.F), "unstable y": (found.unstable_y, 2e-3 * found.unstable_y)}
+    return {
+        "F": (found.F, 1e-9 * found.F),
+        "unstable y": (found.unstable_cycle_y, 2e-3 * found.unstable_cycle_y),
+    }
 
 
 def modes(accuracy: float) -> Answer:
@@ -262,7 +272,7 @@ def modes_answer(rod: Rod, accuracy: float) -> Answer:
     found = solve_modes(rod, ModesRequest(4, accuracy, 9, computes_growth=True))
     if found.status.value:
         return None
-    growth, vectors = found.growth, found.vectors
+    growth, vectors = found.growth, found.mode_vectors
     answer = {
         f"condition {i}": (value, vectors.condition_error[i] * value)
         for i, value in enumerate(vectors.condition)
@@ -320,8 +330,8 @@ def leaders_of_a_range(accuracy: float) -> Answer:
         found = straight_rod_stability_in_chain(rod, near, "F", arm_range)
         near = eigenvalues_to_follow(rod, found)
         arm_range = next_range(rod, previous, "F", found.arm_range, near)
-        answer[f"F = {rod.F}, real part"] = found.w.real, found.error
-        answer[f"F = {rod.F}, imaginary part"] = found.w.imag, found.error
+        answer[f"F = {rod.F}, real part"] = found.w.real, found.eigenvalue_error
+        answer[f"F = {rod.F}, imaginary part"] = found.w.imag, found.eigenvalue_error
     return answer
 
 
@@ -390,7 +400,9 @@ def curves_of_changes(accuracy: float) -> Answer:
     answer: dict[str, tuple[float, float]] = {"curves": (len(curves.curves), 0.0)}
     for number, curve in enumerate(curves.curves):
         for place, fold in enumerate(curve.folds):
-            for axis, value, error in zip(plane.axes, fold.values, fold.errors, strict=True):
+            for axis, value, error in zip(
+                plane.axes, fold.parameter_values, fold.parameter_errors, strict=True
+            ):
                 answer[f"curve {number}, fold {place}: {axis.name}"] = value, error
     return answer
 
@@ -469,7 +481,7 @@ def motion(accuracy: float) -> Answer:
     start = system.state_of_strains(rest + 0.1 * (1 - u) * wave)
     destroy_integrators()
     run = integrator(system.mesh, TimeScheme(tolerance=accuracy)).run(system, start, 0.05)
-    if run.ending is not EndReason.reached:
+    if run.end_reason is not EndReason.reached:
         return None
     size = float(np.abs(run.states[0]).max())
     return {f"z{i}": (float(z), 30 * accuracy * size) for i, z in enumerate(run.states[-1])}
@@ -520,7 +532,7 @@ def cycles_of_a_chain(accuracy: float) -> Answer:
         cycle = solve_cycle(
             BEATING.with_values(F=F),
             request(accuracy, start="neighbour"),
-            last.neighbour if last else None,
+            last.start_for_next_rod if last else None,
             "F",
         )
         last = cycle
@@ -594,7 +606,7 @@ SLOW = (LOPSIDED, TORUS, UNSTABLE, SLENDER_CONE)
 """Cases that take seconds."""
 CASES = {
     "BRANCH_MESH_SETTINGS": BRANCH,
-    "CORRECTION_SETTINGS": BRANCH,
+    "LINEARISATION_CORRECTION_SETTINGS": BRANCH,
     "BRANCH_ERROR_SETTINGS": BRANCH,
     "MULTIPLIER_SENSITIVITY_SETTINGS": BRANCH,
     "BRANCH_PREDICTION_SETTINGS": BRANCH,
@@ -611,7 +623,7 @@ CASES = {
     "ARC_STEP_CONTROL": BRANCH,
     "ORBIT_NEWTON_SETTINGS": BRANCH,
     "ORBIT_MESH_SETTINGS": BRANCH,
-    "ORDER_RATIO_SETTINGS": SEGMENT_CYCLE,
+    "ROD_ELEMENT_ORDER_RATIO_SETTINGS": SEGMENT_CYCLE,
     "NODE_SPACING_SETTINGS": CONE_CYCLE,
     "WORKSPACE_SETTINGS": BRANCH,
     "FLOQUET_MULTIPLIER_SETTINGS": BRANCH,
@@ -619,7 +631,7 @@ CASES = {
     "CURVE_IDENTITY_SETTINGS": CURVE,
     "CURVE_SECANT_SETTINGS": CURVE,
     "MINIMALLY_AUGMENTED_SETTINGS": CURVE,
-    "END_SETTINGS": CURVE,
+    "SPECIAL_CURVE_END_SETTINGS": CURVE,
     "PARAMETER_ROLE_SETTINGS": EXTREMUM,
     "ROW_EXTREMUM_SETTINGS": EXTREMUM,
     "CURVE_STEP_CONTROL": CURVE,
@@ -650,7 +662,7 @@ CASES = {
     "RETURN_SETTINGS": SINGLE,
     "SHAPE_TRACE_SETTINGS": SINGLE,
     "TRANSIENT_SETTINGS": SINGLE,
-    "CALIBRATION_SETTINGS": CHAIN,
+    "MESH_ERROR_CALIBRATION_SETTINGS": CHAIN,
     "FINER_MESH_SETTINGS": CHAIN,
     "NEXT_MESH_SETTINGS": CHAIN,
     "CYCLE_PREDICTION_SETTINGS": CHAIN,
@@ -683,9 +695,9 @@ CASES = {
     "ARM_CROSSING_SETTINGS": CONE,
     "SEARCH_RANGE_SETTINGS": CONE,
     "CRUSHING_END_SETTINGS": THRESHOLDS,
-    "FIXED_TIP_SETTINGS": HELD,
+    "TIP_TARGET_SETTINGS": HELD,
     "ARM_PATH_SETTINGS": CONE,
-    "AXIS_MODE_SETTINGS": SLENDER_CONE,
+    "IMAGINARY_AXIS_MODE_SETTINGS": SLENDER_CONE,
     "NEAR_AXIS_SETTINGS": SLENDER_CONE,
     "ARM_FOLLOWING_SETTINGS": CONE,
     "ARM_FAMILY_SETTINGS": CONE,
@@ -906,12 +918,12 @@ def test_settings_are_frozen_and_have_keywords_only():
 
 
 def test_a_changed_setting_reaches_compiled_functions():
-    before = box_from_sqrt_bound(0.0, 1.0)
-    with replaced("BOX_SETTINGS", "padding_fraction", 2.0):
-        assert box_from_sqrt_bound(0.0, 1.0)[0] - before[0] == pytest.approx(
-            settings()["BOX_SETTINGS"].padding_fraction
+    before = box_from_sqrt_frequency_bound(0.0, 1.0)
+    with replaced("BOX_SETTINGS", "padding_over_depth", 2.0):
+        assert box_from_sqrt_frequency_bound(0.0, 1.0)[0] - before[0] == pytest.approx(
+            settings()["BOX_SETTINGS"].padding_over_depth
         )
-    assert box_from_sqrt_bound(0.0, 1.0) == before
+    assert box_from_sqrt_frequency_bound(0.0, 1.0) == before
 
 
 @pytest.mark.long

@@ -13,7 +13,7 @@ from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.solve.branch.arc_length_step import next_cycle
 from rodsweep.solve.branch.start.first_cycle import first_cycle
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
-from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings
+from rodsweep.solve.changes.thresholds_along_path import find_imaginary_axis_crossings
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CycleMotion
@@ -33,7 +33,7 @@ PERIODS = 40
 def unstable():
     """An unstable cycle on the branch from the restabilization."""
     rod = rod_of(0.0, *STIFFNESS)
-    crossing = find_axis_crossings(ParameterPath(rod, "F"), 100.0, 199.0).thresholds[-1]
+    crossing = find_imaginary_axis_crossings(ParameterPath(rod, "F"), 100.0, 199.0).thresholds[-1]
     here = first_cycle(hopf_branch_start(ParameterPath(rod, "F"), crossing), ACCURACY, NewtonWorkspace())
     while here.cycle.measures.tip_y_max < LEAST_Y:
         here = next_cycle(here, ACCURACY)
@@ -45,7 +45,9 @@ def stable(unstable):
     """The stable cycle at the same force, by way of one where the straight rod is unstable."""
     request = CycleRequest(ACCURACY, 0.01, 1, 0, 0, 0, 400)
     below = solve_cycle(rod_of(150.0, *STIFFNESS, 1.0), request, None, "F")
-    return solve_cycle(rod_of(unstable.parameter_coordinate, *STIFFNESS, 1.0), request, below.neighbour, "F")
+    return solve_cycle(
+        rod_of(unstable.parameter_coordinate, *STIFFNESS, 1.0), request, below.start_for_next_rod, "F"
+    )
 
 
 def marched(unstable, share):
@@ -57,7 +59,7 @@ def marched(unstable, share):
 
 
 def test_cycle_is_unstable_beside_a_stable_straight_rod_and_a_stable_cycle(unstable, stable):
-    assert unstable.cycle.largest_multiplier > 1.2
+    assert unstable.cycle.largest_multiplier_modulus > 1.2
     assert stable.status == CycleStatus.cycle
     assert stable.linear_growth_rate < 0
     assert stable.measures.tip_y_max > 2 * unstable.cycle.measures.tip_y_max

@@ -6,7 +6,7 @@ import numpy as np
 from rods import rod_of
 
 from rodsweep.determinant.parameter_path import ParameterPath
-from rodsweep.model.parameters import NON_OPTIONAL_LINEAR_PARAMETERS
+from rodsweep.model.parameters import NON_OPTIONAL_LINEAR_PARAMETER_NAMES
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.thresholds_along_path import find_thresholds
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
@@ -21,7 +21,7 @@ SHORT_OF_CRUSHED = 1 - 1e-6
 def rods_of(view):
     """The rod of every point, in their order."""
     columns = view.point_columns
-    rows = zip(*(columns[name] for name in NON_OPTIONAL_LINEAR_PARAMETERS), strict=True)
+    rows = zip(*(columns[name] for name in NON_OPTIONAL_LINEAR_PARAMETER_NAMES), strict=True)
     return [rod_of(*map(float, row)) for row in rows]
 
 
@@ -63,9 +63,9 @@ def changes_on_lines(view, name):
     """(rod, crossing, points) of every change of stability and onset on the lines over a parameter."""
     found = []
     for line in lines_along(view.point_columns, name):
-        low, high = float(line.x.min()), float(line.x.max())
+        low, high = float(line.values.min()), float(line.values.max())
         low = min(low, 0.0) if name == "F" and view.task == "limit_cycle" and low < high else low
-        rod = Rod(**{n: line.parameters.get(n, low) for n in NON_OPTIONAL_LINEAR_PARAMETERS})
+        rod = Rod(**{n: line.other_parameters.get(n, low) for n in NON_OPTIONAL_LINEAR_PARAMETER_NAMES})
         for crossing in changes_along(rod, name, low, high) if low < high else ():
             kind, after = crossing.kind.name, crossing.unstable_after
             if kind == "onset" or (kind, after) in (("hopf", 2), ("restabilization", 0)):

@@ -9,8 +9,8 @@ from scipy.integrate import solve_ivp
 from rodsweep.errors import InputError
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.arm.drag import DRAG_ESTIMATE_NAMES, cox_drag, gray_hancock_drag, lighthill_drag
+from rodsweep.model.arm.geometry import MAX_NEIGHBOURING_RADIUS_RATIO
 from rodsweep.model.arm.neglected import SELF_BUCKLING_WEIGHT, neglected_effects, smallest_drag
-from rodsweep.model.arm.shape import MAX_NEIGHBOURING_RADIUS_RATIO
 
 ROUND = {"length": "10 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "50 Pa s", "pressure": "2 kPa"}
 PARAMETERS = ("k1", "k2", "gamma3", "gamma1", "F", "tau2", "taper", "material", "crushing_force")
@@ -67,7 +67,7 @@ def test_the_drags_of_a_cone_are_those_of_its_local_radius(taper):
     u = np.linspace(0, 1, 1001)[1:-1]
     values = {name: cone.parameter(name) for name in ("k1", "k2", "gamma3", "taper")}
     for number, form, error in ((0, cox_drag, 3e-4), (1, gray_hancock_drag, 3e-4), (3, lighthill_drag, 6e-4)):
-        local = cone.material_with_drag(cone.drags[number]).local_coefficients(0.0, values, u)
+        local = cone.material_with_drag(cone.base_drag_estimates[number]).local_coefficients(0.0, values, u)
         slenderness = 0.1 / (radius * (1 - (1 - taper) * u))
         across = np.array([form(each)[1] for each in slenderness])
         assert local.gamma2 == pytest.approx(across / form(0.1 / radius)[1], rel=error)
@@ -106,7 +106,7 @@ def test_many_segments_have_the_coefficients_of_a_cone():
         found = []
         for arm in (cone, steps):
             values = {name: arm.parameter(name) for name in ("k1", "k2", "taper")}
-            drag = arm.drags[number]
+            drag = arm.base_drag_estimates[number]
             own = arm.material_with_drag(drag).local_coefficients(
                 0.0, values | {"gamma3": arm.gamma3_with(drag)}, middles
             )
@@ -169,11 +169,13 @@ def test_effects_are_those_of_the_section_where_they_are_largest():
 def test_an_upright_arm_buckles_under_the_weight_that_is_stated(changes):
     """Integrated from the tip with theta' = m/(E I), m' = -W theta: theta vanishes at the base."""
     arm = uniform(**changes, pressure=None)
-    shape, weight = arm.shape, 1 / arm.shape.weight_over_buckling_weight(1.0)
+    shape, weight = arm.geometry, 1 / arm.geometry.weight_over_buckling_weight(1.0)
 
     def section(x):
         if arm.tip_radius is None:
-            station = next(each for each in shape.stations if each.end * shape.length >= x * (1 - 1e-15))
+            station = next(
+                each for each in shape.stations if each.end_position * shape.length >= x * (1 - 1e-15)
+            )
             return station.section.area, station.young * station.section.second_moment
         radius = arm.si.radius * (1 - (1 - arm.taper) * x / shape.length)
         return math.pi * radius**2, arm.si.young * math.pi * radius**4 / 4
@@ -184,7 +186,7 @@ def test_an_upright_arm_buckles_under_the_weight_that_is_stated(changes):
         return [-weight * area, moment / stiffness, -beyond * theta]
 
     state = [0.0, 1.0, 0.0]
-    ends = [0.0] if arm.tip_radius else [0.0, *(each.end for each in shape.stations[:-1])]
+    ends = [0.0] if arm.tip_radius else [0.0, *(each.end_position for each in shape.stations[:-1])]
     places = [*(end * shape.length for end in ends), shape.length]
     for low, high in zip(places[-2::-1], places[:0:-1], strict=True):
         inside = high - 1e-12 * shape.length

@@ -152,7 +152,7 @@ def stress_of(system, z):
 
 def collocated(system, z):
     """dz/dt by the balance at the nodes of a mesh of one element, where the clamp is natural."""
-    D, w = system.mesh.matrices.D, system.mesh.quadrature
+    D, w = system.mesh.node_matrices.differentiation_matrix, system.mesh.quadrature_weights
     Sigma = stress_of(system, z)
     V = velocity(PLANE, Sigma, Sigma @ D.T)
     rate = (V @ D.T + ad(strain(PLANE, Sigma), V))[:, :-1]

@@ -153,12 +153,12 @@ def test_comments_docstrings_and_lines_compile_nothing(made):
         ("3.0 * x", "4.0 * x", {"calls_later", "later"}, {3: 4.0}),
         ("    a: float\n    b: float", "    b: float\n    a: float", {"difference"}, {2: -2.0}),
         ("p.a - p.b", "p.b - p.a", {"difference"}, {2: -2.0}),
-        ("@compiled\ndef alone", "@compiled_for_vectors\ndef alone", {"alone"}, {}),
+        ("@compiled\ndef alone", "@compiled_with_reordered_sums\ndef alone", {"alone"}, {}),
     ],
 )
 def test_a_change_compiles_the_kernel_and_its_callers_only(made, old, new, compiled, changed):
     """The constant, the callee or the order of fields is in another module, or defined below its user."""
-    inner = INNER.replace("import compiled", "import compiled, compiled_for_vectors")
+    inner = INNER.replace("import compiled", "import compiled, compiled_with_reordered_sums")
     made(inner)
     values = tuple(changed.get(place, value) for place, value in enumerate(VALUES))
     assert made(inner.replace(old, new), OUTER.replace(old, new)) == (values, compiled)

@@ -97,7 +97,7 @@ def test_a_fluid_as_viscous_as_stated_brings_an_effect_to_its_limit(name):
     """The rate is that of the same frequency in 1/tau2, so it falls with viscosity."""
     arm = SlenderArm(**WATER)
     before = named(neglected_effects(arm, angular_frequency_at_smallest_drag(arm, 170.0), 35.0))[name]
-    factor = float(before.viscosity_factor)
+    factor = float(before.viscosity_factor_at_limit)
     thicker = SlenderArm(**WATER | {"viscosity": factor * 1e-3})
     after = named(neglected_effects(thicker, angular_frequency_at_smallest_drag(thicker, 170.0), 35.0))[name]
     assert before.value_over_limit > 1
@@ -107,23 +107,29 @@ def test_a_fluid_as_viscous_as_stated_brings_an_effect_to_its_limit(name):
 
 def test_no_fluid_undoes_compression_and_weight():
     effects = named(neglected_effects(SlenderArm(**WATER, density_difference=100.0), math.nan, 400.0))
-    assert [float(effects[name].viscosity_factor) for name in ("compression", "weight")] == [math.inf] * 2
+    assert [float(effects[name].viscosity_factor_at_limit) for name in ("compression", "weight")] == [
+        math.inf
+    ] * 2
     assert (
-        float(named(neglected_effects(SlenderArm(**WATER), math.nan, 4.0))["compression"].viscosity_factor)
+        float(
+            named(neglected_effects(SlenderArm(**WATER), math.nan, 4.0))[
+                "compression"
+            ].viscosity_factor_at_limit
+        )
         == 0
     )
 
 
 def test_least_drag_moves_fastest():
     arm = SlenderArm(**WATER)
-    rates = [170.0 / arm.tau2_with(drag) for drag in arm.drags]
+    rates = [170.0 / arm.tau2_with(drag) for drag in arm.base_drag_estimates]
     assert angular_frequency_at_smallest_drag(arm, 170.0) == pytest.approx(max(rates))
-    assert smallest_drag(arm).gamma2 == min(drag.gamma2 for drag in arm.drags)
+    assert smallest_drag(arm).gamma2 == min(drag.gamma2 for drag in arm.base_drag_estimates)
 
 
 def test_validity_goes_by_tenths_of_the_limit_and_is_of_arrays():
     values = np.array([0.0, 0.099, 0.101, 0.999, 1.001, np.nan]) * 3.0
-    effect = Effect(name="e", value=values, limit=3.0, viscosity_factor=values)
+    effect = Effect(name="e", value=values, limit=3.0, viscosity_factor_at_limit=values)
     assert effect.validity.tolist() == [0, 0, 1, 1, 2, 0]
     assert effect.validity.dtype == np.int8
 
@@ -151,11 +157,11 @@ def test_reynolds_number_is_of_cycles_only_and_of_their_amplitude():
 
 def test_an_arm_without_load_has_no_force():
     arm = SlenderArm(**WATER)
-    assert arm.load is None
+    assert arm.load_name is None
     assert arm.k1 == pytest.approx(1600)
     with pytest.raises(rs.InputError, match="^pressure is missing"):
         _ = arm.F
-    assert SlenderArm(**WATER, force=0.0).load == "force"
+    assert SlenderArm(**WATER, force=0.0).load_name == "force"
 
 
 @pytest.mark.filterwarnings("error")

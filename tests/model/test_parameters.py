@@ -7,32 +7,34 @@ from pathlib import Path
 import pytest
 
 import rodsweep
-from rodsweep.config.tasks import CONFIGS
+from rodsweep.config.tasks import CONFIG_CLASSES_BY_TASK
 from rodsweep.model.parameters import (
     FORCE_AND_STRETCH_STIFFNESS,
-    NON_OPTIONAL_LINEAR_PARAMETERS,
-    NONLINEAR_PARAMETERS,
-    OPTIONAL_PARAMETERS,
+    NON_OPTIONAL_LINEAR_PARAMETER_NAMES,
+    NONLINEAR_ROD_PARAMETER_NAMES,
+    OPTIONAL_PARAMETER_NAMES,
     PARAMETERS,
     parameter_names_except,
 )
 from rodsweep.model.rod import Rod
-from rodsweep.results.layouts.variables import DIMENSIONS
+from rodsweep.results.layouts.dimensions import UNIT_AND_LONG_NAME_OF_DIMENSION
 
 
 def test_the_rod_has_all_parameters():
     assert tuple(field.name for field in fields(Rod) if field.init) == (*PARAMETERS, "material")
-    assert NONLINEAR_PARAMETERS[:4] == NON_OPTIONAL_LINEAR_PARAMETERS
-    assert OPTIONAL_PARAMETERS == ("taper",)
-    assert parameter_names_except("F") == NON_OPTIONAL_LINEAR_PARAMETERS[1:]
-    assert set(FORCE_AND_STRETCH_STIFFNESS) <= set(NON_OPTIONAL_LINEAR_PARAMETERS)
+    assert NONLINEAR_ROD_PARAMETER_NAMES[:4] == NON_OPTIONAL_LINEAR_PARAMETER_NAMES
+    assert OPTIONAL_PARAMETER_NAMES == ("taper",)
+    assert parameter_names_except("F") == NON_OPTIONAL_LINEAR_PARAMETER_NAMES[1:]
+    assert set(FORCE_AND_STRETCH_STIFFNESS) <= set(NON_OPTIONAL_LINEAR_PARAMETER_NAMES)
 
 
 def test_every_config_has_every_parameter_as_a_key_and_every_file_as_a_dimension():
-    for config in CONFIGS.values():
+    for config in CONFIG_CLASSES_BY_TASK.values():
         keys = config.model_fields["parameters"].annotation.model_fields
         assert {*PARAMETERS, "points", "columns", "arm"} == set(keys)
-    assert {DIMENSIONS[name] for name in PARAMETERS} == {(p.unit, p.long_name) for p in PARAMETERS.values()}
+    assert {UNIT_AND_LONG_NAME_OF_DIMENSION[name] for name in PARAMETERS} == {
+        (p.unit, p.long_name) for p in PARAMETERS.values()
+    }
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import PchipInterpolator
 
-from rodsweep.determinant.arm.elements.edges import sum_and_remainder
+from rodsweep.determinant.arm.elements.edges import two_sum
 from rodsweep.model.material.factors import factors_along, smallest_factor_along
 from rodsweep.model.material.profile import FACTOR_NAMES, Profile
 from rodsweep.model.material.rod_material import RodMaterial
@@ -153,7 +153,7 @@ def test_factors_of_a_cone_keep_their_digits(taper):
     """Against rational numbers: at given u, and at positions u + remainder that no double holds."""
     start = np.array([0.0, 0.3, 0.97, 1 - 1e-9, 0.1])
     offset = np.array([1e-9, 0.1 / 3, 0.01 / 7, 1e-10 / 3, 0.9 - 1e-9 / 3])
-    u, remainder = sum_and_remainder(start, offset)
+    u, remainder = two_sum(start, offset)
     for position, exact in (((u, None), u), ((u, remainder), None)):
         radii = np.sqrt(factors_along(None, taper, *position)["k1"])
         for i, radius in enumerate(radii.tolist()):
@@ -164,7 +164,7 @@ def test_factors_of_a_cone_keep_their_digits(taper):
 def test_factors_keep_their_digits_close_to_a_row():
     """A factor that falls to 1e-6 of its value at the tip changes by the rounding of u itself."""
     table = profile([0.0, 1.0], [1.0, 1e-6])
-    u, remainder = sum_and_remainder(np.array([0.999999]), np.array([1e-6 / 3]))
+    u, remainder = two_sum(np.array([0.999999]), np.array([1e-6 / 3]))
     exact = 1 + (Fraction(1e-6) - 1) * (Fraction(0.999999) + Fraction(1e-6 / 3))
     factor = factors_along(table, 1.0, u, remainder)["k3"][0]
     assert factor == pytest.approx(float(exact), rel=1e-14, abs=0)

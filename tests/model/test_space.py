@@ -31,20 +31,20 @@ def tapered(material, grid):
     profile = 1 + 0.4 * np.sin(2 * u + phase)
     compliance, drag = material.compliance[:, None] * profile, material.drag[:, None] * profile[::-1]
     rest = unloaded_strain(material)[:, None] + compliance * material.tip_stress[:, None]
-    return material._replace(compliance=compliance, drag=drag, rest_strain=rest)
+    return material._replace(compliance=compliance, drag=drag, straight_state_strain=rest)
 
 
 def state(rod, grid):
     """Stresses that no mesh resolves, and with them any velocities that are unknown, (unknowns,)."""
     d = len(rod.tip_stress)
-    size = d * grid.node_count + len(rod.unknown_velocities) * (grid.node_count + 1)
+    size = d * grid.node_count + len(rod.unknown_velocity_components) * (grid.node_count + 1)
     return 10 * np.random.default_rng(d).standard_normal(size)
 
 
 def balanced(x, rod, grid):
     """V and G at all nodes, (d, nodes + 1)."""
     V, G = np.empty((2, *rod.drag.shape))
-    write_balance.compiled_for(ALGEBRAS[len(V)])(x, V, G, rod, grid.matrices)
+    write_balance.compiled_for(ALGEBRAS[len(V)])(x, V, G, rod, grid.node_matrices)
     return V, G
 
 
@@ -52,7 +52,7 @@ def equations(x, rod, grid):
     """G at all nodes, (d, nodes + 1), and the balance of what is unknown of V, flat."""
     _, G = balanced(x, rod, grid)
     out = np.empty(len(x))
-    write_velocity_residuals.compiled_for(ALGEBRAS[len(G)])(x, out, rod, grid.matrices)
+    write_velocity_residuals.compiled_for(ALGEBRAS[len(G)])(x, out, rod, grid.node_matrices)
     return np.append(G.ravel(), out[len(G) * grid.node_count :])
 
 
@@ -72,8 +72,8 @@ def test_compiled_functions_do_what_their_loops_do(material, kept):
     ):
         V, G = np.empty((2, d, grid.node_count + 1))
         J, tip = np.full((n, n), np.nan), np.full((d, n), np.nan)
-        run(x, V, G, rod, grid.matrices)
-        slope(x, V, J, tip, rod, grid.matrices)
+        run(x, V, G, rod, grid.node_matrices)
+        slope(x, V, J, tip, rod, grid.node_matrices)
         found.append((V, G, J, tip))
     for compiled, plain in zip(*found, strict=True):
         assert np.abs(compiled - plain).max() <= 1e-13 * np.abs(plain).max()
@@ -90,7 +90,7 @@ def test_plane_states_of_space_are_those_of_the_plane(grid):
     for rod, here in ((plane, x), (space, there)):
         V, G = balanced(here, rod, grid)
         J, tip = np.empty((len(here),) * 2), np.empty((len(V), len(here)))
-        write_jacobian.compiled_for(ALGEBRAS[len(V)])(here, V, J, tip, rod, grid.matrices)
+        write_jacobian.compiled_for(ALGEBRAS[len(V)])(here, V, J, tip, rod, grid.node_matrices)
         jacobians.append((V, G, J, tip))
     (V, G, J, tip), (V_space, G_space, J_space, tip_space) = jacobians
     for ours, theirs in ((V_space, V), (G_space, G)):
@@ -111,7 +111,7 @@ def test_power_of_the_stresses_is_lost_to_the_fluid(material, grid, uniform):
     V, G = balanced(x, rod, grid)
     Sigma = np.tile(rod.tip_stress[:, None], grid.node_count + 1)
     Sigma[:, :-1] += x.reshape(len(V), -1)
-    lost = (rod.drag * V**2 @ grid.quadrature).sum()
+    lost = (rod.drag * V**2 @ grid.quadrature_weights).sum()
     assert (Sigma * G).sum() == pytest.approx(-lost, rel=1e-12)
 
 
@@ -125,7 +125,7 @@ def test_jacobian_is_the_derivative_of_the_equations(material, grid, uniform, ke
     x, d, n = state(rod, grid), len(rod.tip_stress), grid.node_count
     V, _ = balanced(x, rod, grid)
     J, tip = np.full((len(x),) * 2, np.nan), np.full((d, len(x)), np.nan)
-    write_jacobian.compiled_for(ALGEBRAS[d])(x, V, J, tip, rod, grid.matrices)
+    write_jacobian.compiled_for(ALGEBRAS[d])(x, V, J, tip, rod, grid.node_matrices)
     whole = np.concatenate([J[: d * n].reshape(d, n, -1), tip[:, None]], axis=1).reshape(d * (n + 1), -1)
     whole = np.concatenate([whole, J[d * n :]])
     for k, step in enumerate(1e-2 * np.eye(len(x))):  # the equations are cubic: this difference is exact
@@ -154,7 +154,7 @@ def test_a_rigid_motion_strains_no_rod():
     seen = np.array([0.3, -1.0, 0.5, 2.0, 0.4, -0.6])
     V = np.stack([expm(-u * bracket) @ seen for u in grid.node_positions], axis=1)
     G, strain = np.empty(V.shape), np.repeat(E[:, None], grid.node_count + 1, axis=1)
-    write_strain_rates.compiled_for(SE3)(strain, V, G, grid.matrices)
+    write_strain_rates.compiled_for(SE3)(strain, V, G, grid.node_matrices)
     G[:, 0] -= V[:, 0]  # what a clamp would hold
     G[:, -1] += V[:, -1]  # and the reaction
     assert np.abs(G).max() < 1e-12 * np.abs(V).max()

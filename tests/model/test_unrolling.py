@@ -26,17 +26,19 @@ def test_derivative_along_a_parameter_is_that_of_loops_in_python():
     rod, change = nodal_rod(PLANE, GRID), nodal_rod_derivative(ROD.balance_coefficient_derivative("k1"), GRID)
     x = np.random.default_rng(1).standard_normal(3 * GRID.node_count)
     V, G = np.empty((2, 3, GRID.node_count + 1))
-    write_balance(SE2, x, V, G, rod, GRID.matrices)
+    write_balance(SE2, x, V, G, rod, GRID.node_matrices)
     out = np.empty((2, 3, 3, GRID.node_count + 1))
-    write_balance_parameter_derivative.compiled_for(SE2)(x, V, out[0], change, rod, GRID.matrices)
-    write_balance_parameter_derivative(SE2, x, V, out[1], change, rod, GRID.matrices)
+    write_balance_parameter_derivative.compiled_for(SE2)(x, V, out[0], change, rod, GRID.node_matrices)
+    write_balance_parameter_derivative(SE2, x, V, out[1], change, rod, GRID.node_matrices)
     assert np.abs(out[0] - out[1]).max() <= 1e-13 * np.abs(out[1]).max()
 
 
 @UnrolledOverAlgebra
 def decided(g, x):
     total = 0.0
-    both = [[x[a] * x[b] if g.ad_pattern[a][b] else 0.0 for b in g.components] for a in g.components]
+    both = [
+        [x[a] * x[b] if g.ad_pattern[a][b] else 0.0 for b in g.component_indices] for a in g.component_indices
+    ]
     for a, b, o, sign in g.structure_constants:
         if a == o:
             total += x[b] / 0.0
@@ -47,7 +49,7 @@ def decided(g, x):
 
 @UnrolledOverAlgebra
 def left_early(g, x):
-    for a in g.components:
+    for a in g.component_indices:
         if x[a] > 0:
             break
     return a

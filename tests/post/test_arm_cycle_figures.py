@@ -12,8 +12,8 @@ from rodsweep.api.dataset import view_of_dataset
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.post.figures.cycle.animation import prepared_animation
 from rodsweep.post.figures.cycle.energy import draw_energy
-from rodsweep.post.figures.cycle.portrait import draw_portrait
 from rodsweep.post.figures.cycle.selection import chosen_cycles
+from rodsweep.post.figures.cycle.shapes_and_tip_motion import draw_shapes_and_tip_motion
 from rodsweep.tasks.cycle_shapes import with_shapes
 
 ARM = {"length": 0.15, "radius": 5e-3, "young": 6e4, "viscosity": 30.0, "pressure": 726.0}
@@ -35,7 +35,7 @@ def arms(lengths=(0.15,), gamma1=None):
 
 def test_an_arm_beats_in_cm_and_s_under_its_quantities():
     view, (arm,) = arms()
-    figure = draw_portrait(view, ())[0]
+    figure = draw_shapes_and_tip_motion(view, ())[0]
     shapes, upper, lower = figure.axes[:3]
     assert (shapes.get_xlabel(), shapes.get_ylabel()) == ("$x$ (cm)", "$y$ (cm)")
     assert (upper.get_ylabel(), lower.get_ylabel()) == ("tip $x$ (cm)", "tip $y$ (cm)")
@@ -53,7 +53,7 @@ def test_an_arm_beats_in_cm_and_s_under_its_quantities():
 
 def test_arms_of_two_lengths_are_drawn_in_their_sizes_and_told_apart_by_them():
     view, _ = arms((0.1, 0.2))
-    short, long = draw_portrait(view, ())[0].axes[:2]
+    short, long = draw_shapes_and_tip_motion(view, ())[0].axes[:2]
     assert short.get_title().replace("\xa0", " ").startswith("length 10 cm\n")
     assert long.get_title().replace("\xa0", " ").startswith("length 20 cm\n")
     reach = [max(line.get_xdata().max() for line in axes.lines[2:]) for axes in (short, long)]

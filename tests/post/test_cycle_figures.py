@@ -19,11 +19,15 @@ from rodsweep.errors import EnvironmentIncomplete, InputError
 from rodsweep.post.figures import draw
 from rodsweep.post.figures.cycle.amplitudes.amplitude import draw_amplitude
 from rodsweep.post.figures.cycle.amplitudes.amplitude_series import amplitude_series
-from rodsweep.post.figures.cycle.amplitudes.square_root import square_root_laws
+from rodsweep.post.figures.cycle.amplitudes.square_root_law import square_root_laws
 from rodsweep.post.figures.cycle.animation import prepared_animation
 from rodsweep.post.figures.cycle.energy import draw_energy
-from rodsweep.post.figures.cycle.portrait import ARROW_LENGTH, draw_portrait, drawn_shape_indices
 from rodsweep.post.figures.cycle.selection import chosen_cycles
+from rodsweep.post.figures.cycle.shapes_and_tip_motion import (
+    ARROW_LENGTH,
+    draw_shapes_and_tip_motion,
+    drawn_shape_indices,
+)
 from rodsweep.post.figures.limit_cycle import chosen_figure_kind
 from rodsweep.post.figures.request import FigureRequest
 from rodsweep.post.located_thresholds import LocatedThreshold
@@ -60,7 +64,7 @@ def test_drawn_shapes_are_equally_spaced_in_time(stored):
 
 def test_force_presses_on_the_tip_against_e1_in_the_colour_of_its_shape_and_later_is_darker():
     view = make_view(([50.0], [1e4], [1e2], [1e-2], [1.0]), [0])
-    axes = draw_portrait(view, ())[0].axes[0]
+    axes = draw_shapes_and_tip_motion(view, ())[0].axes[0]
     arrows = [a for a in axes.collections if isinstance(a, Quiver)]
     drawn, _ = drawn_shape_indices(SHAPES)
     assert len(arrows) == len(drawn) == 12
@@ -80,7 +84,7 @@ def test_force_presses_on_the_tip_against_e1_in_the_colour_of_its_shape_and_late
 
 
 def test_tip_is_drawn_in_its_own_period_with_the_clock_of_the_slowest():
-    figure = draw_portrait(two_cycles(), ())[0]
+    figure = draw_shapes_and_tip_motion(two_cycles(), ())[0]
     for number, (size, period) in enumerate(((50**0.5 / 16, 0.034), (50**0.5 / 12, 0.026))):
         upper, lower = figure.axes[2 + number], figure.axes[4 + number]
         time = lower.lines[0].get_xdata()
@@ -118,9 +122,9 @@ def test_amplitudes_are_zero_where_straight_and_unknown_where_there_is_no_cycle(
         assert [line.parameters["gamma1"] for line in lines] == [1.0, 0.5]
         for line in lines:
             wanted = expected[line.parameters["gamma1"]]
-            assert line.amplitude_y == pytest.approx(wanted, nan_ok=True)
+            assert line.tip_y_max == pytest.approx(wanted, nan_ok=True)
             assert line.amplitude_x == pytest.approx(wanted, nan_ok=True)
-            x, y = line.with_gap_at_onset(line.amplitude_y)
+            x, y = line.with_gaps_at_straight_rods(line.tip_y_max)
             assert np.isnan([x[1], y[1]]).all()
             assert x[[0, 2]].tolist() == [20, 30]
 
@@ -148,7 +152,7 @@ def test_a_list_that_goes_up_and_down_stays_in_its_order():
     columns = (F, [1e4] * 5, [1e2] * 5, [1e-2] * 5, [1.0] * 5)
     (line,) = amplitude_series(make_view(columns, [1, 1, 0, 0, 1], as_list=True), "F")
     assert line.x.tolist() == F
-    assert line.amplitude_y == pytest.approx([0, 0, 40**0.5 / 16, 30**0.5 / 16, 0])
+    assert line.tip_y_max == pytest.approx([0, 0, 40**0.5 / 16, 30**0.5 / 16, 0])
 
 
 def test_several_files_are_told_apart_by_name(tmp_path):
@@ -348,4 +352,4 @@ def test_the_coefficient_of_a_law_is_known_to_its_error(count):
     distance = np.array([0.03, 0.05, 0.09, 0.15, 0.2])[:count]
     y = a * np.sqrt(distance * (1 - 1.5 * distance + 4 * distance**2))
     (law,) = square_root_laws(hopf.position * (1 + distance), y, [hopf])
-    assert 1e-4 * a < abs(law.coefficient - a) <= law.error
+    assert 1e-4 * a < abs(law.coefficient - a) <= law.coefficient_error

@@ -11,7 +11,7 @@ from surveyed import few
 
 from rodsweep.errors import InputError
 from rodsweep.post.figures import draw
-from rodsweep.post.figures.cells import cell_edges, point_map
+from rodsweep.post.figures.cells import cell_edges, point_grid
 from rodsweep.post.figures.cycle.maps import STATUS_LOOKS, draw_maps, hopf_lines
 from rodsweep.post.figures.limit_cycle import chosen_figure_kind
 from rodsweep.post.figures.request import FigureRequest
@@ -137,7 +137,7 @@ def test_unstable_cycles_keep_their_colour_under_an_open_marker():
 def test_the_line_of_hopf_points_is_where_the_rod_starts_to_beat(shape):
     """F** rises by 6 a decade of k2: a straight line in the scale of the axes."""
     view = swept(np.linspace(20, 60, shape[0]), np.geomspace(2, 1000, shape[1]))
-    (line,) = hopf_lines(point_map(view), view)
+    (line,) = hopf_lines(point_grid(view), view)
     forces, k2 = line
     off = np.abs(forces - rising(forces, 0, k2, 0, 0)) * (shape[0] - 1) / 40  # in steps of F
     on_row = np.isclose(k2[:, None], view.variables["k2"]).any(axis=1)
@@ -161,7 +161,7 @@ def test_a_line_of_hopf_points_that_turns_back_is_one_line():
     ]
     kinds = ["hopf", "restabilization"] * len(half)
     view.variables.update(hopf_variables("F", ends, kinds=kinds))
-    (line,) = hopf_lines(point_map(view), view)
+    (line,) = hopf_lines(point_grid(view), view)
     at_end = line[:, line[1] == 200]
     assert np.sort(at_end[0]) == pytest.approx(101 + 60 * np.sqrt(78 / 80) * np.array([-1, 1]), abs=0.1)
     assert 120 < line[1].min() < 130
@@ -170,7 +170,7 @@ def test_a_line_of_hopf_points_that_turns_back_is_one_line():
 def test_no_line_crosses_points_that_are_missing():
     view = swept(np.linspace(20, 60, 41), np.geomspace(1, 1000, 31))
     view.variables["linear_growth_rate"][:, :, 10:13] = np.nan
-    lines = hopf_lines(point_map(view), view)
+    lines = hopf_lines(point_grid(view), view)
     k2 = view.variables["k2"]
     assert len(lines) == 2
     assert not any(((line[1] > k2[9] * 1.001) & (line[1] < k2[13] * 0.999)).any() for line in lines)
@@ -178,7 +178,7 @@ def test_no_line_crosses_points_that_are_missing():
 
 def test_no_hopf_point_is_drawn_where_every_rod_beats():
     view = swept(np.linspace(50, 60, 7), np.geomspace(1, 1000, 8))
-    assert hopf_lines(point_map(view), view) == []
+    assert hopf_lines(point_grid(view), view) == []
     assert draw_maps(view)[0].legends == []
 
 
@@ -226,7 +226,7 @@ def test_an_infinite_value_is_left_out_and_the_message_says_so(tmp_path):
     view = swept(SMALL[0], [*SMALL[1], np.inf])
     message = draw(view, tmp_path / "f.png")
     assert "k2 = inf has no place on an axis and is left out" in message
-    assert point_map(view).y.tolist() == SMALL[1]
+    assert point_grid(view).y.tolist() == SMALL[1]
 
 
 def scattered():

@@ -19,13 +19,17 @@ import rodsweep as rs
 from rodsweep.api.dataset import view_of_dataset
 from rodsweep.config.document.reading import resolved_config, validated_config
 from rodsweep.errors import InputError
-from rodsweep.post.figures import FIGURES, draw
+from rodsweep.post.figures import DRAW_FUNCTION_BY_TASK, draw
 from rodsweep.post.figures.grid_slices import slice_at_values
 from rodsweep.post.figures.point_lists import label_point_numbers
 from rodsweep.post.figures.request import FigureLook
-from rodsweep.post.figures.spectra.line import mark_thresholds, select_roots, with_gaps_between_roots
+from rodsweep.post.figures.spectra.spectra_along_line import (
+    mark_thresholds,
+    select_roots,
+    with_gaps_between_roots,
+)
 from rodsweep.post.figures.stability.class_bars import CLASS_COLOURS
-from rodsweep.post.figures.stability.diagram_curves import mark_cycles_on_rows
+from rodsweep.post.figures.stability.diagram_curves import mark_special_points_on_rows
 from rodsweep.post.figures.stability.regions import (
     PIXEL_COUNT,
     ClassifiedPoints,
@@ -34,12 +38,12 @@ from rodsweep.post.figures.stability.regions import (
 )
 from rodsweep.post.figures.stability.row_classes import pixel_classes_of_row
 from rodsweep.post.figures.stability.threshold_lines import _groups_of_equal_lines
-from rodsweep.post.figures.style import INVERSE_DRAG_LABEL, LABELS, number_in_tex, scale_axis
+from rodsweep.post.figures.style import AXIS_LABELS, INVERSE_DRAG_LABEL, number_in_tex, scale_axis
 from rodsweep.post.plane_curves import PlaneParameters
-from rodsweep.post.summary import SUMMARIES
+from rodsweep.post.summary import SUMMARY_FUNCTION_BY_TASK
 from rodsweep.results.file.view import ResultView, read_view
 from rodsweep.results.layouts.phase_diagram import STABILITY_CLASSES
-from rodsweep.results.layouts.variables import flag_number
+from rodsweep.results.layouts.variables import stored_number_of_word
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.tasks import TASKS
 from rodsweep.tasks.running.job import job_of_file
@@ -49,7 +53,7 @@ NO_POINTS = ClassifiedPoints(np.zeros((0, 2)), np.zeros(0, int))
 
 
 def test_every_task_has_a_summary_and_a_figure():
-    assert SUMMARIES.keys() == FIGURES.keys() == TASKS.keys()
+    assert SUMMARY_FUNCTION_BY_TASK.keys() == DRAW_FUNCTION_BY_TASK.keys() == TASKS.keys()
 
 
 def test_rightmost_and_smallest_roots_differ():
@@ -252,7 +256,7 @@ def test_powers_of_ten_are_written_as_such(value, written):
 
 
 def test_labels_of_dimensionless_parameters_have_no_unit():
-    assert not any("[" in label for label in [*LABELS.values(), INVERSE_DRAG_LABEL])
+    assert not any("[" in label for label in [*AXIS_LABELS.values(), INVERSE_DRAG_LABEL])
 
 
 def test_flutter_is_marked_at_its_threshold_however_coarse_the_forces_are(command):
@@ -402,7 +406,7 @@ def test_list_of_spectra_is_drawn_over_its_points_or_over_what_alone_varies(comm
         draw(view, command.directory / "f.png", roots="smallest")
     same = "F,k1,k2,gamma3\n" + "".join(f"10,1e4,{k2},1e-2\n" for k2 in (300, 100, 200))  # as many as modes
     figure, _ = drawn_of(command, monkeypatch, config, same)
-    assert figure.axes[0].get_xlabel() == LABELS["k2"]
+    assert figure.axes[0].get_xlabel() == AXIS_LABELS["k2"]
     assert figure.axes[0].lines[0].get_xdata().tolist() == [100, 200, 300]
 
 
@@ -497,13 +501,13 @@ def test_regions_of_a_diagram_end_where_the_force_crushes_the_rod(command, monke
     else:
         x, k1 = k1, DrawnPlane.pixel_centres(k1)
     crushed = np.broadcast_to(k1 <= F, classes.shape)
-    assert np.array_equal(classes == flag_number("crushed", STABILITY_CLASSES), crushed)
+    assert np.array_equal(classes == stored_number_of_word("crushed", STABILITY_CLASSES), crushed)
     at = (
         np.abs(DrawnPlane.pixel_centres(axis) - place).argmin()
         for axis, place in ((x, flutters[0]), (y, flutters[1]))
     )
     column, row = at
-    assert classes[row, column] == flag_number("flutter", STABILITY_CLASSES)
+    assert classes[row, column] == stored_number_of_word("flutter", STABILITY_CLASSES)
 
 
 def test_classes_are_bounded_by_a_curve_however_few_points_are_computed():
@@ -712,11 +716,11 @@ def test_folds_of_rows_are_marked_where_no_curve_goes_through_them():
     }
     view = ResultView(Path("f.h5"), {"task": "phase_diagram"}, variables, ("k1",), {0: "ok"}, 0)
     axes = Figure().subplots()
-    mark_cycles_on_rows(axes, view, PlaneParameters("F", "k1"))
+    mark_special_points_on_rows(axes, view, PlaneParameters("F", "k1"))
     (folds,) = axes.lines
     assert folds.get_xydata().tolist() == [[70.0, 150.0]]
     bare = {name: values for name, values in variables.items() if not name.startswith("cycle_curve")}
-    mark_cycles_on_rows(axes, replace(view, variables=bare), PlaneParameters("F", "k1"))
+    mark_special_points_on_rows(axes, replace(view, variables=bare), PlaneParameters("F", "k1"))
     assert len(axes.lines[1].get_xydata()) == 3
 
 
@@ -736,7 +740,7 @@ def test_a_fold_beside_an_extremum_of_its_curve_lies_on_it():
     }
     view = ResultView(Path("f.h5"), {"task": "phase_diagram"}, variables, ("k1",), {0: "ok"}, 0)
     axes = Figure().subplots()
-    mark_cycles_on_rows(axes, view, PlaneParameters("F", "k1"))
+    mark_special_points_on_rows(axes, view, PlaneParameters("F", "k1"))
     assert not axes.lines
 
 
@@ -821,7 +825,7 @@ def test_an_outer_part_of_a_row_without_a_computed_point_has_its_own_class(
         np.abs(DrawnPlane.pixel_centres(view.variables[name]) - place).argmin()
         for name, place in zip((line, row), inside, strict=True)
     )
-    assert classes[line_of_pixels, column] == flag_number(word, STABILITY_CLASSES)
+    assert classes[line_of_pixels, column] == stored_number_of_word(word, STABILITY_CLASSES)
 
 
 def test_what_a_figure_leaves_out_is_said(command, monkeypatch):

@@ -7,11 +7,11 @@ import pytest
 from known_cycles import UNSTABLE, hopf_variables, make_view, store
 
 from rodsweep.post.figures.cycle.amplitudes.amplitude import draw_amplitude
-from rodsweep.post.figures.cycle.amplitudes.square_root import square_root_laws
-from rodsweep.post.located_thresholds import LocatedThreshold, StoredThresholds, UnlocatedThreshold
+from rodsweep.post.figures.cycle.amplitudes.square_root_law import square_root_laws
+from rodsweep.post.located_thresholds import BracketedThreshold, LocatedThreshold, StoredThresholds
 from rodsweep.post.summary.stability import rod_and_arm_stability_lines
 from rodsweep.sweep.points.points import lines_along
-from rodsweep.tasks.protocol import solve_on_one_rank
+from rodsweep.tasks.protocol import map_on_one_rank
 from rodsweep.tasks.running.job import job_of_file
 
 pytestmark = pytest.mark.filterwarnings("error::UserWarning")
@@ -29,7 +29,7 @@ def config_of(F, k1, k2, gamma3):
     )
 
 
-def searched(tmp_path, config, in_order=solve_on_one_rank):
+def searched(tmp_path, config, in_order=map_on_one_rank):
     """The variables of the Hopf points of a config, by name."""
     path = tmp_path / "c.yaml"
     path.write_text(config)
@@ -81,7 +81,7 @@ def test_points_that_are_listed_make_the_lines_that_a_grid_makes(tmp_path):
 
 def changes_on(view, name="F"):
     (line,) = lines_along(view.point_columns, name)
-    return StoredThresholds(view, name).thresholds_on(line)
+    return StoredThresholds(view, name).thresholds_on_line(line)
 
 
 def test_a_window_of_flutter_has_a_hopf_point_at_each_end():
@@ -96,8 +96,8 @@ def test_a_window_of_flutter_has_a_hopf_point_at_each_end():
 def test_a_change_that_no_search_has_located_lies_between_two_points():
     view = swept((100,), constant)
     view.variables.update(hopf_variables("F", []))
-    assert changes_on(view) == [UnlocatedThreshold(27.0, 28.0, "hopf")]
-    (line,), _ = rod_and_arm_stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on)
+    assert changes_on(view) == [BracketedThreshold(27.0, 28.0, "hopf")]
+    (line,), _ = rod_and_arm_stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on_line)
     assert line == "F** (straight rod starts to flutter): between 27 and 28"
 
 
@@ -126,9 +126,9 @@ def test_the_law_has_the_coefficient_to_which_the_cycles_tend_and_ends_where_the
     amplitude = 0.9 * np.sqrt(s * (1 - 1.2 * s))  # a fifth below the law at s = 0.2546
     F = np.r_[18, 20 * (1 + s)]
     (law,) = square_root_laws(F[::-1], np.r_[0, amplitude][::-1], [THRESHOLD])
-    assert (law.coefficient, law.is_above, law.end) == (pytest.approx(0.9), True, pytest.approx(25))
+    assert (law.coefficient, law.is_above, law.end_force) == (pytest.approx(0.9), True, pytest.approx(25))
     x, y = law.curve()
-    assert (x[0], y[0], x[-1]) == (20, 0, law.end)
+    assert (x[0], y[0], x[-1]) == (20, 0, law.end_force)
     assert y == pytest.approx(0.9 * np.sqrt((x - 20) / 20))
 
 
@@ -136,7 +136,7 @@ def test_cycles_that_shrink_towards_a_restabilization_have_a_law_below_it():
     F = np.array([18.0, 19, 19.5, 21])
     amplitude = np.r_[0.4 * np.sqrt((20 - F[:3]) / 20), 0]
     (law,) = square_root_laws(F, amplitude, [LocatedThreshold(20.0, 1e-6, "restabilization")])
-    assert (law.coefficient, law.is_above, law.end) == (pytest.approx(0.4), False, 18)
+    assert (law.coefficient, law.is_above, law.end_force) == (pytest.approx(0.4), False, 18)
 
 
 def test_the_smaller_of_two_cycles_at_a_force_follows_the_law():
@@ -240,19 +240,19 @@ def test_no_hopf_point_is_marked_over_another_parameter():
     view.variables["linear_growth_rate"][0, 0, 2] = -1
     figure = draw_amplitude([view])[0]
     assert dotted(figure.axes[1]) == []
-    assert rod_and_arm_stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on) == ([], [])
+    assert rod_and_arm_stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on_line) == ([], [])
 
 
 def test_lines_over_a_parameter_hold_every_point_once_in_the_order_of_the_file():
     axes = ([20.0, 30, 40], [1e4], [200.0, 100], [1e-2], [1.0, 0.5])
     view = make_view(axes, [0] * 12, stored=())
     lines = list(lines_along(view.point_columns, "F"))
-    keys = [(line.parameters["k2"], line.parameters["gamma1"]) for line in lines]
+    keys = [(line.other_parameters["k2"], line.other_parameters["gamma1"]) for line in lines]
     assert keys == [(200, 1), (200, 0.5), (100, 1), (100, 0.5)]
     assert sorted(np.concatenate([line.indices for line in lines])) == list(range(12))
     for line in lines:
-        assert line.x.tolist() == [20, 30, 40]
-        assert {view.point_columns["k2"][i] for i in line.indices} == {line.parameters["k2"]}
+        assert line.values.tolist() == [20, 30, 40]
+        assert {view.point_columns["k2"][i] for i in line.indices} == {line.other_parameters["k2"]}
 
 
 @pytest.mark.parametrize(
@@ -272,7 +272,7 @@ def test_lines_over_a_parameter_hold_every_point_once_in_the_order_of_the_file()
     ],
 )
 def test_the_summary_tells_hopf_points_one_by_one_or_their_range(view, expected):
-    (line,), _ = rod_and_arm_stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on)
+    (line,), _ = rod_and_arm_stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on_line)
     assert line == f"F** (straight rod starts to flutter): {expected}"
 
 
@@ -281,7 +281,7 @@ def test_the_summary_counts_no_single_point_of_a_list_as_a_line():
     columns = [np.array(values) for values in ([27.0, 28, 27, 28], [1e4] * 4, [100.0, 100, 50, 25])]
     columns += [np.full(4, 1e-2), np.ones(4)]
     view = make_view(columns, [1, 0, 1, 0], stored=(), hopf=constant, as_list=True)
-    (line,), _ = rod_and_arm_stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on)
+    (line,), _ = rod_and_arm_stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on_line)
     assert ", found on 1 of 1 line of points along F" in line
 
 
@@ -292,7 +292,7 @@ def test_the_summary_tells_every_window_of_flutter_on_a_line():
     places = [9.0, 29.0, 49.0, 69.0, 89.0]
     kinds = ["hopf", "restabilization"] * 2 + ["hopf"]
     view.variables.update(hopf_variables("F", [(F, 1e4, 1e2, 1e-2) for F in places], kinds=kinds))
-    (beats, again), _ = rod_and_arm_stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on)
+    (beats, again), _ = rod_and_arm_stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on_line)
     assert re.findall(r"(\d+)\.0+", beats) == ["9", "49", "89"]
     assert re.findall(r"(\d+)\.0+", again) == ["29", "69"]
 
@@ -331,7 +331,7 @@ def test_a_threshold_below_the_first_force_is_told(tmp_path):
     view.variables.update(found | {"linear_growth_rate": np.ones((2, 1, 1, 1, 1))})
     stored = StoredThresholds(view, "F")
     (line,) = lines_along(view.point_columns, "F")
-    assert stored.thresholds_on(line) == []
+    assert stored.thresholds_on_line(line) == []
     assert [point.position for point in stored.thresholds_up_to_end(line)] == pytest.approx(
         WINDOW[:1], rel=1e-12
     )

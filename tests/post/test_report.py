@@ -14,7 +14,7 @@ from surveyed import RODS, only
 
 from rodsweep.post.figures.cells import cell_centres, cell_edges
 from rodsweep.post.report import write_report
-from rodsweep.post.report.label_text import label_text
+from rodsweep.post.report.plain_label_text import plain_text_of_label
 from rodsweep.post.summary import summary_of
 from rodsweep.results.file.view import read_view
 from rodsweep.tasks import TASKS
@@ -77,7 +77,7 @@ def test_the_page_says_what_show_says(command, name):
     assert answer.startswith(lead)
     summary = summary_of(read_view(command.directory / f"{name}.h5"))
     paragraphs = page.texts("p")
-    for line in [*summary.answer, *summary.reliability, *summary.details, *summary.provenance]:
+    for line in [*summary.answer, *summary.reliability, *summary.details, *summary.cost_and_provenance_lines]:
         assert " ".join(line.replace("`", "").split()) in ["", *paragraphs]
     for row in summary.statuses.rows:
         assert {row[0], row[1], row[2].replace("`", "")} <= set(page.texts("td"))
@@ -171,7 +171,7 @@ def test_a_page_without_a_computed_point_says_so(command):
 
 def test_points_that_failed_are_counted_with_their_reason_and_place(command):
     view = read_view(solved(command, "spectrum"))
-    failed = next(value for value, word in view.flags.items() if word == "failed")
+    failed = next(value for value, word in view.status_flags.items() if word == "failed")
     status = view.variables["status"].copy()
     status[3:, 1] = failed
     write_report(
@@ -244,7 +244,7 @@ def test_the_value_under_the_pointer_is_shown_in_a_browser(command):
     ],
 )
 def test_labels_become_plain_text(label, text):
-    assert label_text(label) == text
+    assert plain_text_of_label(label) == text
 
 
 def test_centres_of_cells_are_the_values_that_made_the_edges():

@@ -13,13 +13,13 @@ from shown import HOPF, STABLE_AGAIN, shown
 
 import rodsweep as rs
 from rodsweep.api.dataset import view_of_dataset
-from rodsweep.post.located_thresholds import LocatedThreshold, StoredThresholds, UnlocatedThreshold
+from rodsweep.post.located_thresholds import BracketedThreshold, LocatedThreshold, StoredThresholds
 from rodsweep.post.summary import summary_of
-from rodsweep.post.summary.errors import absolute_errors
-from rodsweep.post.summary.number_texts import axis_values_text, number_with_error
+from rodsweep.post.summary.number_texts import axis_values_text, number_with_error_text
 from rodsweep.post.summary.selection import Selection
 from rodsweep.post.summary.stability import rod_and_arm_stability_lines
-from rodsweep.post.summary.thresholds import oscillation_end
+from rodsweep.post.summary.thresholds import oscillation_end_index
+from rodsweep.post.summary.variable_errors import absolute_errors
 from rodsweep.results.file.provenance import example_failure_sentence
 from rodsweep.results.file.view import read_view
 from rodsweep.solve.changes.status import ThresholdStatus
@@ -56,7 +56,7 @@ def test_thresholds_between_grid_points_do_not_depend_on_the_grid(command, step,
     (line,) = lines_along(view.point_columns, "F")
     found = [
         change
-        for change in StoredThresholds(view, "F").thresholds_on(line)
+        for change in StoredThresholds(view, "F").thresholds_on_line(line)
         if isinstance(change, LocatedThreshold) and change.changes_stability
     ]
     assert [point.kind for point in found] == ["hopf", "restabilization"]
@@ -93,7 +93,7 @@ def test_an_unfinished_file_says_between_which_forces_stability_changes(command)
         assert "change_F" not in view.variables
     view.variables["growth_rate"][:] = np.array([-1.0, -1, 1, 1]).reshape(-1, 1, 1, 1, 1)
     (line,) = lines_along(view.point_columns, "F")
-    assert StoredThresholds(view, "F").thresholds_on(line) == [UnlocatedThreshold(45, 60, "hopf")]
+    assert StoredThresholds(view, "F").thresholds_on_line(line) == [BracketedThreshold(45, 60, "hopf")]
     assert command("merge", "all.h5", "1.h5", "2.h5").returncode == 0
     assert "flutter): 49.758004916" in command("show", "all.h5").stdout
 
@@ -106,8 +106,8 @@ def test_a_change_that_is_not_understood_is_a_bracket(command):
     located = job_of_file(command.directory / "c.yaml", ()).task.variables_from_points(view.variables)
     view = replace(view, variables=dict(view.variables) | {v.name: values for v, values in located})
     (line,) = lines_along(view.point_columns, "F")
-    assert StoredThresholds(view, "F").thresholds_on(line) == [UnlocatedThreshold(40, 60, "hopf")]
-    (told,), _ = rod_and_arm_stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on)
+    assert StoredThresholds(view, "F").thresholds_on_line(line) == [BracketedThreshold(40, 60, "hopf")]
+    (told,), _ = rod_and_arm_stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on_line)
     assert told == "F** (straight rod starts to flutter): between 40 and 60"
 
 
@@ -270,7 +270,7 @@ def test_the_first_lines_say_where_an_oscillation_ends(command):
     ],
 )
 def test_an_oscillation_ends_at_the_next_crossing_if_a_real_eigenvalue_leads_there(kinds, end):
-    assert oscillation_end(kinds) == end
+    assert oscillation_end_index(kinds) == end
 
 
 @pytest.mark.parametrize(
@@ -326,7 +326,7 @@ def test_all_statuses_are_listed_on_request(command):
     ],
 )
 def test_a_number_has_the_digits_that_its_error_leaves(value, error, text):
-    assert number_with_error(value, error) == text
+    assert number_with_error_text(value, error) == text
 
 
 @pytest.mark.parametrize(
@@ -400,7 +400,7 @@ def test_show_and_figures_name_law_profile_and_segments(arm, material, lines, wo
 def test_parameters_are_shown_to_the_digit_in_which_they_differ():
     """F = 199.9999999 was shown as 200, the value of k1, at which the rod would be crushed."""
     data = rs.sweep("spectrum", F=199.9999999, k1=200, k2=1e4, gamma3=1e-4)
-    rows = {row[0]: row[1] for row in summary_of(view_of_dataset(data, Path("data"))).axes.rows}
+    rows = {row[0]: row[1] for row in summary_of(view_of_dataset(data, Path("data"))).axes_table.rows}
     assert rows == {"F": "199.9999999", "k1": "200", "k2": "10000", "gamma3": "0.0001"}
 
 

@@ -18,7 +18,7 @@ from rodsweep.results.file.provenance import (
     joined_reasons_attribute,
     merged_history,
 )
-from rodsweep.results.layouts.phase_diagram import CURVE_ENDS, STABILITY_CLASSES
+from rodsweep.results.layouts.phase_diagram import BOUNDARY_CURVE_END_REASONS, STABILITY_CLASSES
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS
 from rodsweep.solve.changes.diagram import boundary_curves
 
@@ -82,7 +82,9 @@ def test_a_boundary_curve_that_is_cut_short_is_not_whole(tmp_path, monkeypatch):
     monkeypatch.setattr(boundary_curves, "BOUNDARY_STEP_CONTROL", few)
     view = view_of_sweep(tmp_path, "phase_diagram", **plane)
     reasons = [view.variables[name] for name in ("curve_start", "curve_end")]
-    full = np.flatnonzero(np.any(np.array(reasons) == list(CURVE_ENDS).index("list_full"), axis=0))
+    full = np.flatnonzero(
+        np.any(np.array(reasons) == list(BOUNDARY_CURVE_END_REASONS).index("list_full"), axis=0)
+    )
     assert len(full) > 0
     said = told(view)
     for i in full:

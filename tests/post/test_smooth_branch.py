@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from surveyed import few
 
-from rodsweep.post.branch_curves import StoredBranch
 from rodsweep.post.figures.smooth_branch import corners_by_previous_cycle, smooth_curve_of_branch
+from rodsweep.post.stored_branches import StoredBranch
 
 
 def branch_of(u, second_maximum):
@@ -48,7 +48,7 @@ def test_a_corner_is_drawn_where_another_maximum_becomes_the_largest(offset, ris
         return 0.55 + rise * (u - 0.72)
 
     curve = curve_through(u, second)
-    places = np.column_stack([curve.parameter, curve.y, np.log(curve.period)])
+    places = np.column_stack([curve.parameter, curve.tip_y_max, np.log(curve.period)])
     assert len(corners_by_previous_cycle(places, np.ptp(places, axis=0))) == 1
     assert farthest(u, second) < 5e-4
 
@@ -57,7 +57,7 @@ def test_a_corner_is_drawn_where_another_maximum_becomes_the_largest(offset, ris
 def test_a_branch_of_one_maximum_has_no_corner(count):
     u = np.linspace(0, 1, count)
     curve = curve_through(u, lambda u: 0.0 * u)
-    places = np.column_stack([curve.parameter, curve.y, np.log(curve.period)])
+    places = np.column_stack([curve.parameter, curve.tip_y_max, np.log(curve.period)])
     assert not corners_by_previous_cycle(places, np.ptp(places, axis=0))
     assert farthest(u, lambda u: 0.0 * u) < 5e-4
 

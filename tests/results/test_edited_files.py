@@ -18,7 +18,7 @@ from faults.edits import copied, edited
 from rodsweep.api.dataset import open_result
 from rodsweep.errors import InputError
 from rodsweep.results.file.combination.merge import merge
-from rodsweep.results.file.store import ResultFileWriter
+from rodsweep.results.file.result_file_writer import ResultFileWriter
 from rodsweep.results.file.view import read_view
 from rodsweep.tasks.running.job import job_of_file, plan_without_solver
 
@@ -80,7 +80,7 @@ def numbers_opened(path):
 def numbers_continued(path, plan):
     store = ResultFileWriter(path, plan)
     try:
-        assert store.missing() == []
+        assert store.missing_ranges() == []
     finally:
         store.close()
     return numbers_shown(path)

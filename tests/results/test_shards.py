@@ -169,7 +169,7 @@ def test_merge_takes_over_what_another_wrote_while_it_waited(command, monkeypatc
         assert waits.wait(PATIENCE)
         shutil.copy(first, merged)
         held.release()
-        assert waiting.result(PATIENCE).point_count == 492
+        assert waiting.result(PATIENCE).computed_point_count == 492
 
 
 def test_damaged_shard_leaves_the_merged_file_as_it_was(command):

@@ -10,13 +10,13 @@ from rodsweep.api.dataset import open_result
 from rodsweep.config.document.reading import resolved_config, validated_config
 from rodsweep.errors import InputError
 from rodsweep.results.file import points, replacement, validation
-from rodsweep.results.file.combination.identity import config_difference
+from rodsweep.results.file.combination.config_comparison import config_difference
 from rodsweep.results.file.combination.merge import merge
 from rodsweep.results.file.creation import FilePlan
 from rodsweep.results.file.current_state import write_snapshot
 from rodsweep.results.file.provenance import FAILURE_REASONS_ATTRIBUTE
+from rodsweep.results.file.result_file_writer import ResultFileWriter
 from rodsweep.results.file.seal import seal
-from rodsweep.results.file.store import ResultFileWriter
 from rodsweep.results.file.validation import read_header
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts import layout_of
@@ -75,11 +75,11 @@ def test_journalled_points_reach_their_place_in_any_order(tmp_path, is_grid):
     path = tmp_path / "a.h5"
     store = ResultFileWriter(path, plan(is_grid))
     count = 12 if is_grid else 5
-    assert store.missing() == [(0, count)]
+    assert store.missing_ranges() == [(0, count)]
     journal(store, [4, 0, 3], rank=0)
     journal(store, [1], rank=1)
     store.add_journals({"finished": "now"})
-    assert store.missing() == ([(2, 3), (5, 12)] if is_grid else [(2, 3)])
+    assert store.missing_ranges() == ([(2, 3), (5, 12)] if is_grid else [(2, 3)])
     with h5py.File(path) as file:
         growth = file["growth_rate"][...].reshape(count, 2)
         assert growth[4].tolist() == [4.25, -4]
@@ -94,7 +94,7 @@ def test_journalled_points_reach_their_place_in_any_order(tmp_path, is_grid):
 def test_blocks_of_any_size_give_the_same_file(tmp_path, monkeypatch, is_grid):
     """Whatever is read at once, in any order, and where a killed rank left points that were done again."""
     whole = ResultFileWriter(tmp_path / "whole.h5", plan(is_grid))
-    count = whole.missing()[0][1]
+    count = whole.missing_ranges()[0][1]
     journal(whole, range(count))
     whole.add_journals({})
     monkeypatch.setattr(pages_of, "BYTES_PER_READ", 3 * (LAYOUT.record_dtype.itemsize + 4))
@@ -104,9 +104,9 @@ def test_blocks_of_any_size_give_the_same_file(tmp_path, monkeypatch, is_grid):
     journal(store, order[1:], rank=0)
     journal(store, [*order[:3], order[0]], rank=1)
     assert read_view(tmp_path / "a.h5").journalled_count == count
-    assert store.missing() == [(0, count)]
+    assert store.missing_ranges() == [(0, count)]
     store.add_journals({})
-    assert store.missing() == []
+    assert store.missing_ranges() == []
     assert store.status_counts() == {"ok": count}
     with h5py.File(tmp_path / "whole.h5") as one, h5py.File(tmp_path / "a.h5") as other:
         for variable in LAYOUT.variables:
@@ -126,7 +126,11 @@ def test_a_merge_reaches_every_point_of_files_larger_than_what_is_read_at_once(t
         store.add_journals({})
         store.close()
     merged = merge(tmp_path / "m.h5", paths, lambda config, points: plan(False, count=points.count))
-    assert (merged.point_count, merged.missing_count, merged.is_finished) == (6, whole - 1, False)
+    assert (merged.computed_point_count, merged.missing_point_count, merged.is_finished) == (
+        6,
+        whole - 1,
+        False,
+    )
     with h5py.File(tmp_path / "m.h5") as file:
         done = np.flatnonzero(file["status"][...] == 0)
         assert done.tolist() == shares[1]
@@ -152,7 +156,7 @@ def test_points_journalled_before_a_kill_are_folded_at_the_next_start(tmp_path):
     assert read_view(path).journalled_count == 7
     store.close()
     again = ResultFileWriter(path, plan())
-    assert again.missing() == [(7, 12)]
+    assert again.missing_ranges() == [(7, 12)]
     assert again.status_counts() == {"missing": 5, "ok": 7}
     again.close()
 
@@ -192,7 +196,7 @@ def test_a_killed_run_keeps_the_reasons_of_the_points_that_it_stored(tmp_path):
     write_snapshot(path, tmp_path / "s.h5")
     assert read_view(tmp_path / "s.h5").attributes[FAILURE_REASONS_ATTRIBUTE] == told
     again = ResultFileWriter(path, plan())
-    assert again.missing() == [(4, 12)]
+    assert again.missing_ranges() == [(4, 12)]
     assert again.attributes()[FAILURE_REASONS_ATTRIBUTE] == told
     again.close()
 
@@ -229,7 +233,7 @@ def test_journal_of_another_config_is_not_folded(tmp_path):
     pages.append(0, record(0))
     pages.close()
     store.add_journals({})
-    assert store.missing() == [(0, 12)]
+    assert store.missing_ranges() == [(0, 12)]
     store.close()
 
 
@@ -325,4 +329,4 @@ def test_a_view_is_of_one_file_though_a_run_exchanges_it_meanwhile(tmp_path, mon
     shown = read_view(path)
     assert shown.is_grid
     assert shown.variables["status"].size == 12
-    assert read_header(path).points == 5
+    assert read_header(path).point_count == 5

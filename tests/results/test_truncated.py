@@ -8,10 +8,10 @@ from surveyed import few
 from rodsweep.errors import InputError
 from rodsweep.post.figures import draw
 from rodsweep.post.summary import show_summary
-from rodsweep.results.file.store import ResultFileWriter
+from rodsweep.results.file.result_file_writer import ResultFileWriter
 from rodsweep.results.file.view import read_view
 from rodsweep.sweep.points.ranges import Shard
-from rodsweep.tasks.running.job import job_of_file, plan_of
+from rodsweep.tasks.running.job import job_of_file, result_file_plan
 
 CONFIGS = {
     "spectrum": """
@@ -48,7 +48,7 @@ def test_file_cut_off_anywhere_is_refused_and_left_as_it_is(command, name, monke
     whole = path.read_bytes()
     monkeypatch.chdir(command.directory)
     job = job_of_file(config, ())
-    plan = plan_of(job, job.task.solver(), Shard(), "")
+    plan = result_file_plan(job, job.task.solver(), Shard(), "")
     rng, refused = Random(name), 0
     for size in [0, 1, 8, 100, len(whole) - 1, *(rng.randrange(len(whole)) for _ in range(CUTS))]:
         path.write_bytes(whole[:size])

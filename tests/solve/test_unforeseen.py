@@ -42,10 +42,10 @@ def break_it():
     import rodsweep.solve.spectrum.search as search
 
     class Broken(search.SpectrumSearch):
-        def outcome(self):
+        def find_spectrum(self):
             if self.problem.rod.F == 20:
                 raise StopIteration("a bug")
-            return super().outcome()
+            return super().find_spectrum()
 
     search.SpectrumSearch = Broken
 """
@@ -153,7 +153,7 @@ def test_strict_ends_the_run_at_the_first(command, ranks):
 def test_bug_outside_of_points_has_a_status_of_its_own(command):
     command.write("c.yaml", SPECTRA)
     patch = (
-        "import rodsweep.results.file.store as store\n"
+        "import rodsweep.results.file.result_file_writer as store\n"
         "def broken(self, *words): raise ValueError('a bug')\n"
         "store.ResultFileWriter.__init__ = broken\n"
     )
@@ -167,7 +167,7 @@ def test_in_python_a_sweep_warns_and_a_rod_raises(monkeypatch):
     from rodsweep.solve.spectrum import search
 
     class Broken(search.SpectrumSearch):
-        def outcome(self):
+        def find_spectrum(self):
             raise KeyError("a bug")
 
     asked = {"F": [10, 20], "k1": 1e4, "k2": 1e4, "gamma3": 1e-4}

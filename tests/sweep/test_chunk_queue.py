@@ -107,7 +107,7 @@ def test_two_threads_share_the_work_without_losing_any():
 def test_points_that_all_ranks_have_kept_are_counted():
     handout = ChunkQueue([(0, 9)], rank_count=2)
     for rank, points in ((0, 2), (1, 3), (0, 1)):
-        handout.add_report(rank, RankReport(stored_points=points))
+        handout.add_report(rank, RankReport(stored_point_count=points))
     assert handout.stored_points == 6
 
 
@@ -177,13 +177,13 @@ class Mail:
 
 def claims(mail, todo, monkeypatch, show=lambda words, begun: None):
     """The first rank's claims among two ranks, without a thread."""
-    monkeypatch.setattr(ChunkServer, "_serve_until_over", lambda self: None)
+    monkeypatch.setattr(ChunkServer, "_serve_until_all_ranks_finish", lambda self: None)
     ranks = SimpleNamespace(MPI=mail, comm=mail, size=2, first=True)
     return ChunkServer(ranks, ChunkQueue(todo, 2), StopRequest(), show)
 
 
 def test_each_chunk_is_answered_once_whether_asked_for_ahead_or_not(monkeypatch):
-    ahead, done = RankReport(is_in_advance=True), RankReport(1, 9.0)
+    ahead, done = RankReport(is_request_in_advance=True), RankReport(1, 9.0)
     mail = Mail()
     first = claims(mail, [(0, 10)], monkeypatch)
     answers = []
@@ -254,7 +254,7 @@ def test_another_rank_asks_for_its_next_chunk_when_it_begins_one():
     rank, done = other_claims(mail), RankReport(3, 9.0)
     mail.post(ANSWER_TAG, (4, 7))
     assert rank.next_chunk(done) == (4, 7)
-    assert mail.sent == [done, RankReport(is_in_advance=True)]
+    assert mail.sent == [done, RankReport(is_request_in_advance=True)]
     mail.post(ANSWER_TAG, NO_WORK_LEFT)
     assert rank.next_chunk(done) == NO_WORK_LEFT
     assert mail.sent[2:] == [done]

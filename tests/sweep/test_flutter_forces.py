@@ -12,7 +12,7 @@ from surveyed import few
 
 from rodsweep.config import read_config
 from rodsweep.config.arm.status import FLUTTER_UNKNOWN
-from rodsweep.errors import BUG_STATUS, InputError
+from rodsweep.errors import BUG_EXIT_STATUS, InputError
 from rodsweep.model.rod import Rod
 from rodsweep.sweep.points.flutter_forces import FlutterForce, rods_needing_flutter_force
 from rodsweep.tasks.running.job import job_of_config
@@ -103,7 +103,7 @@ def test_flutter_that_is_not_found_is_a_status_with_a_reason(command, rods, task
 def test_an_exception_in_the_search_on_one_rank_ends_all_ranks(command, rods):
     bug = f"if rod.k1 == {rods[3].k1!r}: raise RuntimeError('a bug')"
     run = command("run", "a.yaml", ranks=2, patch=searching(bug))
-    assert run.returncode == BUG_STATUS
+    assert run.returncode == BUG_EXIT_STATUS
     assert "rank 1 failed" in run.stderr
     assert "RuntimeError: a bug" in run.stderr
     assert not (command.directory / "a.h5").exists()

@@ -63,13 +63,13 @@ def test_groups_to_do_are_those_that_miss_a_point(shape):
     groups = groups_along_longest_axis(shape, EVERY[: len(shape)])
     count = math.prod(shape)
     assert groups.unsolved_ranges([(0, count)]) == [(0, groups.count)]
-    assert groups.missing_total([(0, groups.count)], [(0, count)]) == count
+    assert groups.missing_point_count([(0, groups.count)], [(0, count)]) == count
     missing = [(0, 2), (5, 6), (count - 1, count)] if count > 9 else [(3, 4)]
     lacks = IndexSet(missing)
     expected = [n for n in range(groups.count) if lacks[groups.indices(n)].any()]
     todo = groups.unsolved_ranges(missing)
     assert [n for ends in todo for n in range(*ends)] == expected
-    assert groups.missing_total(todo, missing) == index_count(missing)
+    assert groups.missing_point_count(todo, missing) == index_count(missing)
 
 
 def test_of_a_stretch_only_missing_points_are_kept():
@@ -89,7 +89,7 @@ def test_of_a_stretch_only_missing_points_are_kept():
     results = solver(0)
     index, kept = next(results)
     assert index.tolist() == [4, 8]
-    assert kept.values["growth_rate"].tolist() == [40.0, 80.0]
+    assert kept.variable_values["growth_rate"].tolist() == [40.0, 80.0]
     assert asked == [list(range(0, 20, 2))]
     assert list(results) == [(6, "told 6"), (10, "told 10")]
     assert asked[1:] == [6, 10]

@@ -8,7 +8,7 @@ import pytest
 
 from rodsweep.sweep.progress import on_terminal
 from rodsweep.sweep.remaining_time import (
-    RECORDED_POINT_COUNT_RATIO,
+    POINT_COUNT_RATIO_OF_SUCCESSIVE_RECORDS,
     RemainingTimeEstimator,
     duration_text,
     rate_in_words,
@@ -121,7 +121,7 @@ def test_memory_does_not_grow_with_the_points():
     pace = RemainingTimeEstimator(10**6)
     for done in range(1, 10**5):
         pace.remaining_seconds(done, done * 1e-3)
-    assert len(pace.records) < 3 * np.log(10**5) / np.log(RECORDED_POINT_COUNT_RATIO)
+    assert len(pace.records) < 3 * np.log(10**5) / np.log(POINT_COUNT_RATIO_OF_SUCCESSIVE_RECORDS)
 
 
 @pytest.mark.parametrize(

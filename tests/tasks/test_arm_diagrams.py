@@ -6,7 +6,7 @@ import pytest
 import rodsweep as rs
 from rodsweep.determinant import parameter_plane
 from rodsweep.determinant.arm.determinant import arm_determinant
-from rodsweep.tasks.diagram.curves import DiagramCurves
+from rodsweep.tasks.diagram.diagram_curve_search import DiagramCurveSolver
 
 DIAGRAM = {"F": [50.0, 60.0, 70.0], "k1": [102.0, 103.5, 105.0], "k2": 1e4, "gamma3": 0.02}
 PROFILE = {"u": [0, 0.5, 0.5, 1], "k3": [1, 1, 0.8, 0.8]}
@@ -24,7 +24,7 @@ def test_curves_are_the_same_whatever_was_solved_before(monkeypatch):
     alone = rs.sweep("phase_diagram", **DIAGRAM, profile=PROFILE, progress=False)
     assert alone.curve_F.size > 10
     assert len(rods) > 10
-    result = DiagramCurves.result
+    result = DiagramCurveSolver.result
 
     def after_many_w(self, view, results):
         for rod in rods[:8]:  # the first rods of the first curve
@@ -32,7 +32,7 @@ def test_curves_are_the_same_whatever_was_solved_before(monkeypatch):
                 arm_determinant(rod).propagators_for(size)
         return result(self, view, results)
 
-    monkeypatch.setattr(DiagramCurves, "result", after_many_w)
+    monkeypatch.setattr(DiagramCurveSolver, "result", after_many_w)
     again = rs.sweep("phase_diagram", **DIAGRAM, profile=PROFILE, progress=False)
     for name in ("curve_F", "curve_k1", "curve_frequency", "fold_F", "fold_k1"):
         assert np.array_equal(alone[name].values, again[name].values)

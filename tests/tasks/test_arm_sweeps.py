@@ -89,7 +89,7 @@ def test_axes_that_move_several_parameters_become_a_grid_over_the_quantities():
         arm = SlenderArm(radius=0.005, viscosity=1.4, **at)
         expected = {name: getattr(arm, name) for name in ("F", "k1", "k2", "gamma3")}
         expected["gamma1"] = (0.5, 1)[index % 2]
-        assert made.points.values(index) == pytest.approx(expected, rel=1e-12)
+        assert made.points.parameter_values_of_point(index) == pytest.approx(expected, rel=1e-12)
         assert quantities["tau2"][index] == pytest.approx(arm.tau2, rel=1e-12)
         assert quantities["pressure_scale"][index] * expected["F"] == pytest.approx(at["pressure"], rel=1e-12)
     order = list(zip(*(quantities[name] for name in axes), strict=True))
@@ -107,7 +107,7 @@ def test_parameter_beside_the_arm_replaces_its_own():
 
 def test_other_units_ask_for_the_same():
     keywords = [{"arm": LOADED}, {"arm": LOADED | {"length": "0.1 m", "pressure": 2000}}]
-    texts = [job("spectrum", **each).resolved for each in keywords]
+    texts = [job("spectrum", **each).resolved_config for each in keywords]
     assert texts[0] == texts[1]
 
 
@@ -169,7 +169,7 @@ def test_huge_grids_are_refused_before_they_are_made():
 
 def yaml(task):
     """The config file that says what the keywords say."""
-    return job(task, **QUICK[task]).config_text
+    return job(task, **QUICK[task]).given_config_yaml
 
 
 @pytest.mark.parametrize("task", only(("spectrum", "branch", "thresholds"), QUICK))
@@ -242,7 +242,7 @@ def test_axes_of_a_force_have_its_si_unit_opposite(command, drawn):
     }
     for name, (largest, number, label) in loads.items():
         load = {name: {"start": 0, "stop": largest, "num": 9}}
-        command.write(f"{name}.yaml", job("spectrum", arm=SILICONE | load, modes=2).config_text)
+        command.write(f"{name}.yaml", job("spectrum", arm=SILICONE | load, modes=2).given_config_yaml)
         assert command("run", f"{name}.yaml").returncode == 0
         draw(read_view(command.directory / f"{name}.h5"), command.directory / "f.png")
         drawn[-1].draw_without_rendering()
@@ -263,7 +263,7 @@ def test_neighbours_follow_each_other_along_a_quantity_of_the_arm():
 
 def test_configs_without_an_arm_have_no_trace_of_it():
     made = job_of_tree(config_tree("spectrum", {"F": 3, "k1": 200, "k2": 100, "gamma3": 0}))
-    assert "arm" not in made.resolved["parameters"]
+    assert "arm" not in made.resolved_config["parameters"]
     assert made.quantity_variables == ()
     assert not any(variable.name.endswith("_si") for variable in made.layout.variables)
 

@@ -19,7 +19,7 @@ from rodsweep.model.arm.neglected import (
     worst_validity,
 )
 from rodsweep.post.figures import draw
-from rodsweep.post.summary.arm.answer import arm_answer
+from rodsweep.post.summary.arm.arm_answer_lines import arm_answer
 from rodsweep.post.summary.arm.validity_sentences import judged_row_motion_clause, validity_sentence
 from rodsweep.post.summary.selection import Selection
 from rodsweep.results.file.view import read_view
@@ -60,7 +60,7 @@ def test_each_point_has_the_worst_of_what_is_left_out():
         effects = neglected_effects(
             arm, angular_frequency_at_smallest_drag(arm, point.hopf_frequency), point.F_hopf
         )
-        counted = [effect for effect in effects if not effect.of_cycles_only]
+        counted = [effect for effect in effects if not effect.is_of_cycles_only]
         assert point.model_applies == worst_validity(effects, of_cycles=False)
         largest = max(counted, key=lambda effect: effect.value_over_limit)
         assert point.neglected_excess.item() == pytest.approx(float(largest.value_over_limit), rel=1e-12)
@@ -155,7 +155,7 @@ def test_a_search_that_failed_is_no_arm_at_rest():
         }
     )
     solver = made.solver()
-    record = solver.record(0, solver.solve(0))
+    record = solver.file_values_of_outcome(0, solver.solve(0))
     assert record["model_applies"] == Validity.applies
     judge = ArmValidity(made.config, made.points, solver.statuses)
     failed = next(status for status in solver.statuses if status.name == "failed")
@@ -201,7 +201,7 @@ def test_the_motion_is_that_of_the_task(task, more):
             amplitude=amplitude,
         )
         assert point.model_applies == worst_validity(effects, of_cycles=task == "limit_cycle")
-        counted = [e for e in effects if task == "limit_cycle" or not e.of_cycles_only]
+        counted = [e for e in effects if task == "limit_cycle" or not e.is_of_cycles_only]
         expected = np.nanmax([float(effect.value_over_limit) for effect in counted])
         assert point.neglected_excess.item() == pytest.approx(expected, rel=1e-12)
 
@@ -587,7 +587,7 @@ def test_what_is_not_solved_is_not_said_to_stay_straight(command, task):
     command.write("a.yaml", f"task: {task}\nparameters: {{arm: {{{quantities}}}}}\n{more}")
     command.solved("a.yaml")
     view = read_view(command.directory / "a.h5")
-    values = {word: value for value, word in view.flags.items()}
+    values = {word: value for value, word in view.status_flags.items()}
     for first, second, *expected in STATUSES[task]:
         changed = dict(view.variables)
         if task == "spectrum":

@@ -13,12 +13,13 @@ from test_paper import run, stated
 
 import rodsweep as rs
 from rodsweep.api.dataset import view_of_dataset
-from rodsweep.model.floquet import min_unstable_count
+from rodsweep.model.floquet import min_unstable_multiplier_count
 from rodsweep.model.rod import Rod
-from rodsweep.post.branch_curves import RodBranches, stability_between_vertices
+from rodsweep.post.branch_curves import RodBranches
 from rodsweep.post.figures import draw
 from rodsweep.post.figures.smooth_branch import smooth_curve_of_branch
 from rodsweep.post.range_unions import intersection_of_ranges, union_of_ranges
+from rodsweep.post.stored_branches import stability_between_vertices
 from rodsweep.post.summary import branch as summary
 from rodsweep.post.summary.selection import Selection
 from rodsweep.results.file.view import read_view
@@ -26,7 +27,7 @@ from rodsweep.results.layouts.branch import END_REASONS, SPECIAL_KINDS
 from rodsweep.results.layouts.variables import MISSING_STATUS
 from rodsweep.solve.branch.branch_limits import BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
-from rodsweep.solve.branch.special.special_point import SpecialKind
+from rodsweep.solve.branch.special.special_point import SpecialPointKind
 from rodsweep.solve.branch.status import BranchEndReason
 from rodsweep.tasks.branch import branch_values
 from rodsweep.tasks.running.job import job_of_file
@@ -63,10 +64,13 @@ def test_show_of_many_rods_tells_where_branches_end_and_where_two_have_stable_cy
     shown(command, CONFIG.format(k1="[100, 150]", stop=80))
     view = read_view(command.directory / "c.h5")
     (branch,) = RodBranches(view, 1).curves
-    (start, end), stable = (branch.special[0], branch.special[-1]), np.ones_like(branch.stable)
+    (start, end), stable = (
+        (branch.special_points[0], branch.special_points[-1]),
+        np.ones_like(branch.stability),
+    )
     breaking = replace(end, kind="symmetry_breaking", reason="none", at=75.0)
-    one = replace(branch, special=(start, replace(breaking, meets=2), end), stable=stable)
-    other = replace(branch, special=(replace(breaking, meets=1), end), stable=stable)
+    one = replace(branch, special_points=(start, replace(breaking, meets=2), end), stability=stable)
+    other = replace(branch, special_points=(replace(breaking, meets=1), end), stability=stable)
 
     class WithBreaking(RodBranches):
         def __init__(self, view, rod=0):
@@ -129,10 +133,10 @@ def test_curves_of_a_file_go_through_cycles_and_special_points(command):
     shown(command, CONFIG.format(k1=150, stop=200))
     view = read_view(command.directory / "c.h5")
     (curve,) = RodBranches(view).curves
-    assert (curve.y[0], curve.y[-1]) == (0, 0)
-    assert int(np.argmax(curve.parameter)) == np.flatnonzero(~curve.cycles)[1]
+    assert (curve.tip_y_max[0], curve.tip_y_max[-1]) == (0, 0)
+    assert int(np.argmax(curve.parameter)) == np.flatnonzero(~curve.is_cycle)[1]
     assert curve.parameter.max() == pytest.approx(FOLD, rel=1e-8)
-    stable, unstable = RodBranches(view).straight_ranges((0.0, 200.0))
+    stable, unstable = RodBranches(view).straight_rod_stability_ranges((0.0, 200.0))
     assert stable == [
         (0.0, pytest.approx(67.3869842879)),
         (pytest.approx(85.569316943), 150 * (1 - 1e-4)),
@@ -164,8 +168,8 @@ def test_undecided_cycles_are_as_stable_as_others_between_the_same_special_point
     ],
 )
 def test_a_cycle_is_unstable_if_its_largest_multiplier_lies_outside_for_certain(multiplier, error, outside):
-    assert min_unstable_count(-1, multiplier, error) == outside
-    assert min_unstable_count(2, multiplier, error) == 2
+    assert min_unstable_multiplier_count(-1, multiplier, error) == outside
+    assert min_unstable_multiplier_count(2, multiplier, error) == 2
 
 
 def test_ranges_are_joined_and_intersected():
@@ -256,8 +260,8 @@ def test_branches_without_room_for_their_special_points_are_told_of_and_not_draw
     assert "stable cycles beside a stable straight rod at 0 of 1 rod" in told
     view = read_view(command.directory / "c.h5")
     assert [len(RodBranches(view, rod).curves) for rod in (0, 1)] == [0, 0]
-    assert RodBranches(view).straight_ranges((0.0, 200.0))[0] == [(0.0, 200.0)]
-    assert RodBranches(view, 1).straight_ranges((0.0, 200.0)) == ([], [])
+    assert RodBranches(view).straight_rod_stability_ranges((0.0, 200.0))[0] == [(0.0, 200.0)]
+    assert RodBranches(view, 1).straight_rod_stability_ranges((0.0, 200.0)) == ([], [])
     command.write("d.yaml", CONFIG.format(k1=150, stop=200).replace("stop:", "special: 2, stop:"))
     command.solved("d.yaml")
     assert "1 of 1 branch is not shown" in " ".join(command("show", "d.h5").stdout.split())
@@ -290,7 +294,7 @@ def test_longer_lists_are_computed_anew_only_where_they_were_full(command):
 
 
 def test_words_have_the_numbers_of_the_solver():
-    assert {kind.name: int(kind) for kind in SpecialKind} == {
+    assert {kind.name: int(kind) for kind in SpecialPointKind} == {
         name: number for number, name in enumerate(SPECIAL_KINDS) if number
     }
     assert {reason.name: int(reason) for reason in BranchEndReason} == {
@@ -378,7 +382,7 @@ def test_the_curve_in_the_figure_is_the_branch(k1, stop):
         assert len(stable) == len(at) - 1
         assert np.isin(curve.parameter.round(9), at.round(9)).all()
         for drawn, exact in (
-            ((at, y), (true.parameter, true.y)),
+            ((at, y), (true.parameter, true.tip_y_max)),
             ((at, np.log(period)), (true.parameter, np.log(true.period))),
         ):
             assert distance(np.column_stack(drawn), np.column_stack(exact)) < NEAR

@@ -18,7 +18,7 @@ from rodsweep.post.summary import show_summary
 from rodsweep.post.summary.limit_cycle import limit_cycle_summary
 from rodsweep.post.summary.selection import Selection
 from rodsweep.results.file.creation import FilePlan
-from rodsweep.results.file.store import ResultFileWriter
+from rodsweep.results.file.result_file_writer import ResultFileWriter
 from rodsweep.results.file.view import read_view
 from rodsweep.results.run import checkpoints
 from rodsweep.results.run.checkpoints import CHECKPOINT_GLOB, Checkpoints
@@ -60,17 +60,17 @@ def test_axial_drag_is_an_axis_and_1_where_it_is_not_given(tmp_path):
     points = job_of(tmp_path, config()).points
     assert points.names == ("F", "k1", "k2", "gamma3", "gamma1")
     assert points.shape == (2, 1, 2, 1, 2)
-    assert points.values(1) == {"F": 1, "k1": 100, "k2": 10, "gamma3": 0.5, "gamma1": 1}
+    assert points.parameter_values_of_point(1) == {"F": 1, "k1": 100, "k2": 10, "gamma3": 0.5, "gamma1": 1}
     alone = job_of(tmp_path, config(gamma1=None))
     assert alone.points.columns[4].tolist() == [1]
-    assert alone.resolved["parameters"]["gamma1"]["values"] == [1]
+    assert alone.resolved_config["parameters"]["gamma1"]["values"] == [1]
 
 
 def test_axial_drag_of_a_spectrum_stays_one_number(tmp_path):
     text = "task: spectrum\nparameters: {F: 1, k1: 9, k2: 1, gamma3: 0, gamma1: 2}\n"
     text += "spectrum: {longitudinal: true}\n"
     made = job_of(tmp_path, text)
-    assert made.resolved["parameters"]["gamma1"] == 2
+    assert made.resolved_config["parameters"]["gamma1"] == 2
     assert made.layout.parameters == ("F", "k1", "k2", "gamma3")
     assert made.config.parameters.constant_parameters == {"gamma1": 2}
     for gamma1, sentence in (("[1, 2]", "gamma1: .*is not a number"), ("-1", "gamma1 = -1 is not allowed")):
@@ -81,7 +81,7 @@ def test_axial_drag_of_a_spectrum_stays_one_number(tmp_path):
 def test_point_list_names_all_five_parameters(tmp_path):
     (tmp_path / "p.csv").write_text("gamma1,F,k1,k2,gamma3\n0.5,1,9,8,7\n1,2,9,8,7\n")
     points = job_of(tmp_path, "task: limit_cycle\nparameters: {points: p.csv}\n").points
-    assert points.values(0) == {"F": 1, "k1": 9, "k2": 8, "gamma3": 7, "gamma1": 0.5}
+    assert points.parameter_values_of_point(0) == {"F": 1, "k1": 9, "k2": 8, "gamma3": 7, "gamma1": 0.5}
     for table, sentence in {
         "F,k1,k2,gamma3\n1,9,8,7\n": "it must name F, k1, k2, gamma3 and gamma1",
         "F,k1,k2,gamma3,gamma1\n1,9,8,7,0\n": "line 2: gamma1 = 0.0 is not a finite number above 0",
@@ -183,7 +183,13 @@ def test_neighbours_follow_each_other_along_the_longest_axis(tmp_path):
 
 def test_limits_of_the_rod_are_points_like_others(tmp_path):
     points = job_of(tmp_path, config(k1="[100, .inf]", k2=".inf", gamma3="[0, 1]")).points
-    assert points.values(0) == {"F": 1, "k1": 100, "k2": np.inf, "gamma3": 0, "gamma1": 0.5}
+    assert points.parameter_values_of_point(0) == {
+        "F": 1,
+        "k1": 100,
+        "k2": np.inf,
+        "gamma3": 0,
+        "gamma1": 0.5,
+    }
 
 
 @pytest.mark.parametrize(("text", "sentence"), REFUSED, ids=range(len(REFUSED)))
@@ -263,9 +269,9 @@ def cycle(index, harmonics=3, samples=4, shapes=2, nodes=5, transient=6):
         status=0,
         message="",
         tip=np.arange(3.0 * samples).reshape(3, samples) if samples else None,
-        energy=np.arange(3.0 * samples).reshape(3, samples) + 100 if samples else None,
+        energy_and_powers=np.arange(3.0 * samples).reshape(3, samples) + 100 if samples else None,
         shape=np.arange(3.0 * shapes * nodes).reshape(3, shapes, nodes) if shapes else None,
-        transient=np.arange(4.0 * transient).reshape(4, transient) if transient else None,
+        transient_tip_path=np.arange(4.0 * transient).reshape(4, transient) if transient else None,
         neighbour=None,
     )
 
@@ -278,7 +284,7 @@ def nothing(status=1, **sizes):
     found.errors = CycleErrors(np.nan, np.nan, np.nan, np.nan)
     found.status, found.multiplier, found.trivial_multiplier_error = status, np.nan, np.nan
     found.modulation_ratio = np.nan
-    found.tip = found.energy = found.shape = found.multipliers = found.transient = None
+    found.tip = found.energy_and_powers = found.shape = found.multipliers = found.transient_tip_path = None
     return found
 
 
@@ -291,12 +297,14 @@ def filled_file(directory, text=None):
     """The file of a run whose last point is straight."""
     job = job_of(directory, text or config(STORED))
     attributes = {"title": "t", "task": job.config.task}
-    plan = FilePlan(job.points, job.layout, job.task.coordinates(), tuple, job.resolved, attributes, FLAGS)
+    plan = FilePlan(
+        job.points, job.layout, job.task.coordinates(), tuple, job.resolved_config, attributes, FLAGS
+    )
     store = ResultFileWriter(directory / "c.h5", plan)
     journal = Journal(store.journal_directory, 0, job.layout, plan.fingerprint)
     for index in range(job.points.count):
         outcome = nothing() if index == job.points.count - 1 else cycle(index)
-        journal.append(index, job.task.record(job.points.values(index), outcome))
+        journal.append(index, job.task.cycle_values(job.points.parameter_values_of_point(index), outcome))
     journal.close()
     store.add_journals({"finished": "now", "started": "before", "ranks": 1})
     store.close()
@@ -307,7 +315,9 @@ def filled_file(directory, text=None):
 def test_record_has_all_variables_of_its_layout_and_no_other(tmp_path, options):
     job = job_of(tmp_path, config(options))
     for outcome in (cycle(0), nothing()):
-        assert set(job.task.record(job.points.values(0), outcome)) == {v.name for v in job.layout.variables}
+        assert set(job.task.cycle_values(job.points.parameter_values_of_point(0), outcome)) == {
+            v.name for v in job.layout.variables
+        }
 
 
 def test_file_opens_in_xarray_with_named_dimensions(tmp_path):
@@ -640,8 +650,8 @@ def solve_cycle(point, request, start=None, parameter=None, workspace=None):
         trivial_multiplier_error=memory, modulation_ratio=memory,
         status=status, measures=measures, errors=errors, periods=3,
         second_state=0, subcritical_F=float("nan"),
-        elements=1, order=18, seconds=0.01, message="a message", tip=None, energy=None, shape=None,
-        neighbour=CycleStart(memory, F, k2),
+        elements=1, order=18, seconds=0.01, message="a message", tip=None, energy_and_powers=None, shape=None,
+        start_for_next_rod=CycleStart(memory, F, k2),
     )
 
 fake = ModuleType("rodsweep.solve.cycle.limit_cycle")

@@ -16,8 +16,8 @@ from rodsweep.model.rod import Rod
 from rodsweep.post.plane_curves import PlaneParameters
 from rodsweep.post.summary.cycle_curves import detached_branch_lines
 from rodsweep.results.run.checkpoints import ItemResults
-from rodsweep.solve.branch.special.detached_rows import DetachedRows, DiagramStages
-from rodsweep.solve.branch.special.folds_beyond import FoldsBeyondRange
+from rodsweep.solve.branch.special.detached_rows import DiagramStages, RowsWithDetachedBranches
+from rodsweep.solve.branch.special.folds_beyond_range import FoldsBeyondRange
 from rodsweep.solve.branch.special.row_crossing import RowCrossing
 from rodsweep.solve.branch.special.special_curve_tracer import SpecialCurveTracer
 from rodsweep.solve.branch.special.special_curves import (
@@ -26,11 +26,11 @@ from rodsweep.solve.branch.special.special_curves import (
     HalfCurve,
     TracedHalfCurve,
 )
-from rodsweep.solve.branch.special.special_point import RowSpecialPoint, SpecialKind, SpecialPoint
+from rodsweep.solve.branch.special.special_point import RowSpecialPoint, SpecialPoint, SpecialPointKind
 from rodsweep.solve.orbit.orbit import Orbit
 from rodsweep.solve.orbit.orbit_mesh import OrbitMesh
 from rodsweep.solve.orbit.symmetry import REFLECTION
-from rodsweep.tasks.diagram.detached_branches import curves_lost_beyond_values
+from rodsweep.tasks.diagram.detached_branches import lost_curve_end_count_values
 
 FORCES = [45.0, 55.0, 65.0, 70.0, 75.0]
 DIAGRAM = f"""
@@ -65,7 +65,7 @@ def test_cycles_on_a_branch_without_a_hopf_point_are_stable_states(whole):
         kinds = file["cycle_special_kind"][...].reshape(2, -1)
         at = file["cycle_special_F"][...].reshape(2, -1)
         assert file["cycle_special_count"][...].ravel()[0] == 3
-        assert kinds[0, :4].tolist() == [SpecialKind.end, SpecialKind.fold, SpecialKind.end, 0]
+        assert kinds[0, :4].tolist() == [SpecialPointKind.end, SpecialPointKind.fold, SpecialPointKind.end, 0]
         assert at[0, :3] == pytest.approx([75, FOLD, 75], abs=1e-7)
         assert file["crossing_count"][...].ravel().tolist() == [0, 2]
         assert file["cycle_detached_row"][...].tolist() == [1]
@@ -148,8 +148,8 @@ def test_rows_with_folds_beyond_the_range_do_not_depend_on_ranks_or_kills(narrow
     run = narrow("run", "narrow.yaml", "-o", "narrow2.h5", ranks=2)
     assert run.returncode == 0, run.stderr
     assert same(content(narrow.directory / "narrow2.h5"), content(narrow.directory / "narrow.h5"))
-    for stage in ("FoldsBeyondRange", "DetachedRows"):
-        patch = KILL.replace("DetachedRows", stage).replace("detached_rows", MODULES[stage])
+    for stage in ("FoldsBeyondRange", "RowsWithDetachedBranches"):
+        patch = KILL.replace("RowsWithDetachedBranches", stage).replace("detached_rows", MODULES[stage])
         assert narrow("run", "narrow.yaml", "-o", f"{stage}.h5", patch=patch).returncode == 9
         again = narrow("run", "narrow.yaml", "-o", f"{stage}.h5")
         assert again.returncode == 0, again.stderr
@@ -157,20 +157,20 @@ def test_rows_with_folds_beyond_the_range_do_not_depend_on_ranks_or_kills(narrow
         assert same(content(narrow.directory / f"{stage}.h5"), content(narrow.directory / "narrow.h5"))
 
 
-MODULES = {"FoldsBeyondRange": "folds_beyond", "DetachedRows": "detached_rows"}
+MODULES = {"FoldsBeyondRange": "folds_beyond_range", "RowsWithDetachedBranches": "detached_rows"}
 KILL = """
 import os
-from rodsweep.tasks.diagram.curves import DiagramCurves
-from rodsweep.solve.branch.special.detached_rows import DetachedRows
+from rodsweep.tasks.diagram.diagram_curve_search import DiagramCurveSolver
+from rodsweep.solve.branch.special.detached_rows import RowsWithDetachedBranches
 
-solve = DiagramCurves.solve_item
+solve = DiagramCurveSolver.solve_item
 
 def solve_or_die(self, items, item):
-    if isinstance(items, DetachedRows):
+    if isinstance(items, RowsWithDetachedBranches):
         os._exit(9)
     return solve(self, items, item)
 
-DiagramCurves.solve_item = solve_or_die
+DiagramCurveSolver.solve_item = solve_or_die
 """
 
 
@@ -260,8 +260,8 @@ LINE, ROWS = PlaneAxis("F", 0.0, 1.0), PlaneAxis("k1", 1.0, 5.0)
 def special(row, at):
     return RowSpecialPoint(
         row_index=row,
-        row_value=float(row),
-        kind=SpecialKind.fold,
+        row_parameter_value=float(row),
+        kind=SpecialPointKind.fold,
         parameter_value=at,
         period=1.0,
         tip_y_max=0.1,
@@ -274,7 +274,7 @@ def crossing(row, at):
     values = np.append(np.zeros((1 + 4 * 3) * form.unknown_count), 1.0)
     orbit = Orbit(form, REFLECTION, 4, 3, values)
     point = SpecialPoint(
-        kind=SpecialKind.fold, parameter_value=at, period=1.0, tip_y_max=0.1, error=1e-9, orbit=orbit
+        kind=SpecialPointKind.fold, parameter_value=at, period=1.0, tip_y_max=0.1, error=1e-9, orbit=orbit
     )
     return RowCrossing(row, point)
 
@@ -283,13 +283,13 @@ def half(one, last, near=(), crossings=()):
     points = tuple(
         CurvePoint(
             parameter_value=one.parameter_value,
-            row_value=row,
+            row_parameter_value=row,
             row_coordinate=(row - 1) / 4,
             error=0.0,
             period=1.0,
             tip_y_max=0.1,
         )
-        for row in (one.row_value, last)
+        for row in (one.row_parameter_value, last)
     )
     distances = dict.fromkeys(near, 0.0)
     return TracedHalfCurve(HalfCurve(points, CurveEndReason.edge), distances, tuple(crossings)).arrays()
@@ -307,8 +307,8 @@ def test_new_special_points_of_a_row_start_curves_that_lead_to_further_rows():
     assert stages.stages(results) == [first]
     results[1] = half(first.special_points[0], 1.0, [0], [crossing(3, 0.2)])
     _, rows = stages.stages(results)
-    assert isinstance(rows, DetachedRows)
-    assert [rows.row_of(item) for item in rows.items_to_solve(results)] == [3]
+    assert isinstance(rows, RowsWithDetachedBranches)
+    assert [rows.row_index_of_item(item) for item in rows.items_to_solve(results)] == [3]
     assert rows.items_to_solve(results) == [2]
 
     results[2] = {"at": np.array([0.2, 0.6])}
@@ -324,7 +324,7 @@ def test_new_special_points_of_a_row_start_curves_that_lead_to_further_rows():
     assert [start.parameter_value for start in rows.branch_starts_of_row(4)] == [0.6]
     results[5] = {"at": np.array([0.6])}
     assert not stages.stages(results)[-1].items_to_solve(results)
-    assert {row: values["at"].tolist() for row, values in stages.changed_rows(results).items()} == {
+    assert {row: values["at"].tolist() for row, values in stages.rows_solved_again(results).items()} == {
         3: [0.2, 0.6],
         4: [0.6],
     }
@@ -339,30 +339,35 @@ def test_curves_are_followed_beyond_the_range_after_all_other_stages():
     results = {0: half(first.special_points[0], 5.0, [0]), 1: half(first.special_points[0], 1.0, [0])}
     _, folds = stages.stages(results)
     assert isinstance(folds, FoldsBeyondRange)
-    assert (folds.items_to_solve(results), folds.row_of(2), folds.branch_starts_of_row(5)) == ([2], 5, ())
+    assert (folds.items_to_solve(results), folds.row_index_of_item(2), folds.branch_starts_of_row(5)) == (
+        [2],
+        5,
+        (),
+    )
     known = [crossing(5, at).special_point for at in (0.7, 1.5)]
     results[2] = folds.solve(2, lambda row: known if row == 5 else [], (0.0, 1.0))
     *_, tracer = stages.stages(results)
-    assert tracer.line_axis == wide
+    assert tracer.axis_along_row == wide
     assert [(point.row_index, point.parameter_value) for point in tracer.special_points] == [(5, 1.5)]
     results[3] = half(tracer.special_points[0], 5.0, [0])
     results[4] = half(tracer.special_points[0], 1.0, [0], [crossing(3, 1.5)])
     *_, rows = stages.stages(results)
-    assert isinstance(rows, DetachedRows)
+    assert isinstance(rows, RowsWithDetachedBranches)
     assert [start.parameter_value for start in rows.branch_starts_of_row(3)] == [1.5]
     results[5] = {"at": np.array([])}
-    # Their texts are compared, since from Python 3.13 on an error of NaN makes the rows unequal to themselves.
+    # Their texts are compared, since from Python 3.13 on an error of NaN makes the rows unequal to
+    # themselves.
     assert repr(stages.stages(results)[-1]) == repr(rows)
-    assert stages.lost_beyond_count(results) == 0
+    assert stages.count_of_curves_lost_beyond_range(results) == 0
     lost = half(tracer.special_points[0], 1.0, [0]) | {"end": np.array([float(CurveEndReason.not_followed)])}
-    assert stages.lost_beyond_count(results | {4: lost}) == 1
-    assert stages.lost_beyond_count(results | {3: TracedHalfCurve(None).arrays()}) == 1
-    ((variable, count),) = curves_lost_beyond_values(2)
+    assert stages.count_of_curves_lost_beyond_range(results | {4: lost}) == 1
+    assert stages.count_of_curves_lost_beyond_range(results | {3: TracedHalfCurve(None).arrays()}) == 1
+    ((variable, count),) = lost_curve_end_count_values(2)
     view = SimpleNamespace(variables={variable.name: count})
     (line,) = detached_branch_lines(view, PlaneParameters("F", "k1"))
     assert line.startswith("ends of curves of folds lost beyond the range: 2; rows whose branches")
     bare = SimpleNamespace(variables={})
-    assert curves_lost_beyond_values(0) == detached_branch_lines(bare, PlaneParameters("F", "k1")) == []
+    assert lost_curve_end_count_values(0) == detached_branch_lines(bare, PlaneParameters("F", "k1")) == []
     assert [curve.points[0].parameter_value for curve in stages.curves(results).curves] == [0.2]
     # A row that could not be solved again has no folds.
     assert stages.stages({**{i: results[i] for i in (0, 1)}, 2: {}})[-1] == folds
@@ -371,7 +376,7 @@ def test_curves_are_followed_beyond_the_range_after_all_other_stages():
     leaving = SpecialCurveTracer(LINE, ROWS, [special(4, 1.0)], {})
     results = {0: half(leaving.special_points[0], 5.0, [0]), 1: half(leaving.special_points[0], 1.0, [0])}
     *_, tracer = DiagramStages(leaving, of_row, wide).stages(results)
-    assert (tracer.line_axis, tracer.special_points) == (wide, leaving.special_points)
+    assert (tracer.axis_along_row, tracer.special_points) == (wide, leaving.special_points)
 
 
 def test_a_row_is_solved_again_with_all_its_crossings_and_only_for_new_ones():
@@ -390,6 +395,6 @@ def test_a_row_is_solved_again_with_all_its_crossings_and_only_for_new_ones():
     assert [start.parameter_value for start in rows.branch_starts_of_row(3)] == [0.2, 0.3, 0.8]
     # A row whose solver failed is unchanged, and its crossings start nothing else.
     results[5] = {}
-    assert stages.changed_rows(results) == {3: results[2]}
+    assert stages.rows_solved_again(results) == {3: results[2]}
     assert repr(stages.stages(results)[-1]) == repr(rows)
-    assert replace(rows, first_item=0).end_item == 1
+    assert replace(rows, first_item_number=0).end_item_number == 1

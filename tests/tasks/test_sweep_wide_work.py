@@ -20,7 +20,7 @@ from rodsweep.solve.branch.special.special_curves import (
     HalfCurve,
     TracedHalfCurve,
 )
-from rodsweep.solve.branch.special.special_point import RowSpecialPoint, SpecialKind
+from rodsweep.solve.branch.special.special_point import RowSpecialPoint, SpecialPointKind
 from rodsweep.sweep.chunk_queue import NO_WORK_LEFT, DependentItemQueue, RankReport
 
 DIAGRAM = """
@@ -36,9 +36,9 @@ HALT = """
 import pathlib, time
 from rodsweep.results.run.checkpoints import ItemResults
 import rodsweep.solve_progress as watch
-from rodsweep.sweep.stop import RankListener
+from rodsweep.sweep.stop import SolverReportListener
 
-write, hear = ItemResults.write, RankListener.__call__
+write, hear = ItemResults.write, SolverReportListener.__call__
 state = []
 
 def write_and_note(self, unit, arrays):
@@ -52,7 +52,7 @@ def hear_and_wait(self, text):
         hear(self, text)
     hear(self, text)
 
-ItemResults.write, RankListener.__call__ = write_and_note, hear_and_wait
+ItemResults.write, SolverReportListener.__call__ = write_and_note, hear_and_wait
 """
 """What every rank executes first: in the half of a curve after so many it waits for a stop."""
 
@@ -129,9 +129,10 @@ def test_two_ranks_share_the_halves_of_one_curve(whole):
     """Each waits within its first half until the other is within one."""
     patch = f"""
 import os, pathlib, time
-from rodsweep.tasks.diagram.curves import DiagramCurves
+from rodsweep.tasks.diagram.diagram_curve_search import DiagramCurveSolver
 
-solve, rank = DiagramCurves.solve_item, os.environ.get("OMPI_COMM_WORLD_RANK", os.environ.get("PMI_RANK"))
+solve = DiagramCurveSolver.solve_item
+rank = os.environ.get("OMPI_COMM_WORLD_RANK", os.environ.get("PMI_RANK"))
 
 def solve_beside_another(self, items, item):
     pathlib.Path(f"follows-{{rank}}-{{item}}").touch()
@@ -140,7 +141,7 @@ def solve_beside_another(self, items, item):
         time.sleep(0.01)
     return solve(self, items, item)
 
-DiagramCurves.solve_item = solve_beside_another
+DiagramCurveSolver.solve_item = solve_beside_another
 """
     run = whole("run", "c.yaml", "-o", "shared.h5", ranks=2, patch=patch)
     assert run.returncode == 0, run.stderr
@@ -153,12 +154,12 @@ DiagramCurves.solve_item = solve_beside_another
 @pytest.mark.long
 def test_curve_whose_solver_raises_is_none_and_the_diagram_is_finished(whole):
     patch = """
-from rodsweep.tasks.diagram.curves import DiagramCurves
+from rodsweep.tasks.diagram.diagram_curve_search import DiagramCurveSolver
 
 def broken(self, items, item):
     raise IndexError("a bug")
 
-DiagramCurves.solve_item = broken
+DiagramCurveSolver.solve_item = broken
 """
     run = whole("run", "c.yaml", "-o", "broken.h5", patch=patch)
     assert run.returncode == 0, run.stderr
@@ -177,8 +178,8 @@ def boundaries():
     special = [
         RowSpecialPoint(
             row_index=row,
-            row_value=float(row),
-            kind=SpecialKind.fold,
+            row_parameter_value=float(row),
+            kind=SpecialPointKind.fold,
             parameter_value=at,
             period=1.0,
             tip_y_max=0.1,
@@ -197,19 +198,19 @@ def half(items, item):
     points = tuple(
         CurvePoint(
             parameter_value=one.parameter_value,
-            row_value=row,
+            row_parameter_value=row,
             row_coordinate=(row - 1) / 4,
             error=0.0,
             period=1.0,
             tip_y_max=0.1,
         )
-        for row in (one.row_value, last)
+        for row in (one.row_parameter_value, last)
     )
     near = {
         i: 0.0 for i, other in enumerate(items.special_points) if other.parameter_value == one.parameter_value
     }
-    low, high = sorted((one.row_value, last))
-    near = {i: d for i, d in near.items() if low <= items.special_points[i].row_value <= high}
+    low, high = sorted((one.row_parameter_value, last))
+    near = {i: d for i, d in near.items() if low <= items.special_points[i].row_parameter_value <= high}
     return TracedHalfCurve(HalfCurve(points, CurveEndReason.edge), near).arrays()
 
 

@@ -18,14 +18,14 @@ from rodsweep.discretization.elements.resolution import Resolution
 from rodsweep.post.plane_curves import PlaneParameters
 from rodsweep.post.summary import POINT_NOUNS, show_summary
 from rodsweep.post.summary.cycle_curves import cycle_curve_lines, fold_curve_extremum_lines
-from rodsweep.results.file.creation import FilePlan, FinalVariables
-from rodsweep.results.file.store import ResultFileWriter
+from rodsweep.results.file.creation import FilePlan, FinalAdditions
+from rodsweep.results.file.result_file_writer import ResultFileWriter
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS
 from rodsweep.results.layouts.variables import Variable
 from rodsweep.results.run.journal import Journal
 from rodsweep.solve.branch.special.special_curves import CurveEndReason, CurvePoint, SpecialPointCurve
-from rodsweep.solve.branch.special.special_point import SpecialKind
+from rodsweep.solve.branch.special.special_point import SpecialPointKind
 from rodsweep.solve.changes.status import ThresholdStatus
 from rodsweep.solve.continuation.curve_search import TracedCurves
 from rodsweep.solve.spectrum.search import Spectrum
@@ -72,7 +72,7 @@ def plan_of(job):
         job.layout,
         job.task.coordinates(),
         job.task.variables_from_config,
-        job.resolved,
+        job.resolved_config,
         {"title": "t", "task": job.config.task},
         ((0, "ok"), (5, "failed")),
     )
@@ -95,9 +95,9 @@ def search(index=0, **more):
         search_result=SimpleNamespace(
             thresholds=found,
             open_range=(np.nan, np.nan),
-            proved=True,
-            evaluation_count=100,
-            solve_count=7,
+            is_proved=True,
+            determinant_evaluation_count=100,
+            eigenvalue_solve_count=7,
             unstable_at_end=0,
         ),
         seconds=0.25,
@@ -139,7 +139,7 @@ def of_modes(number, nodes):
         transient_time=0.5,
         growth_error=1e-9,
     )
-    return SimpleNamespace(status=0, spectrum=spectrum, vectors=vectors, growth=growth, seconds=0.25)
+    return SimpleNamespace(status=0, spectrum=spectrum, mode_vectors=vectors, growth=growth, seconds=0.25)
 
 
 def record_of(task, index=0):
@@ -222,9 +222,9 @@ def test_kinds_of_crossings_have_the_numbers_of_the_solver():
 
 def test_classes_of_a_phase_diagram_have_the_numbers_of_the_solver():
     from rodsweep.results.layouts.phase_diagram import STABILITY_CLASSES
-    from rodsweep.solve.changes.diagram.rows import RodClass
+    from rodsweep.solve.changes.diagram.rows import StabilityClass
 
-    assert {int(motion): motion.name for motion in RodClass} == {
+    assert {int(motion): motion.name for motion in StabilityClass} == {
         v: name for v, name in STABILITY_CLASSES if v >= 0
     }
 
@@ -275,7 +275,7 @@ def test_variables_added_when_a_run_ends_have_their_own_dimensions(tmp_path, cou
         (Variable("curve_F", "<f8", np.nan, "k3/L^2", "F", ("curve_point",)), np.arange(count) / 2),
         (Variable("fold_F", "<f8", np.nan, "k3/L^2", "F", ("fold",)), np.array([3.5])),
     ]
-    store.finish({"finished": "now"}, FinalVariables(curve))
+    store.finish({"finished": "now"}, FinalAdditions(curve))
     store.close()
     with h5py.File(path) as file:
         assert dimensions(file["curve_F"]) == dimensions(file["curve_number"]) == ("curve_point",)
@@ -347,16 +347,21 @@ def test_check_says_what_every_task_would_compute(command, task, words):
 
 def test_a_curve_of_one_point_has_the_reasons_of_both_ends():
     point = CurvePoint(
-        parameter_value=60.0, row_value=150.0, row_coordinate=0.5, error=1e-7, period=0.02, tip_y_max=0.3
+        parameter_value=60.0,
+        row_parameter_value=150.0,
+        row_coordinate=0.5,
+        error=1e-7,
+        period=0.02,
+        tip_y_max=0.3,
     )
     curve = SpecialPointCurve(
-        SpecialKind.fold,
+        SpecialPointKind.fold,
         (point,),
         (CurveEndReason.edge, CurveEndReason.not_followed),
         (None, None),
     )
     filled = fold_and_torus_curve_values(
-        TracedCurves((curve,), max_seed_distance_in_rows=0.0, untraced_seed_count=0), PLANE
+        TracedCurves((curve,), max_seed_distance_per_row_length=0.0, untraced_seed_count=0), PLANE
     )
     view = SimpleNamespace(variables={variable.name: values for variable, values in filled})
     (line,) = cycle_curve_lines(view, PLANE)
@@ -373,18 +378,18 @@ def test_an_extremum_of_the_row_parameter_along_a_curve_of_folds_is_stored_and_s
     points = tuple(
         CurvePoint(
             parameter_value=at,
-            row_value=k1,
+            row_parameter_value=k1,
             row_coordinate=k1 - 133,
             error=1e-6,
             period=0.02,
             tip_y_max=0.1,
-            row_extremum_error=4e-7 if k1 == min(places, key=lambda place: place[1])[1] else 0.0,
+            row_parameter_error_at_extremum=4e-7 if k1 == min(places, key=lambda place: place[1])[1] else 0.0,
         )
         for at, k1 in places
     )
-    curves = [SpecialPointCurve(SpecialKind.fold, points[2:], (CurveEndReason.edge,) * 2, (None, None))]
+    curves = [SpecialPointCurve(SpecialPointKind.fold, points[2:], (CurveEndReason.edge,) * 2, (None, None))]
     curves.append(replace(curves[0], points=points))
-    traced = TracedCurves(tuple(curves), max_seed_distance_in_rows=0.0, untraced_seed_count=0)
+    traced = TracedCurves(tuple(curves), max_seed_distance_per_row_length=0.0, untraced_seed_count=0)
     filled = fold_curve_extremum_values(traced, PLANE)
     view = SimpleNamespace(variables={variable.name: values for variable, values in filled})
     assert {name: values.tolist() for name, values in view.variables.items()} == {
@@ -400,7 +405,9 @@ def test_an_extremum_of_the_row_parameter_along_a_curve_of_folds_is_stored_and_s
         "F = 79.004070 (+- 1e-06); "
     )
     assert fold_curve_extremum_values(replace(traced, curves=(curves[0],)), PLANE) == []
-    unlocated = replace(curves[0], points=(points[0], replace(points[2], row_extremum_error=np.nan)))
+    unlocated = replace(
+        curves[0], points=(points[0], replace(points[2], row_parameter_error_at_extremum=np.nan))
+    )
     ((variable, count),) = fold_curve_extremum_values(replace(traced, curves=(unlocated,) * 2), PLANE)
     assert (variable.name, int(count)) == ("cycle_extrema_unlocated", 2)
     (line,) = fold_curve_extremum_lines(SimpleNamespace(variables={variable.name: count}), PLANE)
@@ -410,12 +417,19 @@ def test_an_extremum_of_the_row_parameter_along_a_curve_of_folds_is_stored_and_s
 
 def test_a_row_that_a_curve_of_folds_meets_without_a_fold_of_its_own_is_named():
     points = tuple(
-        CurvePoint(parameter_value=at, row_value=k1, row_coordinate=x, error=1e-7, period=0.02, tip_y_max=0.3)
+        CurvePoint(
+            parameter_value=at,
+            row_parameter_value=k1,
+            row_coordinate=x,
+            error=1e-7,
+            period=0.02,
+            tip_y_max=0.3,
+        )
         for at, k1, x in ((60.0, 150.0, 0.5), (70.0, 200.0, 1.0))
     )
-    curve = SpecialPointCurve(SpecialKind.fold, points, (CurveEndReason.edge,) * 2, (None, None))
+    curve = SpecialPointCurve(SpecialPointKind.fold, points, (CurveEndReason.edge,) * 2, (None, None))
     filled = fold_and_torus_curve_values(
-        TracedCurves((curve,), max_seed_distance_in_rows=0.0, untraced_seed_count=0), PLANE
+        TracedCurves((curve,), max_seed_distance_per_row_length=0.0, untraced_seed_count=0), PLANE
     )
     nan = float("nan")
     rows = {
@@ -426,7 +440,7 @@ def test_a_row_that_a_curve_of_folds_meets_without_a_fold_of_its_own_is_named():
         variables={variable.name: values for variable, values in filled} | {"F": np.array([0.0, 100.0])},
         point_columns={"k1": np.array([100.0, 150.0, 160.0, 175.0, 200.0])},
         status_names=np.array(["ok", "ok", "failed", "ok", "ok"]),
-        by_point=rows.__getitem__,
+        flattened_by_point=rows.__getitem__,
     )
     _, line = cycle_curve_lines(view, PLANE)
     assert line.startswith("this curve crosses the row k1 = 175 between F = 60 and 70, but no branch of")
@@ -465,7 +479,8 @@ def solve_thresholds(rod, request):
     status = ThresholdStatus.list_full if k1 == 14 else ThresholdStatus.ok
     found = (Value(value=k1 / 2, kind=2, frequency=k2, growth_rate=0.0, error=1e-12, unstable_after=2),)
     found = real.ThresholdSearchResult(
-        thresholds=found, unstable_at_end=2, proved=True, evaluation_count=3, solve_count=4
+        thresholds=found, unstable_at_end=2, is_proved=True, determinant_evaluation_count=3,
+        eigenvalue_solve_count=4,
     )
     return real.Thresholds(
         status=status, search_result=found, end=request.F_max, seconds=0.01, message="a message"

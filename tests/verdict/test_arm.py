@@ -62,7 +62,7 @@ def test_drag_by_hand():
     assert cox_drag(20) == pytest.approx((2 * math.pi / 2.188879, 4 * math.pi / 3.188879), rel=1e-6)
     assert gray_hancock_drag(20) == pytest.approx((2 * math.pi / 4.575174, 4 * math.pi / 5.575174), rel=1e-6)
     assert lighthill_drag(20) == pytest.approx((2 * math.pi / 1.280934, 4 * math.pi / 1.780934), rel=1e-6)
-    rotational = [drag.rotational for drag in drag_estimates(1.0, 20.0, 1.0, 1.0)]
+    rotational = [drag.rotational_factor for drag in drag_estimates(1.0, 20.0, 1.0, 1.0)]
     assert rotational == pytest.approx([2 * math.pi, *2 * [math.pi, 4 * math.pi]])
 
 
@@ -90,7 +90,7 @@ def test_pressure_on_a_tube_pushes_on_the_whole_face_of_its_closed_tip():
     assert rod.k1 == pytest.approx(4 * 0.01 / 34e-6)
     assert rod.tip_force == pytest.approx(2000 * math.pi * 25e-6)
     assert rod.F * rod.pressure_scale == pytest.approx(2000)
-    assert rod.mass_per_length_at(rod.shape.base) == pytest.approx(math.pi * (16e-6 * 1100 + 9e-6 * 1000))
+    assert rod.mass_per_length_at(rod.geometry.base) == pytest.approx(math.pi * (16e-6 * 1100 + 9e-6 * 1000))
     crushing = 1e5 * 16 / 25
     assert arm(inner_radius="3 mm", pressure=0.999 * crushing).k1 > 0
     with pytest.raises(
@@ -109,7 +109,7 @@ def test_least_rotational_drag_is_the_torque_of_its_flow():
     traction = [(flow(a + step, angle) - flow(a - step, angle)) / (2 * step) for angle in phi]
     lever = [a * math.cos(angle) for angle in phi]
     torque = sum(t * x for t, x in zip(traction, lever, strict=True)) * a * 2 * math.pi / 64
-    assert torque == pytest.approx(drag_estimates(1.0, 20.0, a, a)[1].rotational, rel=1e-6)
+    assert torque == pytest.approx(drag_estimates(1.0, 20.0, a, a)[1].rotational_factor, rel=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -209,9 +209,9 @@ def test_bad_quantities_are_refused_in_one_sentence(changes, sentence):
 def test_silicone_arm_is_just_below_flutter():
     """A filament's F** = 37.695 would be 2.356 kPa, shear and drag lower it; frequencies as 1/viscosity."""
     rod = arm(viscosity=THICK)
-    flutter = rod.flutter.first_forces(ThresholdKind.hopf)
+    flutter = rod.flutter.first_force_range(ThresholdKind.hopf)
     assert rod.F < flutter.low < flutter.high < 37.695
-    assert flutter.for_every_drag
+    assert flutter.exists_for_every_drag
     verdict = rod.report().verdict
     assert verdict[0] == "2 kPa is 4 to 9 % below flutter, at 2.09 to 2.21 kPa: the arm stays straight."
     assert verdict[1] == "Above, the straight arm gives way and begins to beat at 0.0365 to 0.116 Hz."
@@ -219,7 +219,7 @@ def test_silicone_arm_is_just_below_flutter():
 
 def test_frequency_follows_from_tau2():
     rod = arm()
-    for drag, found in zip(rod.drags, rod.flutter.by_drag, strict=True):
+    for drag, found in zip(rod.base_drag_estimates, rod.flutter.by_drag, strict=True):
         rate = found.first_threshold(ThresholdKind.hopf).frequency
         assert found.first_frequency(ThresholdKind.hopf) == pytest.approx(
             abs(rate) / (2 * math.pi * rod.tau2_with(drag))
@@ -246,8 +246,8 @@ def test_thresholds_inside_the_range_of_drag_lie_in_that_of_forces():
     from rodsweep.verdict.flutter import SEARCH_REQUEST
 
     rod = arm()
-    flutter = rod.flutter.first_forces(ThresholdKind.hopf)
-    all_gamma3 = [rod.gamma3_with(drag) for drag in rod.drags]
+    flutter = rod.flutter.first_force_range(ThresholdKind.hopf)
+    all_gamma3 = [rod.gamma3_with(drag) for drag in rod.base_drag_estimates]
     low, high = min(all_gamma3), max(all_gamma3)
     for share in (0.1, 0.3, 0.5, 0.7, 0.9):
         found = solve_thresholds(
@@ -311,7 +311,7 @@ def test_numbers_need_no_solver_and_help_no_units():
 def found(tau2, *changes, end=200.0):
     """Changes of an arm that are given: (F, kind, unstable modes after it)."""
     crossings = tuple(Threshold(F, kind, 10.0, 0.0, 0.0, after) for F, kind, after in changes)
-    transitions = ThresholdSearchResult(thresholds=crossings, proved=True)
+    transitions = ThresholdSearchResult(thresholds=crossings, is_proved=True)
     return ThresholdsWithDrag(tau2=tau2, thresholds=Thresholds(status=OK, search_result=transitions, end=end))
 
 
@@ -375,7 +375,7 @@ def test_the_loads_between_which_a_disturbed_arm_oscillates_are_told():
 
 def test_thresholds_without_proof_are_told_with_the_doubt():
     known = found(1.0, (20.0, ThresholdKind.hopf, 2))
-    unproved = replace(known.thresholds.search_result, proved=False)
+    unproved = replace(known.thresholds.search_result, is_proved=False)
     thresholds = replace(
         known.thresholds,
         search_result=unproved,
@@ -395,7 +395,7 @@ def test_an_inaccurate_threshold_matters_only_if_the_verdict_uses_it(kind, certa
     inaccurate = tuple(replace(c, error=0.1 if c.value == 20.0 else 0.0) for c in known.thresholds.thresholds)
     thresholds = replace(
         known.thresholds,
-        search_result=ThresholdSearchResult(thresholds=inaccurate, proved=True),
+        search_result=ThresholdSearchResult(thresholds=inaccurate, is_proved=True),
         status=ThresholdStatus.accuracy_not_reached,
     )
     told = verdict(arm(viscosity=1e3), replace(known, thresholds=thresholds))
@@ -427,7 +427,7 @@ def test_a_search_that_ended_early_limits_the_verdict_with_every_drag(monkeypatc
     whole = found(1.0, (21.0, ThresholdKind.hopf, 2), (30.0, ThresholdKind.restabilization, 0))
 
     def forces(arm, drag, end=200.0):
-        return whole if drag == arm.drags[0] else ThresholdsWithDrag(tau2=2.0, thresholds=early)
+        return whole if drag == arm.base_drag_estimates[0] else ThresholdsWithDrag(tau2=2.0, thresholds=early)
 
     monkeypatch.setattr(flutter, "thresholds_with_drag", forces)
     searched = flutter.thresholds_over_drags(arm(viscosity=1e3))

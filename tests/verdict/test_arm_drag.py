@@ -22,7 +22,7 @@ from rodsweep.results.file.view import read_view
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
 from rodsweep.sweep.points.arm_grid import grid_of_arms
 from rodsweep.sweep.points.flutter_forces import FlutterForce
-from rodsweep.tasks.arm.point_solver import rod_numbers
+from rodsweep.tasks.arm.arm_points import numbers_of_distinct_rods
 from rodsweep.verdict.flutter import ThresholdKind
 from rodsweep.verdict.relative_load import first_hopf_force, rods_by_plane
 
@@ -269,8 +269,8 @@ def test_points_of_different_rods_are_told_apart():
         job_of_tree(config_tree("thresholds", {"arm": arm})).points
         for arm in (lengths | {"viscosity": ["20 Pa s", "30 Pa s"]}, lengths)
     ]
-    assert np.diff(rod_numbers(points[0])).astype(bool).tolist() == [False, True, False]
-    assert rod_numbers(points[1]) is None
+    assert np.diff(numbers_of_distinct_rods(points[0])).astype(bool).tolist() == [False, True, False]
+    assert numbers_of_distinct_rods(points[1]) is None
 
 
 def test_a_load_that_crushes_the_arm_at_some_points_only_is_no_refusal(command):

@@ -63,7 +63,7 @@ def test_flutter_of_a_cone_is_that_of_the_rod_converted_by_hand():
 def test_report_on_a_cone():
     arm = rs.Arm(**CONE, pressure="5 kPa", density_difference="2 kg/m^3")
     report = arm.report()
-    flutter = arm.flutter.first_forces(ThresholdKind.hopf)
+    flutter = arm.flutter.first_force_range(ThresholdKind.hopf)
     assert flutter.high < arm.F
     assert report.verdict[0].startswith("5 kPa is ")
     assert report.verdict[0].endswith(": the arm beats.")
@@ -77,8 +77,8 @@ def test_the_law_of_rubber_moves_the_threshold_and_is_not_crushed():
     linear, rubber = rs.Arm(**SEGMENTED), rs.Arm(**SEGMENTED | RUBBER, pressure="200 kPa")
     assert rubber.crushing_force == math.inf
     assert rubber.k1 < rubber.F
-    first = rs.Arm(**SEGMENTED | RUBBER).flutter.first_forces(ThresholdKind.hopf)
-    assert first.low > 1.02 * linear.flutter.first_forces(ThresholdKind.hopf).low
+    first = rs.Arm(**SEGMENTED | RUBBER).flutter.first_force_range(ThresholdKind.hopf)
+    assert first.low > 1.02 * linear.flutter.first_force_range(ThresholdKind.hopf).low
     report = rs.Arm(**SEGMENTED | RUBBER, pressure="1 kPa").report()
     assert "law of rubber includes large compression." in " ".join(str(report).split())
     assert [row.name for row in report.rows[:3]] == ["segment 1", "segment 2", "law"]
@@ -129,7 +129,7 @@ SHAPES = {
 @pytest.mark.parametrize("shape", SHAPES.values(), ids=SHAPES)
 def test_cycles_of_an_arm_are_those_of_its_rod(shape):
     """In SI units by the arm, and without dimension by the rod that it is."""
-    flutter = rs.Arm(**shape).flutter.first_forces(ThresholdKind.hopf).high
+    flutter = rs.Arm(**shape).flutter.first_force_range(ThresholdKind.hopf).high
     arm = rs.Arm(**shape)
     arm = arm.replace(pressure=f"{1.2 * flutter * arm.pressure_scale:.6g} Pa")
     found, rod = arm.cycle(accuracy=1e-6), rs.Rod(arm=arm).cycle(accuracy=1e-6)

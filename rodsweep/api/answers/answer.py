@@ -16,8 +16,8 @@ from ...post.tables.column import Column, column_of
 from ...post.tables.table_names import POINTS_TABLE
 from ...post.tables.tables import Tables
 from ...results.layouts import layout_of
-from ..solved import Result
-from .frames import data_frame_of, series_of
+from ..task_results import Result
+from .data_frames import data_frame_of, series_of
 from .printing import PrintedAnswer, brief_html, brief_text, heading_lines, whole_html, whole_text
 
 EIGENVALUE_VARIABLES = ("growth_rate", "frequency")
@@ -26,7 +26,11 @@ UNPRINTED_VARIABLES = ("status", "seconds")
 """Variables that a printed answer omits: the heading has the status, and the time depends on the machine."""
 SI_UNITS_OF_ARM_VARIABLES = ("Pa", "N", "Hz", "s", "1/s", "m", "J", "W")
 """SI units of the variables of an arm. Variables with other units are in units of the rod."""
-TOTAL_VARIABLES = {"crossings": "crossing_count", "special_points": "special_count", "cycles": "point_count"}
+FOUND_COUNT_VARIABLES = {
+    "crossings": "crossing_count",
+    "special_points": "special_count",
+    "cycles": "point_count",
+}
 """For each list, by name: the variable with the number of items found, including items that are not stored.
 """
 LISTS_PRINTED_IN_FULL = ("modes", "crossings", "special_points", "harmonics", "multipliers")
@@ -89,8 +93,8 @@ class Answer:
     def status(self) -> StrEnum:
         """Name of the status of the solve, a member of the enumeration of all statuses of the task."""
         view = self._tables.view
-        statuses = _statuses(view.task, tuple(view.flags.values()))
-        return statuses(view.flags[int(view.variables["status"].item())])
+        statuses = _statuses(view.task, tuple(view.status_flags.values()))
+        return statuses(view.status_flags[int(view.variables["status"].item())])
 
     @property
     def sentence(self) -> str:
@@ -111,7 +115,7 @@ class Answer:
     @property
     def lists(self) -> tuple[str, ...]:
         """Names of the lists. Every list is an attribute of the answer."""
-        return self._tables.contents.tables[1:]
+        return self._tables.contents.table_names[1:]
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_"):
@@ -120,13 +124,13 @@ class Answer:
         if name in self.lists:
             columns = tables.list_columns(name)
             return data_frame_of(
-                columns, columns[0].name if len(tables.contents.dimensions(name)) == 1 else None
+                columns, columns[0].name if len(tables.contents.list_dimensions(name)) == 1 else None
             )
         for variable in tables.contents.point_variables:
             if variable.name == name:
-                return _scalar(column_of(variable, np.ravel(tables.view.variables[name])))
-        for list_name, variables in tables.contents.lists.items():
-            if name in (*(v.name for v in variables), *tables.contents.dimensions(list_name)):
+                return _value_of_single_row(column_of(variable, np.ravel(tables.view.variables[name])))
+        for list_name, variables in tables.contents.variables_by_list.items():
+            if name in (*(v.name for v in variables), *tables.contents.list_dimensions(list_name)):
                 return self._list_values(list_name, name)
         if name == "eigenvalues" and EIGENVALUE_VARIABLES[0] in tables.view.variables:
             return self.growth_rate + 1j * self.frequency
@@ -137,14 +141,14 @@ class Answer:
 
     def _list_values(self, table: str, name: str) -> np.ndarray:
         """Values of a variable or a coordinate of a list, with one entry per item of the list."""
-        dimensions = self._tables.contents.dimensions(table)
+        dimensions = self._tables.contents.list_dimensions(table)
         (column,) = (column for column in self._tables.list_columns(table) if column.name == name)
         if name in dimensions[1:]:
             return np.asarray(self.data[name].values)
         is_count = column.values.dtype.kind in "iu" and not column.flag_meanings
         values = np.asarray(series_of(column))
-        if is_count and column.absent.any():
-            values = np.where(column.absent, np.nan, column.values)
+        if is_count and column.missing_mask.any():
+            values = np.where(column.missing_mask, np.nan, column.values)
         inner_sizes = [self.data.sizes[dimension] for dimension in dimensions[1:]]
         return values[:: prod(inner_sizes)] if name == dimensions[0] else values.reshape(-1, *inner_sizes)
 
@@ -163,16 +167,16 @@ class Answer:
 
         `rs.table(answer, NAME)` returns the list NAME, with the parameters of the rod, as a DataFrame.
         """
-        printed_answer = self._printed()
+        printed_answer = self._printed_answer()
         return FullListing(whole_text(printed_answer), whole_html(printed_answer))
 
     def __repr__(self) -> str:
-        return brief_text(self._printed())
+        return brief_text(self._printed_answer())
 
     def _repr_html_(self) -> str:
-        return brief_html(self._printed())
+        return brief_html(self._printed_answer())
 
-    def _printed(self) -> PrintedAnswer:
+    def _printed_answer(self) -> PrintedAnswer:
         tables = self._tables
         rod = SingleRodResult(tables.view)
         is_special = int(self.data["status"]) != 0  # a special outcome, such as a rod at rest
@@ -187,17 +191,17 @@ class Answer:
         hidden = unlisted | {name for name, rows in row_counts.items() if is_special and not rows}
         totals = {
             name: int(self.data[name_of_total])
-            for name, name_of_total in TOTAL_VARIABLES.items()
+            for name, name_of_total in FOUND_COUNT_VARIABLES.items()
             if name_of_total in self.data
         }
         totals |= {"modes": self.data.sizes["mode"]} if "mode" in self.data.sizes else {}
         return PrintedAnswer(
-            rod=rod,
+            result=rod,
             heading=heading_lines(rod, self.rod, self.status, self.sentence, self.message),
             headline=HEADLINES[str(self.data.attrs["task"])],
-            numbers=tuple(column for column in columns if not column.absent[0]),
-            absent_names=() if is_special else tuple(c.name for c in columns if c.absent[0]),
-            totals=totals,
+            single_value_columns=tuple(column for column in columns if not column.missing_mask[0]),
+            names_without_value=() if is_special else tuple(c.name for c in columns if c.missing_mask[0]),
+            found_counts=totals,
             lists={name: own_columns for name, own_columns in lists.items() if name not in hidden},
             row_counts={
                 name_of_total: rows
@@ -221,10 +225,10 @@ def _is_dimensionless(column: Column) -> bool:
     return column.unit not in SI_UNITS_OF_ARM_VARIABLES
 
 
-def _scalar(column: Column) -> float | int | bool | str | None:
+def _value_of_single_row(column: Column) -> float | int | bool | str | None:
     """The value of a column with one row. None stands for a missing text or count, NaN for a missing real
     number."""
-    if column.absent[0] and column.values.dtype.kind != "f":
+    if column.missing_mask[0] and column.values.dtype.kind != "f":
         return None
     value = series_of(column)[0]
     return value if value is None or isinstance(value, str) else value.item()

@@ -21,7 +21,7 @@ from ...post.figures.request import FIGURE_KINDS, ROOT_CHOICES, CycleShapeSolver
 from ...results.file.view import ResultView
 from ...solve.solve_lock import one_at_a_time
 from ...tasks.cycle_shapes import with_shapes
-from ..dataset import named_file_path
+from ..dataset import require_file_path
 from .answer import Answer
 from .tabling import view_of_result
 
@@ -62,7 +62,7 @@ def _at_argument_text(match: re.Match[str]) -> str:
     )
 
 
-def naming_python_arguments(function: Callable[P, R]) -> Callable[P, R]:
+def with_python_argument_names(function: Callable[P, R]) -> Callable[P, R]:
     """Decorator: an InputError of the function names the arguments of `rs.plot` instead of command-line
     options."""
 
@@ -88,7 +88,7 @@ class FigureOptions(TypedDict, total=False):
     style: str | None
 
 
-def _require_allowed_look(look: Mapping[str, object]) -> None:
+def _require_valid_figure_options(look: Mapping[str, object]) -> None:
     """Raises InputError for an unknown option of the appearance, and for a title that is not a bool."""
     for name in look:
         if name not in FigureOptions.__annotations__:
@@ -105,15 +105,15 @@ class CachedShapeSolver:
     function that computes the shapes."""
 
     solve: CycleShapeSolver = with_shapes
-    solved: dict[tuple[int, ...], ResultView] = field(default_factory=dict)
+    views_by_point_numbers: dict[tuple[int, ...], ResultView] = field(default_factory=dict)
     """Views with shapes, by the numbers of the solved points, which are counted from 1."""
 
     def __call__(self, view: ResultView, numbers: Sequence[int]) -> ResultView:
         """A copy of the view with the shapes of the cycles at the points `numbers`, counted from 1."""
         key = tuple(numbers)
-        if key not in self.solved:
-            self.solved[key] = self.solve(view, numbers)
-        return self.solved[key]
+        if key not in self.views_by_point_numbers:
+            self.views_by_point_numbers[key] = self.solve(view, numbers)
+        return self.views_by_point_numbers[key]
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,11 +133,11 @@ class Picture:
 
     @one_at_a_time
     @refusing_wrong_arguments(SAVE_PICTURE_EXAMPLE)
-    @naming_python_arguments
+    @with_python_argument_names
     def save(self, path: str | Path) -> str:
         """Draws the figure into a file (.png, .pdf, .svg; .gif or .mp4 for an animation) and returns a
         sentence about the figure."""
-        return draw(self.views, named_file_path(path, SAVE_PICTURE_EXAMPLE), **self.choices)
+        return draw(self.views, require_file_path(path, SAVE_PICTURE_EXAMPLE), **self.choices)
 
     @one_at_a_time
     @refusing_wrong_arguments("picture.figure()")
@@ -166,7 +166,7 @@ def _is_point_number(value: object) -> bool:
 
 @one_at_a_time
 @refusing_wrong_arguments(PLOT_EXAMPLE)
-@naming_python_arguments
+@with_python_argument_names
 def plot(
     data: Drawable | Sequence[Drawable],
     output: str | Path | None = None,
@@ -181,7 +181,7 @@ def plot(
     results of limit_cycle, thresholds or spectrum are drawn into one figure. output: file to write. roots,
     what, points, at, look: the options of `rodsweep plot`; points are numbered from 1. Raises InputError for
     invalid options and if there is nothing to draw."""
-    _require_allowed_look(look)
+    _require_valid_figure_options(look)
     for name, choice, allowed in (("roots", roots, ROOT_CHOICES), ("what", what, FIGURE_KINDS)):
         if choice is not None and not (isinstance(choice, str) and choice in allowed):
             raise InputError(f"{name} = {short_repr(choice)} is not allowed; choose {', '.join(allowed)}")
@@ -197,7 +197,7 @@ def plot(
     views = [slice_at_values(view_of_result(item, PLOT_EXAMPLE), values) for item in views_or_answers]
     choices: dict[str, Any] = {"roots": roots, "what": what, "points": tuple(map(int, point_list))}
     choices |= {"look": FigureLook(**look), "shapes": CachedShapeSolver()}
-    file = None if output is None else named_file_path(output, PLOT_EXAMPLE)
+    file = None if output is None else require_file_path(output, PLOT_EXAMPLE)
     suffix = ".gif" if what == "animation" else ".png"
     with TemporaryDirectory(prefix="rodsweep-") as folder:
         # A file in the format of the display is the display: the figure is drawn once.

@@ -16,7 +16,7 @@ from ...post.tables.alignment import (
     COLUMN_GAP,
     LINE_WIDTH,
     RowCells,
-    column_cells,
+    aligned_column_cells,
     rows_with_prose,
     table_blocks,
     wrap_cell_text,
@@ -26,9 +26,9 @@ from ...wording import counted
 
 MAX_BRIEF_LINES = 11
 """Maximum number of lines of the short text of an answer. A long heading may exceed the maximum."""
-MIN_ROWS = 3
+MIN_PRINTED_ROWS = 3
 """Minimum number of printed numbers, or printed rows of a list, whatever the length of the heading."""
-PROOF_WORDS = ("not certified", "certified")
+CERTIFIED_TEXTS = ("not certified", "certified")
 """Texts for the values 0 and 1 of the variable certified."""
 ERROR_SEPARATOR = "+-"
 """Sign between a number and its error."""
@@ -38,22 +38,22 @@ ERROR_SEPARATOR = "+-"
 class PrintedAnswer:
     """Everything that the text or HTML of an answer contains."""
 
-    rod: SingleRodResult
+    result: SingleRodResult
     """Numbers and lists of the answer, with the digits to print."""
     heading: tuple[str, ...]
     """Lines with the result in a sentence, the rod, and the meaning of the status."""
     headline: Headline
     """Main numbers and main list of the task."""
-    numbers: tuple[Column, ...]
+    single_value_columns: tuple[Column, ...]
     """Variables with a single value, as columns with one row."""
-    absent_names: tuple[str, ...]
+    names_without_value: tuple[str, ...]
     """Names of the variables that have no value for this rod; empty unless the status is 0, that is,
     success."""
     lists: Mapping[str, tuple[Column, ...]]
     """Columns of each list printed in full, by name of the list; the first column numbers the items."""
     row_counts: Mapping[str, int]
     """Number of rows of each list that is not printed in full, by name of the list."""
-    totals: Mapping[str, int]
+    found_counts: Mapping[str, int]
     """Number of items found, including items that are not stored, by name of the list; for modes, the number
     of requested modes."""
 
@@ -62,8 +62,8 @@ class PrintedAnswer:
         """Yields the lines below the tables: names of lists not printed, and of variables without a value."""
         if self.row_counts:
             yield "; ".join(f"{name}: {counted(rows, 'row')}" for name, rows in self.row_counts.items())
-        if self.absent_names:
-            yield f"none: {', '.join(self.absent_names)}"
+        if self.names_without_value:
+            yield f"none: {', '.join(self.names_without_value)}"
 
 
 def heading_lines(
@@ -77,19 +77,19 @@ def heading_lines(
     task = rod.view.task
     meaning = "; ".join(filter(None, (sentence, message)))
     answer = HEADLINES[task].sentence(rod)
-    certified = rod.count("certified")
-    proof_text = "" if certified is None else f", {PROOF_WORDS[certified]}"
+    certified = rod.integer_value("certified")
+    proof_text = "" if certified is None else f", {CERTIFIED_TEXTS[certified]}"
     if not answer:
         return f"{task}: {meaning}", f"{name}, {task}: {status}"
     caveat = validity_caveat(rod.view.variables)
-    if caveat and rod.count("model_applies") == Validity.does_not_apply:
+    if caveat and rod.integer_value("model_applies") == Validity.does_not_apply:
         answer = f"if the model applied: {answer}"
     return *filter(None, (caveat, answer)), f"{name}, {task}: {status}{proof_text}", meaning
 
 
 def brief_text(printed: PrintedAnswer) -> str:
     """Short text of an answer, about ten lines: the heading, the main numbers and the main list."""
-    lines = [*_folded_heading(printed), *_number_lines(printed)]
+    lines = [*_wrapped_heading(printed), *_number_lines(printed)]
     remaining_line = _full_listing_hint(printed)
     lines += _brief_list(printed, MAX_BRIEF_LINES - len(lines) - remaining_line.count("\n") - 1)
     return "\n".join([*lines, remaining_line])
@@ -110,14 +110,20 @@ def brief_html(printed: PrintedAnswer) -> str:
 def whole_text(printed: PrintedAnswer) -> str:
     """Long text of an answer: the heading, every number with its unit and meaning, the lists that are printed
     in full, and the numbers of rows of all other lists."""
-    numbers_text = "\n".join(["numbers", *rows_with_prose(_number_rows(printed))]) if printed.numbers else ""
-    blocks = ["\n".join(_folded_heading(printed)), numbers_text]
+    numbers_text = (
+        "\n".join(["numbers", *rows_with_prose(_number_rows(printed))])
+        if printed.single_value_columns
+        else ""
+    )
+    blocks = ["\n".join(_wrapped_heading(printed)), numbers_text]
     for name, columns in printed.lists.items():
-        lines = [wrap_cell_text(_list_title(name, columns, printed.totals.get(name, 0)))]
+        lines = [wrap_cell_text(_list_title(name, columns, printed.found_counts.get(name, 0)))]
         if len(columns[0].values):
-            digits = printed.rod.list_texts[name]
-            stored_columns = [column for column in columns if not column.absent.all()]
-            cells = [column_cells((c.name, c.printed_unit), digits.texts(c.name)) for c in stored_columns]
+            digits = printed.result.list_texts[name]
+            stored_columns = [column for column in columns if not column.missing_mask.all()]
+            cells = [
+                aligned_column_cells((c.name, c.printed_unit), digits.texts(c.name)) for c in stored_columns
+            ]
             for block_index, block in enumerate(table_blocks(cells)):
                 lines += ["", *block] if block_index else block
         blocks.append("\n".join(lines))
@@ -129,8 +135,8 @@ def whole_html(printed: PrintedAnswer) -> str:
     headings: list[RowCells] = [("variable", "value", "unit", "meaning")]
     blocks = [_html_heading(printed), _html_table(headings, _number_rows(printed))]
     for name, columns in printed.lists.items():
-        blocks.append(f"<p>{escape(_list_title(name, columns, printed.totals.get(name, 0)))}</p>")
-        digits = printed.rod.list_texts[name]
+        blocks.append(f"<p>{escape(_list_title(name, columns, printed.found_counts.get(name, 0)))}</p>")
+        digits = printed.result.list_texts[name]
         headings = [tuple(column.name for column in columns), tuple(c.printed_unit for c in columns)]
         rows_of = list(zip(*(digits.texts(column.name) for column in columns), strict=True))
         blocks.append(_html_table(headings, rows_of) if rows_of else "")
@@ -139,11 +145,11 @@ def whole_html(printed: PrintedAnswer) -> str:
 
 def _number_rows(printed: PrintedAnswer) -> list[tuple[str, str, str, str]]:
     """(name, value, unit, meaning) of every number."""
-    texts = printed.rod.point_texts
-    return [(c.name, texts.texts(c.name)[0], c.printed_unit, c.meaning) for c in printed.numbers]
+    texts = printed.result.point_texts
+    return [(c.name, texts.texts(c.name)[0], c.printed_unit, c.meaning) for c in printed.single_value_columns]
 
 
-def _folded_heading(printed: PrintedAnswer) -> list[str]:
+def _wrapped_heading(printed: PrintedAnswer) -> list[str]:
     """Lines of the heading, folded at the maximum width of a line."""
     return [line for text in printed.heading if text for line in wrap_cell_text(text).splitlines()]
 
@@ -159,10 +165,10 @@ def _list_title(name: str, columns: Sequence[Column], total: int) -> str:
 def _main_number_texts(printed: PrintedAnswer) -> list[tuple[str, str, str, str]]:
     """(name, value, error with sign, unit), as texts, for each main number of the task that has a value."""
     name_and_number_texts = []
-    for name in printed.headline.numbers:
-        column = printed.rod.column(name)
+    for name in printed.headline.number_variables:
+        column = printed.result.column(name)
         if column is not None:
-            ((value, error),) = printed.rod.point_texts.value_and_error_texts(column.name)
+            ((value, error),) = printed.result.point_texts.value_and_error_texts(column.name)
             name_and_number_texts.append(
                 (column.name, value, f"{ERROR_SEPARATOR} {error}" if error else "", column.printed_unit)
             )
@@ -172,11 +178,13 @@ def _main_number_texts(printed: PrintedAnswer) -> list[tuple[str, str, str, str]
 def _number_lines(printed: PrintedAnswer) -> list[str]:
     """Aligned lines of the main numbers of the task, after an empty line; empty if no main number has a
     value."""
-    max_lines = MAX_BRIEF_LINES - len(_folded_heading(printed)) - 2  # beside the empty line and the last line
-    pairs = _main_number_texts(printed)[: max(max_lines, MIN_ROWS)]
+    max_lines = (
+        MAX_BRIEF_LINES - len(_wrapped_heading(printed)) - 2
+    )  # beside the empty line and the last line
+    pairs = _main_number_texts(printed)[: max(max_lines, MIN_PRINTED_ROWS)]
     if not pairs:
         return []
-    cells = [column_cells((), column) for column in zip(*pairs, strict=True)]
+    cells = [aligned_column_cells((), column) for column in zip(*pairs, strict=True)]
     filled_columns = [column for column in cells if column[0].strip() or any(map(str.strip, column))]
     return ["", *(COLUMN_GAP.join(row).rstrip() for row in zip(*filled_columns, strict=True))]
 
@@ -185,19 +193,19 @@ def _main_list_columns(printed: PrintedAnswer, max_rows: int) -> tuple[list[list
     """Returns (columns of the main list, number of rows of the complete list). A column consists of the cells
     name, unit, and values; errors form a separate column. The first column that would make a line longer than
     LINE_WIDTH, and all later columns, are omitted. Returns ([], 0) for a task without a main list."""
-    digits = printed.rod.list_texts.get(printed.headline.table)
+    digits = printed.result.list_texts.get(printed.headline.list_name)
     if digits is None:
         return [], 0
-    names = [printed.rod.preferred_name(digits, name) for name in printed.headline.columns]
+    names = [printed.result.si_name_or_name(digits, name) for name in printed.headline.columns]
     columns = [digits.columns[name] for name in names if name in digits.columns]
-    columns = [column for column in columns if not column.absent.all()]
+    columns = [column for column in columns if not column.missing_mask.all()]
     row_count = len(columns[0].values) if columns else 0
     columns_of_cells: list[list[str]] = []
     width = -len(COLUMN_GAP)
     for column in columns if row_count else ():
         values, errors = zip(*digits.value_and_error_texts(column.name)[:max_rows], strict=True)
-        added = [column_cells((column.name, column.printed_unit), values)]
-        added += [column_cells((ERROR_SEPARATOR, ""), errors)] if any(errors) else []
+        added = [aligned_column_cells((column.name, column.printed_unit), values)]
+        added += [aligned_column_cells((ERROR_SEPARATOR, ""), errors)] if any(errors) else []
         width += sum(len(cells[0]) + len(COLUMN_GAP) for cells in added)
         if width > LINE_WIDTH:
             break
@@ -207,8 +215,8 @@ def _main_list_columns(printed: PrintedAnswer, max_rows: int) -> tuple[list[list
 
 def _brief_list(printed: PrintedAnswer, max_lines: int) -> list[str]:
     """Lines of the main list, after an empty line; empty if the list has no rows. max_lines: desired maximum
-    number of lines; at least MIN_ROWS rows are printed."""
-    rows = max(max_lines - 3, MIN_ROWS)  # below an empty line, the names and the units
+    number of lines; at least MIN_PRINTED_ROWS rows are printed."""
+    rows = max(max_lines - 3, MIN_PRINTED_ROWS)  # below an empty line, the names and the units
     columns, row_count = _main_list_columns(printed, rows)
     if row_count == rows + 1:  # the line "and 1 more" has room for the row
         columns, row_count = _main_list_columns(printed, row_count)

@@ -10,16 +10,16 @@ from typing import Any
 from ...config.document.call_arguments import refusing_wrong_arguments
 from ...post.figures.request import FigureClass
 from ...post.rod_portrait.paragraph import paragraph
-from ...post.rod_portrait.picture import portrait_figure
+from ...post.rod_portrait.portrait_drawing import draw_rod_portrait
+from ...post.rod_portrait.portrait_files import require_portrait_path, write_portrait
 from ...post.rod_portrait.results import RodResults
-from ...post.rod_portrait.writing import require_portrait_path, write_portrait
 from ...post.tables.alignment import wrap_cell_text
 from ...results.file.view import ResultView
 from ...solve.solve_lock import one_at_a_time
 from ...tasks.rod_portrait import PortraitRequest, solve_rod_results
 from ...tasks.running.job import Job
-from ..dataset import named_file_path, view_of_dataset
-from ..keyword_arguments import plain_keyword
+from ..dataset import require_file_path, view_of_dataset
+from ..keyword_arguments import keyword_value_of_yaml_types
 from ..solving_in_process import solve_in_process
 from .answer import Answer
 
@@ -32,8 +32,8 @@ class RodPortrait:
     `paragraph` describes the rod.
 
     Every result behind the picture is an `Answer`: `thresholds`; `criticality` and `branch`, None if the task
-    could not be solved; `modes` by kind of threshold; `cycles` by force. `missing` has the reason why a
-    result could not be solved, by task.
+    could not be solved; `modes` by kind of threshold; `cycles` by force. `missing_result_reasons` has the
+    reason why a result could not be solved, by task.
     """
 
     rod: str
@@ -77,7 +77,7 @@ class RodPortrait:
     @property
     def missing(self) -> dict[str, str]:
         """Reason for every result that could not be solved, by task."""
-        return dict(self.results.missing)
+        return dict(self.results.missing_result_reasons)
 
     def _task_answer(self, view: ResultView) -> Answer:
         return self.answers_by_config[view.attributes["config"]]
@@ -90,14 +90,14 @@ class RodPortrait:
     @refusing_wrong_arguments("rod.portrait().figure()")
     def figure(self) -> FigureClass:
         """The picture as a new `matplotlib.figure.Figure`, without the paragraph."""
-        return portrait_figure(self.results, with_words=False)
+        return draw_rod_portrait(self.results, with_words=False)
 
     @one_at_a_time
     @refusing_wrong_arguments(SAVE_PORTRAIT_EXAMPLE)
     def save(self, path: str | Path) -> str:
         """Writes the portrait (.png, .pdf, .svg, or .html with tables) and returns a sentence about the
         file."""
-        output = named_file_path(path, SAVE_PORTRAIT_EXAMPLE)
+        output = require_file_path(path, SAVE_PORTRAIT_EXAMPLE)
         require_portrait_path(output)
         return write_portrait(self.results, output)
 
@@ -111,16 +111,18 @@ class RodPortrait:
         return {"image/png": image.getvalue(), "text/plain": repr(self)}
 
 
-def solved_portrait(rod: str, request: PortraitRequest, progress: bool | None) -> RodPortrait:
+def solve_portrait(rod: str, request: PortraitRequest, progress: bool | None) -> RodPortrait:
     """Solves all results of a portrait in this process, and returns the portrait. rod: text of the rod.
     progress: whether to display progress; None: only in a terminal or a notebook. Raises InputError for an
     invalid request."""
     answers_by_config: dict[str, Answer] = {}
-    plain_values = {name: plain_keyword(name, getattr(request, name)) for name in ("F_max", "accuracy")}
+    plain_values = {
+        name: keyword_value_of_yaml_types(name, getattr(request, name)) for name in ("F_max", "accuracy")
+    }
 
     def solve(job: Job) -> ResultView:
         solved = solve_in_process(job, progress=progress)
-        answers_by_config[job.config_text] = Answer(rod, solved, solved.messages[0])
+        answers_by_config[job.given_config_yaml] = Answer(rod, solved, solved.messages[0])
         return view_of_dataset(solved.dataset, Path(job.title))
 
     results = solve_rod_results(replace(request, **plain_values), solve)

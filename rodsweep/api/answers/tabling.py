@@ -13,9 +13,9 @@ from ...errors import InputError, short_repr
 from ...post.tables.tables import Tables
 from ...results.file.view import ResultView, read_view
 from ...solve.solve_lock import one_at_a_time
-from ..dataset import named_file_path, view_of_dataset
+from ..dataset import require_file_path, view_of_dataset
 from .answer import Answer
-from .frames import data_frame_of
+from .data_frames import data_frame_of
 
 TABLE_EXAMPLE = 'rs.table(data, "crossings")'
 TableSource = xr.Dataset | Answer | str | Path
@@ -46,7 +46,7 @@ def view_of_result(data: Any, example: str) -> ResultView:
     """View of a result, which figures and tables read. Raises InputError, with the example call `example`, if
     `data` is not a result."""
     if isinstance(data, str | os.PathLike):
-        return read_view(named_file_path(data, example))
+        return read_view(require_file_path(data, example))
     if not isinstance(data, Answer | xr.Dataset):
         raise InputError(
             f"{short_repr(data)} is not a result; give a Dataset, an answer or a file, as in {example}"

@@ -16,24 +16,24 @@ from ...solve.motion.integrator import EndReason, Trajectory, integrator
 from ...solve.motion.time_scheme import TimeScheme
 from ..study import TimedMethod
 
-MAX_TIGHT_TOLERANCE = 3e-7
+MAX_TOLERANCE_WITH_TIGHT_NEWTON = 3e-7
 """Newton's method has the tolerance TIGHT_NEWTON_TOLERANCE_RATIO at integrator tolerances up to this number,
 because the default tolerance would limit the accuracy of ARKIMEX 5."""
 TIGHT_NEWTON_TOLERANCE_RATIO = 0.03
 """Convergence tolerance of Newton's method divided by the tolerance of the integrator, at integrator
-tolerances up to MAX_TIGHT_TOLERANCE."""
+tolerances up to MAX_TOLERANCE_WITH_TIGHT_NEWTON."""
 
 
 class IntegrationTask(NamedTuple):
-    """Task of an integrator. system: rod on its mesh. z: initial state, (unknowns,). duration: time in
-    tau2."""
+    """Task of an integrator. system: rod on its mesh. initial_state: initial state, (unknowns,). duration:
+    time in tau2."""
 
     system: ExplicitSystem
-    z: Array
+    initial_state: Array
     duration: float
 
 
-Integration = Callable[[float, IntegrationTask], Trajectory]
+IntegrateFunction = Callable[[float, IntegrationTask], Trajectory]
 """Integrator: a function (tolerance, task) -> trajectory that raises ArithmeticError if the integration
 fails."""
 
@@ -42,24 +42,25 @@ fails."""
 class IntegratorWithTolerances:
     """An integrator with its name in the tables, and its tolerances, from the loosest.
 
-    integrate: the integrator. tolerances: tolerances of the runs that follow a cycle. waiting_tolerances:
-    tolerances of the runs until the motion is periodic; empty if the integrator has no such runs.
+    integrate: the integrator. following_tolerances: tolerances of the runs that follow a cycle.
+    settling_tolerances: tolerances of the runs until the motion is periodic; empty if the integrator has no
+    such runs.
     """
 
     name: str
-    integrate: Integration
-    tolerances: tuple[float, ...]
-    waiting_tolerances: tuple[float, ...] = ()
+    integrate: IntegrateFunction
+    following_tolerances: tuple[float, ...]
+    settling_tolerances: tuple[float, ...] = ()
 
     def following_contenders(self) -> list[TimedMethod]:
-        """Contenders of the race FOLLOWING_RACE, which follow a cycle in time: one for each of
-        `tolerances`."""
-        return [self._method_at_tolerance(tolerance) for tolerance in self.tolerances]
+        """Contenders of the race CYCLE_FOLLOWING_RACE, which follow a cycle in time: one for each of
+        `following_tolerances`."""
+        return [self._method_at_tolerance(tolerance) for tolerance in self.following_tolerances]
 
     def settling_contenders(self) -> list[TimedMethod]:
-        """Contenders of the race WAITING_RACE, which integrate until the motion is periodic: one for each of
-        `waiting_tolerances`."""
-        return [self._method_at_tolerance(tolerance) for tolerance in self.waiting_tolerances]
+        """Contenders of the race SETTLING_TO_CYCLE_RACE, which integrate until the motion is periodic: one
+        for each of `settling_tolerances`."""
+        return [self._method_at_tolerance(tolerance) for tolerance in self.settling_tolerances]
 
     def _method_at_tolerance(self, tolerance: float) -> TimedMethod:
         run = partial(self.integrate, tolerance)
@@ -72,24 +73,24 @@ def petsc_trajectory(ts_type: str, scheme_name: str, tolerance: float, task: Int
     "arkimex" and "5". tolerance: see the module."""
     newton_ratio = (
         TimeScheme().newton_tolerance_ratio
-        if tolerance > MAX_TIGHT_TOLERANCE
+        if tolerance > MAX_TOLERANCE_WITH_TIGHT_NEWTON
         else TIGHT_NEWTON_TOLERANCE_RATIO
     )
-    scheme = TimeScheme(ts_type, scheme_name, tolerance, newton_ratio, prefix="bench_")
-    result = integrator(task.system.mesh, scheme).run(task.system, task.z, task.duration)
-    if result.ending != EndReason.reached:
+    scheme = TimeScheme(ts_type, scheme_name, tolerance, newton_ratio, options_prefix="bench_")
+    result = integrator(task.system.mesh, scheme).run(task.system, task.initial_state, task.duration)
+    if result.end_reason != EndReason.reached:
         raise ArithmeticError(
-            f"{ts_type} {scheme_name} at {tolerance:g}: {result.ending.name} {result.message}"
+            f"{ts_type} {scheme_name} at {tolerance:g}: {result.end_reason.name} {result.message}"
         )
     return result
 
 
-WAITING_TOLERANCES = (1e-6, 3e-7, 1e-7, 3e-8, 1e-8, 3e-9, 1e-9)
+SETTLING_INTEGRATOR_TOLERANCES = (1e-6, 3e-7, 1e-7, 3e-8, 1e-8, 3e-9, 1e-9)
 """Tolerances at which integrators run until the motion is periodic, from the loosest."""
 DEFAULT_INTEGRATOR = IntegratorWithTolerances(
     "ARKIMEX 5 (default)",
     partial(petsc_trajectory, "arkimex", "5"),
     (1e-5, 5e-6, 2e-6, 1e-6, 3e-7, 1e-7, 1e-8),
-    WAITING_TOLERANCES,
+    SETTLING_INTEGRATOR_TOLERANCES,
 )
 """The integrator that rodsweep uses by default."""

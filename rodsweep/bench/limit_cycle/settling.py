@@ -14,22 +14,22 @@ from .default_integrator import IntegrationTask
 from .tracking import (
     CYCLE_FORCE,
     FOLLOWED_PERIODS,
-    SETTLING_TOLERANCE,
+    PERIODICITY_TOLERANCE,
     START_DEFLECTION,
     ReferenceCycle,
     orbit_of,
     solve_cycle_at_force,
-    state_on_cycle,
+    system_and_state_on_cycle,
     tip_angle_returns,
 )
 
 NEAR_HOPF_F = 27.43
 """Force F at a distance of 0.003 above the Hopf point, where a motion approaches the cycle very slowly."""
-SOLVE_METHOD_NAME = "solve_cycle"
+SOLVE_CYCLE_METHOD_NAME = "solve_cycle"
 """Name of rodsweep's `solve_cycle` in the table."""
-WAITING_PREFIX = "waiting, "
+SETTLING_METHOD_NAME_PREFIX = "waiting, "
 """Prefix, in the table, of the names of integrations until the motion is periodic."""
-WAITING_PERIODS = 15
+SETTLING_PERIOD_COUNT = 15
 """Duration, in periods, of an integration that should reach the cycle."""
 
 
@@ -37,25 +37,25 @@ WAITING_PERIODS = 15
 class SettlingMethod:
     """A method that reaches the limit cycle from a given start.
 
-    force: F. name: name of the method. setting: tolerance. return_count: number of returns of the tip until
-    the motion is periodic; nan if the motion does not become periodic. error: relative error of period and
-    largest tip y. run: the timed function. time_factor: duration of the complete method divided by the
-    duration of `run`. failed_tolerances: looser tolerances at which the integration failed.
+    force: F. name: name of the method. setting: tolerance. tip_return_count: number of returns of the tip
+    until the motion is periodic; nan if the motion does not become periodic. error: relative error of period
+    and largest tip y. run: the timed function. full_to_run_time_ratio: duration of the complete method
+    divided by the duration of `run`. failed_tolerances: looser tolerances at which the integration failed.
     """
 
     force: float
     name: str
     setting: str
-    return_count: float
+    tip_return_count: float
     error: float
     run: Callable[[], object]
-    time_factor: float = 1.0
+    full_to_run_time_ratio: float = 1.0
     failed_tolerances: tuple[str, ...] = ()
 
     @property
     def reaches_cycle(self) -> bool:
         """Whether the method reaches the cycle."""
-        return isfinite(self.return_count)
+        return isfinite(self.tip_return_count)
 
     def row(self, timed: TimedRuns) -> dict[str, str | float]:
         """Values of a row of `settling_table`, by name."""
@@ -64,30 +64,32 @@ class SettlingMethod:
         )
         row: dict[str, str | float] = {"force": self.force, "way": method_text, "tolerance": self.setting}
         if not self.reaches_cycle:
-            not_reached = f"not reached in {WAITING_PERIODS} periods"
+            not_reached = f"not reached in {SETTLING_PERIOD_COUNT} periods"
             return row | {"returns": not_reached, "milliseconds": "", "error": nan}
-        about_text = "about " if self.time_factor != 1 else ""
-        milliseconds = f"{about_text}{1e3 * self.time_factor * timed.median:.0f}"
-        returns = f"{about_text}{self.return_count:.0f}"
+        about_text = "about " if self.full_to_run_time_ratio != 1 else ""
+        milliseconds = f"{about_text}{1e3 * self.full_to_run_time_ratio * timed.median_seconds:.0f}"
+        returns = f"{about_text}{self.tip_return_count:.0f}"
         return row | {"returns": returns, "milliseconds": milliseconds, "error": self.error}
 
 
 def compare_settling(reference: ReferenceCycle, contenders: Sequence[TimedMethod], round_count: int) -> str:
     """Runs all methods that reach the cycle, at F = 50 and near the Hopf point, and returns the table of the
     methods with its explanation. reference: reference cycle at F = 50. contenders: contenders of the race
-    WAITING_RACE."""
+    SETTLING_TO_CYCLE_RACE."""
     settings = grouped_by_fields(contenders, "method")
     waiting = {method: _integrate_until_periodic(reference, runs) for (method,), runs in settings.items()}
     cycle = solve_cycle_at_force(CYCLE_FORCE)
     error = _cycle_error(reference, cycle.measures.period, cycle.measures.tip_y_max)
-    methods = [_solve_method(CYCLE_FORCE, cycle.periods, error), *waiting.values()]
+    methods = [_solve_cycle_method(CYCLE_FORCE, cycle.periods, error), *waiting.values()]
     methods += _methods_near_hopf([c for c in contenders if waiting[c.method].setting == c.setting])
     return settling_table(methods, time_runs([wait.run for wait in methods], [round_count] * len(methods)))
 
 
-def _solve_method(force: float, periods: float, error: float) -> SettlingMethod:
+def _solve_cycle_method(force: float, periods: float, error: float) -> SettlingMethod:
     """The method `solve_cycle` at a force."""
-    return SettlingMethod(force, SOLVE_METHOD_NAME, "", periods, error, partial(solve_cycle_at_force, force))
+    return SettlingMethod(
+        force, SOLVE_CYCLE_METHOD_NAME, "", periods, error, partial(solve_cycle_at_force, force)
+    )
 
 
 def settling_table(methods: Sequence[SettlingMethod], times: Sequence[TimedRuns]) -> str:
@@ -95,13 +97,12 @@ def settling_table(methods: Sequence[SettlingMethod], times: Sequence[TimedRuns]
     `methods`."""
     return (
         f"From a start of {START_DEFLECTION:g} L to the limit cycle. Waiting ends when two successive "
-        f"returns agree to {SETTLING_TOLERANCE:.0e}. The integrator has the loosest tolerance at which the "
-        "returns agree and the errors of the period and of y are no larger than this; the user is assumed to "
-        "know this tolerance. solve_cycle has the same accuracy; its time includes "
-        f"the choice of mesh and the proof of stability. At F = {NEAR_HOPF_F:g} the number of periods is a "
-        f"lower bound, ln({SETTLING_TOLERANCE:.0e})/ln(largest multiplier), and the time follows from the "
-        "time per period; the error is the estimate of solve_cycle and, for waiting, the required "
-        "accuracy.\n\n"
+        f"returns agree to {PERIODICITY_TOLERANCE:.0e}. The integrator has the loosest tolerance at which "
+        "the returns agree and the errors of the period and of y are no larger than this; the user is "
+        "assumed to know this tolerance. solve_cycle has the same accuracy; its time includes the choice of "
+        f"mesh and the proof of stability. At F = {NEAR_HOPF_F:g} the number of periods is a lower bound, "
+        f"ln({PERIODICITY_TOLERANCE:.0e})/ln(largest multiplier), and the time follows from the time per "
+        "period; the error is the estimate of solve_cycle and, for waiting, the required accuracy.\n\n"
     ) + markdown_table(
         "F | method | tolerance | returns | ms | error",
         "{force:g} | {way} | {tolerance} | {returns} | {milliseconds} | {error:.0e}",
@@ -115,11 +116,11 @@ def _cycle_error(reference: ReferenceCycle, period: float, height: float) -> flo
 
 def _integrate_until_periodic(reference: ReferenceCycle, contenders: Sequence[TimedMethod]) -> SettlingMethod:
     """Integration at the loosest tolerance at which two successive returns agree, and period and largest tip
-    y are accurate, within SETTLING_TOLERANCE; without such a tolerance, a method whose `reaches_cycle` is
+    y are accurate, within PERIODICITY_TOLERANCE; without such a tolerance, a method whose `reaches_cycle` is
     False. contenders: contenders of one integrator, from the loosest tolerance."""
     start = leading_mode(reference.system).state(START_DEFLECTION)
-    task = IntegrationTask(reference.system, start, WAITING_PERIODS * reference.period)
-    name = WAITING_PREFIX + contenders[0].method
+    task = IntegrationTask(reference.system, start, SETTLING_PERIOD_COUNT * reference.period)
+    name = SETTLING_METHOD_NAME_PREFIX + contenders[0].method
     failed: tuple[str, ...] = ()
     for contender in contenders:
         try:
@@ -129,11 +130,11 @@ def _integrate_until_periodic(reference: ReferenceCycle, contenders: Sequence[Ti
             continue
         sizes = np.linalg.norm(returns.states[1:], axis=1)
         distances = np.linalg.norm(np.diff(returns.states, axis=0), axis=1) / sizes
-        periodic_indices = list(map(int, np.flatnonzero(distances <= SETTLING_TOLERANCE)))
+        periodic_indices = list(map(int, np.flatnonzero(distances <= PERIODICITY_TOLERANCE)))
         for k in periodic_indices[:1]:
             period = float(returns.times[k + 1] - returns.times[k])
             error = _cycle_error(reference, period, float(returns.tip_y_max_between_returns[k]))
-            if error <= SETTLING_TOLERANCE:
+            if error <= PERIODICITY_TOLERANCE:
                 run = partial(contender.run, task._replace(duration=float(returns.times[k + 1])))
                 setting = contender.setting
                 return SettlingMethod(CYCLE_FORCE, name, setting, k + 2, error, run, failed_tolerances=failed)
@@ -144,12 +145,16 @@ def _methods_near_hopf(settled_contenders: Sequence[TimedMethod]) -> list[Settli
     """Methods that reach the cycle near the Hopf point. The number of periods until an integrated motion is
     periodic is estimated from the largest Floquet multiplier."""
     cycle = solve_cycle_at_force(NEAR_HOPF_F)
-    task = IntegrationTask(*state_on_cycle(orbit_of(cycle)), FOLLOWED_PERIODS * cycle.measures.period)
-    return_count = log(SETTLING_TOLERANCE) / log(cycle.multiplier)
+    task = IntegrationTask(
+        *system_and_state_on_cycle(orbit_of(cycle)), FOLLOWED_PERIODS * cycle.measures.period
+    )
+    return_count = log(PERIODICITY_TOLERANCE) / log(cycle.multiplier)
     error = max(cycle.errors.period_error, cycle.errors.amplitude_error)
-    methods = [_solve_method(NEAR_HOPF_F, cycle.periods, error)]
+    methods = [_solve_cycle_method(NEAR_HOPF_F, cycle.periods, error)]
     for c in settled_contenders:
         cost = partial(c.run, task), return_count / FOLLOWED_PERIODS
-        name = WAITING_PREFIX + c.method
-        methods.append(SettlingMethod(NEAR_HOPF_F, name, c.setting, return_count, SETTLING_TOLERANCE, *cost))
+        name = SETTLING_METHOD_NAME_PREFIX + c.method
+        methods.append(
+            SettlingMethod(NEAR_HOPF_F, name, c.setting, return_count, PERIODICITY_TOLERANCE, *cost)
+        )
     return methods

@@ -1,12 +1,12 @@
 """The limit-cycle benchmark: a cycle followed in time, reached by integration, and solved by collocation. The
-contenders of FOLLOWING_RACE and WAITING_RACE integrate an `IntegrationTask` and return a `Trajectory`. The
-settings of each method are tolerances, from the loosest."""
+contenders of CYCLE_FOLLOWING_RACE and SETTLING_TO_CYCLE_RACE integrate an `IntegrationTask` and return a
+`Trajectory`. The settings of each method are tolerances, from the loosest."""
 
 from collections.abc import Sequence
 from dataclasses import replace
 from math import isfinite, log, nan
 
-from ...model.parameters import NONLINEAR_PARAMETERS
+from ...model.parameters import NONLINEAR_ROD_PARAMETER_NAMES
 from ...solve.cycle.reference_rod import warm_up
 from ...wording import counted
 from ..peers import PeerContribution
@@ -21,7 +21,7 @@ from .tracking import (
     FIG5_ROD,
     FOLLOWED_PERIODS,
     TARGET_ERROR,
-    measure_following,
+    measure_cycle_following,
     solve_reference,
 )
 
@@ -29,9 +29,9 @@ ROUND_COUNT = 9
 """Number of timed rounds."""
 QUICK_ROUND_COUNT = 1
 """Number of timed rounds of a quick run."""
-FOLLOWING_RACE = "following"
+CYCLE_FOLLOWING_RACE = "following"
 """Name of the race in which integrators follow a cycle for some periods."""
-WAITING_RACE = "waiting"
+SETTLING_TO_CYCLE_RACE = "waiting"
 """Name of the race in which integrators run until the motion is periodic."""
 ERROR_NAMES_BY_PANEL = {
     "error of the period": "period_error",
@@ -47,34 +47,34 @@ def run_limit_cycle_study(quick: bool, peers: PeerContribution) -> BenchmarkRepo
     warm_up()
     round_count, stride = (QUICK_ROUND_COUNT, 2) if quick else (ROUND_COUNT, 1)
     reference = solve_reference()
-    following = [*DEFAULT_INTEGRATOR.following_contenders(), *peers.of(FOLLOWING_RACE)]
-    measurements = measure_following(reference, every_nth_setting(following, stride), round_count)
+    following = [*DEFAULT_INTEGRATOR.following_contenders(), *peers.contenders_of_race(CYCLE_FOLLOWING_RACE)]
+    measurements = measure_cycle_following(reference, every_nth_setting(following, stride), round_count)
     blocks = [
         introduction(round_count),
-        *peers.notes,
-        following_table(measurements),
+        *peers.contender_notes,
+        cycle_following_table(measurements),
         time_at_error_table(measurements),
     ]
-    settling = [*DEFAULT_INTEGRATOR.settling_contenders(), *peers.of(WAITING_RACE)]
+    settling = [*DEFAULT_INTEGRATOR.settling_contenders(), *peers.contenders_of_race(SETTLING_TO_CYCLE_RACE)]
     blocks.append(compare_settling(reference, settling, round_count))
     sweep_measurements = measure_sweep_points(QUICK_RODS if quick else RODS, round_count)
     blocks += [sweep_introduction(), sweep_table(sweep_measurements)]
-    for section in peers.sections:
+    for section in peers.section_functions:
         text, more_text = section(round_count)
         blocks += text
         sweep_measurements += more_text
     panels = [
-        replace(m, case=case, error=m.extra.get(error, m.error))
+        replace(m, case=case, error=m.extra_columns.get(error, m.error))
         for case, error in ERROR_NAMES_BY_PANEL.items()
         for m in measurements
     ]
-    report = "\n\n".join([*blocks, *peers.skipped])
+    report = "\n\n".join([*blocks, *peers.skipped_peer_sentences])
     return BenchmarkReport("limit_cycle", report, panels, "period", TARGET_ERROR, sweep_measurements)
 
 
 def introduction(round_count: int) -> str:
-    """Description of the race FOLLOWING_RACE for the report."""
-    k1, k2, gamma3, gamma1 = (FIG5_ROD.values[name] for name in NONLINEAR_PARAMETERS[1:])
+    """Description of the race CYCLE_FOLLOWING_RACE for the report."""
+    k1, k2, gamma3, gamma1 = (FIG5_ROD.values[name] for name in NONLINEAR_ROD_PARAMETER_NAMES[1:])
     return (
         f"The limit cycle of k1 = {k1:g}, k2 = {k2:g}, gamma3 = {gamma3:g}, gamma1 = {gamma1:g}, "
         f"F = {CYCLE_FORCE:g}, followed for {FOLLOWED_PERIODS} periods; one element of order "
@@ -86,8 +86,8 @@ def introduction(round_count: int) -> str:
     )
 
 
-def following_table(measurements: Sequence[Measurement]) -> str:
-    """Table of the race FOLLOWING_RACE: steps, time and errors of every method at every tolerance."""
+def cycle_following_table(measurements: Sequence[Measurement]) -> str:
+    """Table of the race CYCLE_FOLLOWING_RACE: steps, time and errors of every method at every tolerance."""
     no_values = dict.fromkeys(("steps", "period_error", "amplitude_error"), nan)
     return markdown_table(
         "method | tolerance | steps a period | ms a period | error of period | error of amplitude",
@@ -95,14 +95,14 @@ def following_table(measurements: Sequence[Measurement]) -> str:
         [
             {"method": m.method, "setting": m.setting, "failure": m.failure, "ms": 1e3 * m.seconds}
             | no_values
-            | m.extra
+            | m.extra_columns
             for m in measurements
         ],
     )
 
 
 def time_at_error_table(measurements: Sequence[Measurement]) -> str:
-    """Table of the race FOLLOWING_RACE at equal error, after a sentence that explains it: time of every
+    """Table of the race CYCLE_FOLLOWING_RACE at equal error, after a sentence that explains it: time of every
     method, interpolated at the error TARGET_ERROR."""
     times = {}
     for (method,), runs in grouped_by_fields(measurements, "method").items():

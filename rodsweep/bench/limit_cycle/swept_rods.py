@@ -3,7 +3,7 @@
 from ...model.material.profile import Profile
 from ...model.material.rod_material import DEFAULT_MATERIAL, RodMaterial
 from ...model.rod import Rod
-from ..spectrum.arm_race import FIVE_SEGMENT_PROFILE
+from ..spectrum.arm_spectra import FIVE_SEGMENT_PROFILE
 
 TWO_SEGMENT_PROFILE = Profile(
     (0.0, 0.4, 0.4, 1.0), tuple((r**2, r**2, r**4, 1.0, 1.0, r**2) for r in (1.0, 1.0, 0.6, 0.6))

@@ -22,11 +22,11 @@ from ...discretization.elements.mesh import uniform_mesh
 from ...discretization.explicit_system import ExplicitSystem
 from ...model.rod import Rod
 from ...solve.cycle.limit_cycle import CycleOutcome, CycleRequest, solve_cycle
-from ...solve.cycle.transient.returns import tip_angle_row
+from ...solve.cycle.transient.poincare_returns import tip_angle_row
 from ...solve.motion.integrator import RunLimit, Trajectory, integrator
 from ...solve.motion.time_scheme import TimeScheme
 from ...solve.orbit.matrix.workspace import NewtonWorkspace
-from ...solve.orbit.newton import newton
+from ...solve.orbit.newton import solve_by_newton
 from ...solve.orbit.orbit import Orbit
 from ..study import Measurement, TimedMethod, measure_case
 from .default_integrator import IntegrationTask
@@ -43,7 +43,12 @@ reference cycle."""
 REFERENCE_NEWTON_TOLERANCE = 1e-13
 """Relative tolerance of Newton's method for the reference cycle."""
 SMALL_STEP_SCHEME = TimeScheme(
-    "arkimex", "5", tolerance=1e-8, newton_tolerance_ratio=1e-6, equal_steps=True, prefix="bench_map_"
+    "arkimex",
+    "5",
+    tolerance=1e-8,
+    newton_tolerance_ratio=1e-6,
+    has_equal_steps=True,
+    options_prefix="bench_map_",
 )
 """Scheme of the small steps by which returns and extrema are located. The error of its Newton iteration is
 negligible."""
@@ -52,18 +57,18 @@ FOLLOWED_PERIODS = 6.3
 on the cycle."""
 TARGET_ERROR = 1e-6
 """Error at which integrators are compared: the larger of the relative errors of period and amplitude."""
-SETTLING_TOLERANCE = 1e-7
+PERIODICITY_TOLERANCE = 1e-7
 """Relative accuracy requested from `solve_cycle`. An integrated motion is periodic if the relative distance
 between the states at two successive returns is at most this number."""
 START_DEFLECTION = 0.1
 """Tip deflection, in L, of the start from which the methods reach the cycle."""
-MAX_RETURNS = 300
+MAX_TIP_RETURNS = 300
 """Maximum number of returns of the tip over which `solve_cycle` may integrate."""
 SMALL_STEP_COUNT = 20
 """Number of small steps around a return or an extremum."""
 SPLINE_DEGREE = 7
 """Degree of the interpolating spline through the states after the small steps."""
-NEWTON_CORRECTION_COUNT = 2
+RETURN_NEWTON_STEP_COUNT = 2
 """Number of Newton steps that correct a return found on the spline, which has errors of 1e-8 rad."""
 SMALL_STEPS_DURATION_RATIO = 1.25
 """Ratio of the total duration of the small steps to the repeated step. With the ratio 1 the return could be
@@ -83,22 +88,24 @@ class ReferenceCycle:
 
 def cycle_request(accuracy: float) -> CycleRequest:
     """Request for a cycle to a relative accuracy, without stored samples or shapes."""
-    return CycleRequest(accuracy, START_DEFLECTION, 1, 0, 0, 0, MAX_RETURNS)
+    return CycleRequest(accuracy, START_DEFLECTION, 1, 0, 0, 0, MAX_TIP_RETURNS)
 
 
 def solve_cycle_at_force(force: float) -> CycleOutcome:
     """The cycle of FIG5_ROD at F = `force`, solved as in the task `limit_cycle`."""
-    return solve_cycle(FIG5_ROD.with_values(F=force), cycle_request(SETTLING_TOLERANCE), parameter_name="F")
+    return solve_cycle(
+        FIG5_ROD.with_values(F=force), cycle_request(PERIODICITY_TOLERANCE), parameter_name="F"
+    )
 
 
 def orbit_of(cycle: CycleOutcome) -> Orbit:
     """The orbit of the solved cycle `cycle`; raises ArithmeticError if no cycle was found."""
-    if cycle.neighbour is None:
+    if cycle.start_for_next_rod is None:
         raise ArithmeticError(f"no cycle: {cycle.status.name} {cycle.message}")
-    return cycle.neighbour.predictor.orbit
+    return cycle.start_for_next_rod.predictor.orbit
 
 
-def state_on_cycle(orbit: Orbit) -> tuple[ExplicitSystem, Array]:
+def system_and_state_on_cycle(orbit: Orbit) -> tuple[ExplicitSystem, Array]:
     """Returns (system, z): the rod and mesh of an orbit as a system for integrators, and the state of the
     orbit at the largest y of the tip, (unknowns,)."""
     stress_form = orbit.form
@@ -110,12 +117,12 @@ def solve_reference() -> ReferenceCycle:
     """The reference cycle at CYCLE_FORCE, on one element in space, by collocation on a fine mesh in time."""
     solved = orbit_of(solve_cycle_at_force(CYCLE_FORCE))
     start = solved.on_mesh(uniform_mesh(1, CYCLE_ELEMENT_ORDER), REFERENCE_INTERVALS, REFERENCE_STAGES)
-    orbit = newton(start, REFERENCE_NEWTON_TOLERANCE, NewtonWorkspace()).orbit
+    orbit = solve_by_newton(start, REFERENCE_NEWTON_TOLERANCE, NewtonWorkspace()).orbit
     height = float(abs(orbit.form.tip_coordinates(orbit.start_state)[1]))
-    return ReferenceCycle(*state_on_cycle(orbit), orbit.period, height)
+    return ReferenceCycle(*system_and_state_on_cycle(orbit), orbit.period, height)
 
 
-def measure_following(
+def measure_cycle_following(
     reference: ReferenceCycle, contenders: Iterable[TimedMethod], round_count: int
 ) -> list[Measurement]:
     """Measurements of the `contenders`, which follow the reference cycle `reference` in time; times are
@@ -136,7 +143,7 @@ def trajectory_measurement_fields(reference: ReferenceCycle, trajectory: Traject
     amplitude = _rms(returns.tip_y_max_between_returns[1:] / reference.tip_y_max - 1)
     steps_per_period = (len(trajectory.times) - 1) / FOLLOWED_PERIODS
     values = {"steps": steps_per_period, "period_error": period, "amplitude_error": amplitude}
-    return {"error": max(period, amplitude), "extra": values}
+    return {"error": max(period, amplitude), "extra_columns": values}
 
 
 def _rms(values: NDArray[np.floating]) -> float:
@@ -170,19 +177,19 @@ def tip_angle_returns(system: ExplicitSystem, run: Trajectory) -> TipAngleReturn
         step = SMALL_STEPS_DURATION_RATIO * (run.times[k + 1] - run.times[k])
         fine_run = _integrate_in_small_steps(system, run.states[k], step)
         duration = float(_spline(fine_run.times, fine_run.states @ row).roots(extrapolate=False)[0])
-        for _ in range(NEWTON_CORRECTION_COUNT):
+        for _ in range(RETURN_NEWTON_STEP_COUNT):
             state_at_return = _integrate_in_small_steps(system, run.states[k], duration).states[-1]
             duration -= float(row @ state_at_return) / float(row @ system.state_derivative(state_at_return))
         times.append(run.times[k] + duration)
         states.append(_integrate_in_small_steps(system, run.states[k], duration).states[-1])
     for start, end in pairwise(upward_steps):
         tip_y_max_between_returns.append(
-            largest_y_near(system, run, start + int(np.argmax(y[start : end + 1])))
+            tip_y_max_near_step(system, run, start + int(np.argmax(y[start : end + 1])))
         )
     return TipAngleReturns(np.array(times), np.array(states), np.array(tip_y_max_between_returns))
 
 
-def largest_y_near(system: ExplicitSystem, run: Trajectory, k: int) -> float:
+def tip_y_max_near_step(system: ExplicitSystem, run: Trajectory, k: int) -> float:
     """Largest y of the tip, in L, during the step of a run to its k-th state and the step after."""
     fine_run = _integrate_in_small_steps(system, run.states[k - 1], run.times[k + 1] - run.times[k - 1])
     height = _spline(fine_run.times, system.tip_coordinates(fine_run.states)[1])

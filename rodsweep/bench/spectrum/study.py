@@ -30,8 +30,8 @@ from ..study import (
     result_or_error,
     time_runs,
 )
-from .arm_race import ARM_RACE, arm_table, measure_arm_spectra
-from .exact import (
+from .arm_spectra import ARM_SPECTRUM_RACE, arm_table, measure_arm_spectra
+from .rodsweep_and_exact_spectra import (
     CERTIFIED_NAME,
     KRYLOV_SCHUR,
     MODE_COUNT,
@@ -87,16 +87,23 @@ def run_spectrum_study(quick: bool, peers: PeerContribution) -> BenchmarkReport:
         for F in np.linspace(0.1 * max_F, max_F, FORCE_COUNT)
     ]
     exact = [exact_spectrum(rod, MODE_COUNT) for rod in rods]
-    methods = contenders() + peers.of(SPECTRUM_RACE)
+    methods = contenders() + peers.contenders_of_race(SPECTRUM_RACE)
     targets = TARGET_ERRORS[: 1 if quick else None]
     blocks = [time_at_equal_error(methods, rods, exact, target, round_count) for target in targets]
     measurements = measure_hard_rods(every_nth_setting(methods, stride), round_count)
-    arms = measure_arm_spectra(every_nth_setting(peers.of(ARM_RACE), stride), round_count)
-    blocks += [*peers.notes, hard_rod_table(measurements), arm_table(arms, round_count), *peers.skipped]
+    arms = measure_arm_spectra(
+        every_nth_setting(peers.contenders_of_race(ARM_SPECTRUM_RACE), stride), round_count
+    )
+    blocks += [
+        *peers.contender_notes,
+        hard_rod_table(measurements),
+        arm_table(arms, round_count),
+        *peers.skipped_peer_sentences,
+    ]
     return BenchmarkReport("spectrum", "\n\n".join(blocks), measurements, "point", TARGET_ERRORS[0], arms)
 
 
-def cheapest_contenders(
+def coarsest_contenders_at_error(
     methods: Sequence[TimedMethod], rod: Rod, exact: list[Any], target: float
 ) -> dict[str, TimedMethod]:
     """Contender with the smallest size that reaches the error `target` on a rod, by name of the method;
@@ -121,9 +128,8 @@ def time_at_equal_error(
 ) -> str:
     """Times all methods on all rods, in `round_count` rounds, each at the smallest size that reaches the
     error `target`, and returns the table of the methods."""
-    cheapest = [
-        cheapest_contenders(methods, rod, roots, target) for rod, roots in zip(rods, exact, strict=True)
-    ]
+    pairs = zip(rods, exact, strict=True)
+    cheapest = [coarsest_contenders_at_error(methods, rod, roots, target) for rod, roots in pairs]
     names = list(dict.fromkeys(contender.method for contender in methods))
     runs = {
         (name, i): partial(result_or_error, cheapest[i][name].run, rod)
@@ -135,12 +141,14 @@ def time_at_equal_error(
     rows = []
     for name in names:
         indices = [i for i in range(len(rods)) if name in cheapest[i]]
+        seconds = [timed[name, i].median_seconds for i in indices]
+        own_seconds = [timed[UNCERTIFIED_NAME, i].median_seconds for i in indices]
         row = {
             "method": name,
             "points": len(indices),
-            "ms": 1e3 * nan_median(timed[name, i].median for i in indices),
+            "ms": 1e3 * nan_median(seconds),
             "worst": max((relative_error(timed[name, i].outcome, exact[i]) for i in indices), default=nan),
-            "ratio": nan_median(timed[name, i].median / timed[UNCERTIFIED_NAME, i].median for i in indices),
+            "ratio": nan_median(time / own for time, own in zip(seconds, own_seconds, strict=True)),
         }
         rows.append(row)
     return (
@@ -181,7 +189,7 @@ def hard_rod_cell(measurements: Sequence[Measurement]) -> str:
     return "failed" if isinf(min_error) else f"{min_error:.0e}, {1e3 * fastest.seconds:.2f} ms"
 
 
-def pencil_mesh(order: int) -> Resolution:
+def mesh_of_total_order(order: int) -> Resolution:
     """Mesh of one element of the order `order`, or of several equal elements with this total order if the
     order exceeds its maximum."""
     elements = ceil(order / RESOLUTION_SETTINGS.max_order)
@@ -191,7 +199,7 @@ def pencil_mesh(order: int) -> Resolution:
 def krylov_schur(rod: Rod, order: int) -> Complex:
     """Leading eigenvalues, (n,) with n at most MODE_COUNT + 1, of a rod by SLEPc's Krylov-Schur, without
     Newton's method for D. order: order of the pencil."""
-    solver = uniform_solver(pencil_mesh(order))
+    solver = uniform_solver(mesh_of_total_order(order))
     eigenvalues = solver.solve(rod, transverse_problem(rod).shift, MODE_COUNT, to_rounding=True)
     return leading_eigenvalues(eigenvalues, MODE_COUNT + 1)
 

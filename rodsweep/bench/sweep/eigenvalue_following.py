@@ -22,9 +22,9 @@ spectrum: {{modes: 4, follow: {4}}}
 """
 """Config of a sweep, as a format string. Fields: 0 to 3: numbers of values of F, k1, k2 and gamma3; 4: value
 of `follow`; F_max; taper."""
-FOLLOWED_METHOD = "followed"
+EIGENVALUE_FOLLOWING_METHOD = "followed"
 """Name of the method for sweeps whose eigenvalues are followed."""
-ALONE_METHOD = "alone"
+POINT_BY_POINT_METHOD = "alone"
 """Name of the method for sweeps in which each point is solved alone."""
 
 
@@ -33,13 +33,13 @@ class ComparedGrids:
     """Two grids over F, k1, k2 and gamma3: a grid for following eigenvalues along its longest axis, and a
     smaller grid of points solved one by one.
 
-    name: text that names the longest axis. shape, smaller: numbers of values of F, k1, k2 and gamma3 of the
-    two grids. F_max: largest force. taper: taper of all rods.
+    name: text that names the longest axis. following_grid_shape, point_by_point_grid_shape: numbers of values
+    of F, k1, k2 and gamma3 of the two grids. F_max: largest force. taper: taper of all rods.
     """
 
     name: str
-    shape: tuple[int, int, int, int]
-    smaller: tuple[int, int, int, int]
+    following_grid_shape: tuple[int, int, int, int]
+    point_by_point_grid_shape: tuple[int, int, int, int]
     F_max: float = 60.0
     taper: float = 1.0
 
@@ -60,52 +60,60 @@ QUICK_GRID_PAIRS = (
 """Pairs of grids that are timed in a quick run."""
 
 
-def measure_followed_sweeps(
+def measure_eigenvalue_following(
     folder: Path, run: Callable[..., CommandRunCost], quick: bool
 ) -> list[Measurement]:
-    """Measurements of sweeps of certified spectra on one rank: for each pair of grids first FOLLOWED_METHOD,
-    then ALONE_METHOD.
+    """Measurements of sweeps of certified spectra on one rank: for each pair of grids first
+    EIGENVALUE_FOLLOWING_METHOD, then POINT_BY_POINT_METHOD.
 
     run: see `RunCase` of `rodsweep.bench.sweep.study`.
     """
     measurements = []
     for grids in QUICK_GRID_PAIRS if quick else GRID_PAIRS:
-        for method, shape in ((FOLLOWED_METHOD, grids.shape), (ALONE_METHOD, grids.smaller)):
+        for method, shape in (
+            (EIGENVALUE_FOLLOWING_METHOD, grids.following_grid_shape),
+            (POINT_BY_POINT_METHOD, grids.point_by_point_grid_shape),
+        ):
             directory = folder / f"{method} {grids.name}".replace(" ", "_")
             directory.mkdir()
             text = FOLLOWING_SWEEP_CONFIG.format(
-                *shape, str(method == FOLLOWED_METHOD).lower(), F_max=grids.F_max, taper=grids.taper
+                *shape,
+                str(method == EIGENVALUE_FOLLOWING_METHOD).lower(),
+                F_max=grids.F_max,
+                taper=grids.taper,
             )
             (directory / CONFIG_NAME).write_text(text)
             case = SweepCase(grids.name, prod(shape), (directory,), SOLVED)
-            measurements.append(followed_measurement(case, method, run(case, 1)))
+            measurements.append(following_sweep_measurement(case, method, run(case, 1)))
     return measurements
 
 
-def followed_measurement(case: SweepCase, method: str, run: CommandRunCost) -> Measurement:
+def following_sweep_measurement(case: SweepCase, method: str, run: CommandRunCost) -> Measurement:
     """Measurement of the sweep `case` by `method` from its run `run`: times, number of points solved on a
     mesh, number of points without certificate, and memory."""
     variables = read_view(case.directories[0] / RESULT).variables
     values = {
         "points": float(case.points),
-        "microseconds": 1e6 * run.stated_seconds / case.points,
+        "microseconds": 1e6 * run.printed_seconds / case.points,
         "microseconds_solving": 1e6 * run.solver_seconds / case.points,
         "meshes": float((variables["elements"] > 0).sum()),
         "uncertified": float((variables["certified"] == 0).sum()),
-        "rss_megabytes": max(run.first_and_other_peak_memory) / 1e6,
+        "rss_megabytes": max(run.first_and_other_rank_peak_bytes) / 1e6,
     }
     points = f"{case.points} points"
-    return Measurement(f"axis, {case.name}", method, points, run.stated_seconds, nan, extra=values)
+    return Measurement(f"axis, {case.name}", method, points, run.printed_seconds, nan, extra_columns=values)
 
 
-def followed_table(measurements: Sequence[Measurement]) -> str:
+def following_sweep_table(measurements: Sequence[Measurement]) -> str:
     """Table of the sweeps, with one line per pair of grids, after a paragraph that explains it."""
     rows = []
     for followed, unfollowed in zip(measurements[::2], measurements[1::2], strict=True):
-        speedup = unfollowed.extra["microseconds_solving"] / followed.extra["microseconds_solving"]
+        speedup = (
+            unfollowed.extra_columns["microseconds_solving"] / followed.extra_columns["microseconds_solving"]
+        )
         row = {"axis": followed.case.removeprefix("axis, "), "seconds": followed.seconds, "gain": speedup}
-        unfollowed_values = {f"{name}_alone": value for name, value in unfollowed.extra.items()}
-        rows.append(row | followed.extra | unfollowed_values)
+        unfollowed_values = {f"{name}_alone": value for name, value in unfollowed.extra_columns.items()}
+        rows.append(row | followed.extra_columns | unfollowed_values)
     return (
         "Certified spectra, `modes: 4`, along the longest axis of grids of F, k1, k2, gamma3, on one rank; "
         '"alone" is `follow: false` on a part of the same grid. Seconds are printed by the run and include '

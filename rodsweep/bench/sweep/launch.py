@@ -59,6 +59,7 @@ class SweepCase:
     """
 
     name: str
+    """Name of the case in the tables."""
     points: int
     directories: tuple[Path, ...]
     solver_kind: str
@@ -109,12 +110,12 @@ class CommandRunCost:
 
     seconds: float
     """Clock time of the whole command, in s."""
-    stated_seconds: float
+    printed_seconds: float
     """Clock time printed by the command, in s, without the start of Python and MPI; nan if the command was
     killed."""
     solver_seconds: float
     """Time in the solver, in s, summed over the ranks."""
-    first_and_other_peak_memory: tuple[int, ...]
+    first_and_other_rank_peak_bytes: tuple[int, ...]
     """Peak memory of the first rank, and largest peak memory of the other ranks, in bytes."""
     file_bytes: int
     """Size of the result files in bytes."""
@@ -158,9 +159,9 @@ def run_case(command: Sequence[str], case: SweepCase, rank_count: int, fresh: bo
     prefixes = (FIRST_RANK_MEMORY_PREFIX, OTHER_RANKS_MEMORY_PREFIX)[:rank_count]
     return CommandRunCost(
         seconds=seconds,
-        stated_seconds=max(stated_seconds),
+        printed_seconds=max(stated_seconds),
         solver_seconds=sum(solve_seconds for solve_seconds, _ in solve_times),
-        first_and_other_peak_memory=tuple(_peak_memory(case, prefix) for prefix in prefixes),
+        first_and_other_rank_peak_bytes=tuple(_peak_memory(case, prefix) for prefix in prefixes),
         file_bytes=sum(file.stat().st_size for file in files),
         journal_bytes=sum(journal.stat().st_size for journal in journals),
         processors_busy_elsewhere=float(other_load),

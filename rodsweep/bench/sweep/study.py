@@ -14,7 +14,7 @@ from tempfile import TemporaryDirectory
 
 from ...wording import counted
 from ..study import BenchmarkReport, Measurement, grouped_by_fields, markdown_table, nan_median, timing_order
-from .eigenvalue_following import followed_table, measure_followed_sweeps
+from .eigenvalue_following import following_sweep_table, measure_eigenvalue_following
 from .launch import (
     INSTANT,
     KILLED,
@@ -29,7 +29,7 @@ from .launch import (
 
 SWEEP_SIZES, QUICK_SIZES = (10**3, 10**4, 10**5, 10**6), (10**3, 10**4)
 """Numbers of points of the sweeps with the instant solver, in a complete and in a quick run."""
-MIN_SINGLE_RUN_POINTS = 10**6
+MIN_POINTS_OF_UNREPEATED_SWEEP = 10**6
 """Sweeps with the instant solver and this number of points or more are run only once."""
 SPECTRUM_COUNT, QUICK_SPECTRUM_COUNT = 200_000, 6_000
 """Number of points of the sweep of spectra, in a complete and in a quick run."""
@@ -57,8 +57,7 @@ RunCase = Callable[..., CommandRunCost]
 
 
 def run_sweep_study(quick: bool, command: Sequence[str]) -> BenchmarkReport:
-    """Runs the benchmark and returns the results: speedup by a second rank, followed eigenvalues, and
-    overhead of a point.
+    """Results of the benchmark: speedup by a second rank, followed eigenvalues, and overhead of a point.
 
     quick: whether to use fewer points and rounds. command: first arguments of the measured command, see
     `rodsweep.bench.sweep.launch`.
@@ -67,9 +66,9 @@ def run_sweep_study(quick: bool, command: Sequence[str]) -> BenchmarkReport:
     ranks = (1, 2) if launcher_arguments(2) else (1,)
     with TemporaryDirectory(prefix="rodsweep-bench-") as folder:
         solved = measure_solved_sweeps(Path(folder), run, quick, ranks)
-        followed = measure_followed_sweeps(Path(folder), run, quick)
+        followed = measure_eigenvalue_following(Path(folder), run, quick)
         instant = measure_instant_sweeps(Path(folder), run, quick, ranks)
-    blocks = [INTRODUCTION.strip(), solved_table(solved), followed_table(followed)]
+    blocks = [INTRODUCTION.strip(), solved_table(solved), following_sweep_table(followed)]
     blocks += [instant_table(instant), added_point_cost_table(instant)]
     if len(ranks) == 1:
         blocks.append("Two ranks are skipped: there is no mpiexec in the folder of this Python or on PATH.")
@@ -104,9 +103,8 @@ def measure_instant_sweeps(
     entries = []
     for size in sizes:
         case = write_spectrum_case(folder / f"instant{size}", "no solver", size, INSTANT)
-        entries += [
-            (case, rank_count, 1 if size >= MIN_SINGLE_RUN_POINTS else rounds) for rank_count in ranks
-        ]
+        round_count = 1 if size >= MIN_POINTS_OF_UNREPEATED_SWEEP else rounds
+        entries += [(case, rank_count, round_count) for rank_count in ranks]
     measurements = measure_in_turn(run, entries)
     for size in sizes:
         killed = write_spectrum_case(folder / f"killed{size}", KILLED, size, KILLED)
@@ -130,17 +128,15 @@ def sweep_measurement(case: SweepCase, rank_count: int, runs: Sequence[CommandRu
     """Measurement of a sweep from its runs; times are medians, the error is nan."""
     seconds = nan_median(run.seconds for run in runs)
     processes = rank_count * len(case.directories)
-    memory = [
-        max(values) / MEGABYTE
-        for values in zip(*(run.first_and_other_peak_memory for run in runs), strict=True)
-    ]
+    peaks = zip(*(run.first_and_other_rank_peak_bytes for run in runs), strict=True)
+    memory = [max(values) / MEGABYTE for values in peaks]
     journal_bytes, is_killed = runs[0].journal_bytes, case.solver_kind == KILLED
-    overheads = (processes * run.stated_seconds - run.solver_seconds for run in runs)
+    overheads = (processes * run.printed_seconds - run.solver_seconds for run in runs)
     extra = {
         "ranks": float(rank_count),
         "points": float(case.points),
         "points_per_second": case.points / seconds,
-        "inside_seconds": nan_median(run.stated_seconds for run in runs),
+        "inside_seconds": nan_median(run.printed_seconds for run in runs),
         "microseconds_overhead": nan_median(1e6 * overhead / case.points for overhead in overheads),
         "rss_megabytes": max(memory),
         "rss_megabytes_first": memory[0],
@@ -151,14 +147,14 @@ def sweep_measurement(case: SweepCase, rank_count: int, runs: Sequence[CommandRu
         "share_busy": nan_median(run.busy_fraction for run in runs),
     }
     return Measurement(
-        case.name, counted(rank_count, "rank"), f"{case.points} points", seconds, nan, extra=extra
+        case.name, counted(rank_count, "rank"), f"{case.points} points", seconds, nan, extra_columns=extra
     )
 
 
-def table_row_numbers(m: Measurement) -> dict[str, object]:
+def values_of_table_row(m: Measurement) -> dict[str, object]:
     """Numbers of a measured sweep, by name, for a row of a table."""
-    microseconds = 1e6 * m.extra["ranks"] * m.seconds / m.extra["points"]
-    return {"case": m.case, "seconds": m.seconds, "microseconds": microseconds, **m.extra}
+    microseconds = 1e6 * m.extra_columns["ranks"] * m.seconds / m.extra_columns["points"]
+    return {"case": m.case, "seconds": m.seconds, "microseconds": microseconds, **m.extra_columns}
 
 
 def solved_table(measurements: Sequence[Measurement]) -> str:
@@ -166,13 +162,16 @@ def solved_table(measurements: Sequence[Measurement]) -> str:
     rows = []
     for m in measurements:
         kind = m.case.split(",")[0]  # two commands are compared with one command for the same sweep
-        single = next(other for other in measurements if other.case == kind and other.extra["ranks"] == 1)
+        single = next(
+            other for other in measurements if other.case == kind and other.extra_columns["ranks"] == 1
+        )
+        inside, single_inside = (entry.extra_columns["inside_seconds"] for entry in (m, single))
         gains = {
             "gain": nan if m is single else single.seconds / m.seconds,
-            "inside": nan if m is single else single.extra["inside_seconds"] / m.extra["inside_seconds"],
-            "busy": 100 * m.extra["share_busy"],
+            "inside": nan if m is single else single_inside / inside,
+            "busy": 100 * m.extra_columns["share_busy"],
         }
-        rows.append(table_row_numbers(m) | gains)
+        rows.append(values_of_table_row(m) | gains)
     return markdown_table(
         "sweep | points | ranks | s | points a second | gain | gain inside | % busy "
         "| µs a point outside the solver | MB a rank | processors busy elsewhere",
@@ -194,7 +193,7 @@ def instant_table(measurements: Sequence[Measurement]) -> str:
         "{case} | {points:.0f} | {ranks:.0f} | {seconds:.2f} | {microseconds:.1f} "
         "| {rss_megabytes_first:.1f} | {rss_megabytes_other:.1f} | {file_bytes_per_point:.1f} "
         "| {journal_bytes_per_point:.1f}",
-        map(table_row_numbers, measurements),
+        map(values_of_table_row, measurements),
     )
 
 
@@ -205,15 +204,15 @@ def added_point_cost_table(measurements: Sequence[Measurement]) -> str:
         if case == KILLED:
             continue
         for small_sweep, large_sweep in pairwise(sizes):
-            few_points = small_sweep.extra["points"]
-            many_points = large_sweep.extra["points"]
-            start = sweep_totals(small_sweep)
+            few_points = small_sweep.extra_columns["points"]
+            many_points = large_sweep.extra_columns["points"]
+            start = time_file_and_memory_totals(small_sweep)
             row: dict[str, object] = {"case": case, "method": method, "less": few_points, "more": many_points}
             row |= {
                 name: (end - start[name]) / (many_points - few_points)
-                for name, end in sweep_totals(large_sweep).items()
+                for name, end in time_file_and_memory_totals(large_sweep).items()
             }
-            rows.append(row | {"power": growth_exponent(sizes[0], small_sweep, large_sweep)})
+            rows.append(row | {"power": time_growth_exponent(sizes[0], small_sweep, large_sweep)})
     return (
         'Cost of an additional point, summed over ranks. "Power" is the exponent with which the time, minus '
         "the time of the smallest sweep, grows with the number of points:\n\n"
@@ -225,17 +224,17 @@ def added_point_cost_table(measurements: Sequence[Measurement]) -> str:
     )
 
 
-def sweep_totals(m: Measurement) -> dict[str, float]:
+def time_file_and_memory_totals(m: Measurement) -> dict[str, float]:
     """Totals of a measured sweep, by name: microseconds of all ranks, bytes of the file, bytes of memory."""
     return {
-        "microseconds": 1e6 * m.extra["ranks"] * m.seconds,
-        "file": m.extra["file_bytes_per_point"] * m.extra["points"],
-        "first": MEGABYTE * m.extra["rss_megabytes_first"],
-        "other": MEGABYTE * m.extra["rss_megabytes_other"],
+        "microseconds": 1e6 * m.extra_columns["ranks"] * m.seconds,
+        "file": m.extra_columns["file_bytes_per_point"] * m.extra_columns["points"],
+        "first": MEGABYTE * m.extra_columns["rss_megabytes_first"],
+        "other": MEGABYTE * m.extra_columns["rss_megabytes_other"],
     }
 
 
-def growth_exponent(start: Measurement, small: Measurement, large: Measurement) -> float:
+def time_growth_exponent(start: Measurement, small: Measurement, large: Measurement) -> float:
     """Exponent p of growth, t(n) - t(n0) ~ (n - n0)^p; t(n): time of a sweep with n points, n0: points of
     `start`.
 
@@ -245,5 +244,5 @@ def growth_exponent(start: Measurement, small: Measurement, large: Measurement) 
     if small is start or min(small.seconds, large.seconds) <= start.seconds:
         return nan
     time_ratio = (large.seconds - start.seconds) / (small.seconds - start.seconds)
-    points = [m.extra["points"] - start.extra["points"] for m in (large, small)]
+    points = [m.extra_columns["points"] - start.extra_columns["points"] for m in (large, small)]
     return log(time_ratio) / log(points[0] / points[1])

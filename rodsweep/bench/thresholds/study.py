@@ -16,7 +16,7 @@ from ...model.rod import Rod
 from ...solve.changes.thresholds import ThresholdsRequest, solve_thresholds, warm_up
 from ...wording import counted
 from ..peers import PeerContribution
-from ..spectrum.arm_race import FIVE_SEGMENT_PROFILE
+from ..spectrum.arm_spectra import FIVE_SEGMENT_PROFILE
 from ..study import (
     BenchmarkReport,
     Measurement,
@@ -30,7 +30,7 @@ from ..study import (
 ONSET, HOPF = "onset", "hopf"
 """Kinds of thresholds, which are also names of the races, of fields of `ThresholdCase`, and of kinds in
 rodsweep's results."""
-MIN_WRONG_ERROR = 0.3
+MIN_ERROR_OF_OTHER_THRESHOLD = 0.3
 """A computed threshold with at least this relative error is a different threshold of the rod, and the exact
 threshold was missed."""
 
@@ -67,21 +67,22 @@ class ThresholdCase:
         if isnan(exact):
             return nan if isnan(computed) else inf
         error = abs(computed - exact) / exact
-        return error if error < MIN_WRONG_ERROR else inf
+        return error if error < MIN_ERROR_OF_OTHER_THRESHOLD else inf
 
 
 @dataclass(frozen=True, slots=True)
 class FirstThreshold:
     """Computed first threshold, and cost of its search; nan for numbers that were not counted.
 
-    force: F of the threshold; nan if no threshold was found. solves: number of eigenproblems. determinants:
-    number of evaluations of D. products: number of matrix-vector products.
+    force: F of the threshold; nan if no threshold was found. eigenproblem_count: number of eigenproblems.
+    determinant_count: number of evaluations of D. matrix_vector_product_count: number of matrix-vector
+    products.
     """
 
     force: float
-    solves: float = nan
-    determinants: float = nan
-    products: float = nan
+    eigenproblem_count: float = nan
+    determinant_count: float = nan
+    matrix_vector_product_count: float = nan
 
 
 UNIFORM_CASES = (
@@ -117,7 +118,11 @@ ROUND_COUNT = 5
 """Number of timed rounds."""
 QUICK_ROUND_COUNT = 1
 """Number of timed rounds of a quick run."""
-WORK_FIELDS = {"eigenproblems": "solves", "determinants": "determinants", "products": "products"}
+WORK_FIELDS = {
+    "eigenproblems": "eigenproblem_count",
+    "determinants": "determinant_count",
+    "products": "matrix_vector_product_count",
+}
 """Field of `FirstThreshold` by name of the number of operations in a measurement."""
 MAX_CORRECT_DIGITS = 16
 """Upper limit of the counted number of correct digits of a threshold."""
@@ -125,7 +130,7 @@ F_MAX = 200.0
 """Largest F of rodsweep's search on uniform rods."""
 ARM_F_MAX = 60.0
 """Largest F of rodsweep's search on arms, several times F of their Hopf points."""
-PROOF_SETTINGS = {"with proof": True, "without proof": False}
+CERTIFY_BY_SETTING_NAME = {"with proof": True, "without proof": False}
 """Whether rodsweep proves its list of thresholds complete, by name of the setting."""
 RODSWEEP_GROUP = "rodsweep"
 """Group of rodsweep in the figure."""
@@ -136,15 +141,19 @@ def run_thresholds_study(quick: bool, peers: PeerContribution) -> BenchmarkRepor
     and for arms. quick: whether to use fewer rods and rounds."""
     warm_up()
     cases, round_count = (QUICK_CASES, QUICK_ROUND_COUNT) if quick else (UNIFORM_CASES, ROUND_COUNT)
-    blocks = [" ".join([introduction(round_count), *peers.notes])]
+    blocks = [" ".join([introduction(round_count), *peers.contender_notes])]
     measurements = []
     for group in (cases, ARM_CASES):
         blocks += [ARM_INTRODUCTION] if group is ARM_CASES else []
         for kind in KIND_TITLES:
-            rod_measurements = measure_rods(kind, group, contenders(kind) + peers.of(kind), round_count)
+            rod_measurements = measure_rods(
+                kind, group, contenders(kind) + peers.contenders_of_race(kind), round_count
+            )
             blocks.append(threshold_table(kind, rod_measurements))
             measurements += rod_measurements
-    return BenchmarkReport("thresholds", "\n\n".join([*blocks, *peers.skipped]), measurements, "rod")
+    return BenchmarkReport(
+        "thresholds", "\n\n".join([*blocks, *peers.skipped_peer_sentences]), measurements, "rod"
+    )
 
 
 def contenders(threshold_kind: str) -> list[TimedMethod]:
@@ -152,7 +161,7 @@ def contenders(threshold_kind: str) -> list[TimedMethod]:
     completeness."""
     runs = {
         setting: partial(rodsweep_threshold, threshold_kind, proves)
-        for setting, proves in PROOF_SETTINGS.items()
+        for setting, proves in CERTIFY_BY_SETTING_NAME.items()
     }
     return [TimedMethod("rodsweep, all changes", name, RODSWEEP_GROUP, run) for name, run in runs.items()]
 
@@ -169,7 +178,7 @@ def rodsweep_threshold(threshold_kind: str, certify: bool, case: ThresholdCase) 
     if not rod.is_uniform_and_linear:
         return FirstThreshold(threshold)
     search = result.search_result
-    return FirstThreshold(threshold, search.solve_count, search.evaluation_count)
+    return FirstThreshold(threshold, search.eigenvalue_solve_count, search.determinant_evaluation_count)
 
 
 def measure_rods(
@@ -195,8 +204,10 @@ def threshold_measurement_fields(
     outcome = "missed" if isnan(computed_threshold.force) else f"wrong ({computed_threshold.force:.2f})"
     digits = -log10(min(max(error, 10**-MAX_CORRECT_DIGITS), 1.0))
     values = {name: getattr(computed_threshold, field) for name, field in WORK_FIELDS.items()}
-    values["digits"] = nan if isnan(getattr(case, threshold_kind)) else digits / computed_threshold.solves
-    return {"error": error, "failure": outcome if isinf(error) else "", "extra": values}
+    values["digits"] = (
+        nan if isnan(getattr(case, threshold_kind)) else digits / computed_threshold.eigenproblem_count
+    )
+    return {"error": error, "failure": outcome if isinf(error) else "", "extra_columns": values}
 
 
 def threshold_table(kind: str, measurements: Sequence[Measurement]) -> str:
@@ -206,7 +217,7 @@ def threshold_table(kind: str, measurements: Sequence[Measurement]) -> str:
     rows = []
     for (method, setting), measured in grouped_by_fields(measurements, "method", "setting").items():
         names = (*WORK_FIELDS, "digits")
-        medians = (nan_median(m.extra.get(name, nan) for m in measured) for name in names)
+        medians = (nan_median(m.extra_columns.get(name, nan) for m in measured) for name in names)
         solve_counts, determinants, products, digits = medians
         work = "" if isnan(solve_counts) else f"{solve_counts:.0f}"
         for count, unit_text in ((determinants, "D"), (products, "M u")):

@@ -17,7 +17,7 @@ MAX_FAILURES_PRINTED = 3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RunContribution:
+class ReportOfRank:
     """Report of a rank to the first rank at the end of a run.
 
     host: name of the machine. failures: text on one failed point for each distinct reason. statistics:
@@ -39,13 +39,13 @@ def last_run_attributes(plan: FilePlan) -> dict[str, Any]:
     }
 
 
-def run_history(contributions: Sequence[RunContribution], mpi_library: str) -> dict[str, Any]:
+def run_history(contributions: Sequence[ReportOfRank], mpi_library: str) -> dict[str, Any]:
     """Attributes of a file on a run: number of ranks, hosts, MPI library, Slurm job; points and times of each
     rank."""
     hosts = {contribution.host for contribution in contributions}
     ranks = [contribution.statistics for contribution in contributions[: provenance.MAX_RANK_STATISTICS]]
     numbers = (
-        np.array([of_rank.solved_points for of_rank in ranks], "i4"),
+        np.array([of_rank.solved_point_count for of_rank in ranks], "i4"),
         np.array([of_rank.busy_seconds for of_rank in ranks], "f4"),
         np.array([of_rank.idle_seconds for of_rank in ranks], "f4"),
     )
@@ -54,7 +54,7 @@ def run_history(contributions: Sequence[RunContribution], mpi_library: str) -> d
         "hosts": " ".join(sorted(hosts))[: provenance.MAX_ATTRIBUTE_LENGTH],
         "mpi_library": mpi_library.split("\n", maxsplit=1)[0].strip("\0 "),
         "slurm_job": os.environ.get("SLURM_JOB_ID", ""),
-        **dict(zip(provenance.RANK_STATISTICS, numbers, strict=True)),
+        **dict(zip(provenance.RANK_STATISTICS_ATTRIBUTES, numbers, strict=True)),
     }
 
 
@@ -71,7 +71,7 @@ class RunStatistics:
     """Number of points that the file holds at the end of the run."""
     seconds: float
     """Time spent on the points, in s."""
-    curve_seconds: float
+    sweep_wide_seconds: float
     """Time spent on the variables that need all points, in s."""
     interrupted_points: int
     """Number of points interrupted by a stop."""
@@ -95,7 +95,7 @@ class RunStatistics:
             )
         if self.solved_items is not None:
             word = "curves in" if self.items_for_next_run is None else "curves stopped after"
-            clauses = [f"{word} {self.curve_seconds:.2f} s on {ranks_text}"]
+            clauses = [f"{word} {self.sweep_wide_seconds:.2f} s on {ranks_text}"]
             for outcome, number in self.solved_items.items():
                 item, _, action = outcome.partition(" ")
                 clauses += [f"{counted(number, item)} {action}"] if number else []

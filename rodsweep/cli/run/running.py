@@ -7,26 +7,22 @@ from pathlib import Path
 
 import click
 
-from ...config import read_config, refusals_with_file
-from ...errors import STOPPED_STATUS
+from ...config import read_config, refusals_naming_file
+from ...errors import STOPPED_EXIT_STATUS
 from ...results.file import provenance
-from ...results.file.creation import FinalVariables
-from ...results.file.store import ResultFileWriter
+from ...results.file.creation import FinalAdditions
+from ...results.file.result_file_writer import ResultFileWriter
 from ...results.file.view import read_view
 from ...solve.backend.availability import enter_directory, require_solvers, require_working_directory
 from ...sweep.points.ranges import IndexRange, index_count
 from ...sweep.ranks import Ranks
 from ...sweep.stop import StopRequest
 from ...tasks.protocol import SweepWideResult
-from ...tasks.running.job import Job, job_of_config, plan_of
-from ...tasks.running.unforeseen_exceptions import (
-    TracebackLog,
-    failure_reasons_of_changed_points,
-    guarded_solver,
-)
+from ...tasks.running.job import Job, job_of_config, result_file_plan
+from ...tasks.running.unforeseen_exceptions import TracebackLog, changed_point_failure_reasons, guarded_solver
 from ...wording import counted
-from ..shared_computations import report_stop, shared_flutter_forces, with_variables_from_config
-from .run_end import MAX_FAILURES_PRINTED, RunContribution, RunStatistics, last_run_attributes, run_history
+from ..shared_computations import plan_with_variables_from_config, report_stop, shared_flutter_forces
+from .run_end import MAX_FAILURES_PRINTED, ReportOfRank, RunStatistics, last_run_attributes, run_history
 from .run_request import RunRequest
 from .shard_solver import ShardSolver
 from .sweep_wide_computation import PendingSweepWideVariables, SweepWideComputation
@@ -42,10 +38,10 @@ def run_config(path: Path, output: Path, request: RunRequest, stop: StopRequest)
         )
         # Otherwise a rank started in another directory would write its points there, and lose them.
         ranks.require_on_all_ranks(lambda: enter_directory(directory))
-        with refusals_with_file(path):
+        with refusals_naming_file(path):
             if (flutter := shared_flutter_forces(config, ranks, stop)) is None:
                 report_stop(ranks, stop)
-                return STOPPED_STATUS
+                return STOPPED_EXIT_STATUS
             job = ranks.call_on_first_rank(lambda: job_of_config(path, config, text, flutter))
         ranks.require_on_all_ranks(require_solvers)
         return _RankRun(ranks, job, output, request, stop).run()
@@ -54,8 +50,8 @@ def run_config(path: Path, output: Path, request: RunRequest, stop: StopRequest)
 class _RankRun:
     """The part of a run that this rank executes."""
 
-    store: ResultFileWriter
-    """The result file, on the first rank, after `_open_store`."""
+    result_file_writer: ResultFileWriter
+    """The result file, on the first rank, after `_open_result_file`."""
 
     def __init__(self, ranks: Ranks, job: Job, output: Path, request: RunRequest, stop: StopRequest):
         from ...solve.backend.petsc import blas_description
@@ -72,7 +68,7 @@ class _RankRun:
         self.log = TracebackLog(output, ranks.rank, self.job.point_text, request.strict)
         self.solver = guarded_solver(job.solver(), job.layout, self.log)
         self.kernels = provenance.merged_blas_kernels(ranks.gather(blas_description()) or [])
-        self.plan = plan_of(job, self.solver, self.shard, self.kernels)
+        self.plan = result_file_plan(job, self.solver, self.shard, self.kernels)
         self.prepare = cache(self.solver.warm_up)
         self.shard_solver = ShardSolver(
             ranks=ranks, job=job, solver=self.solver, plan=self.plan, shard=self.shard, output=output,
@@ -87,29 +83,30 @@ class _RankRun:
         """Solves the missing points, writes the results into the file, and returns the exit status."""
         replaces = self.request.fresh or self.request.extend
         if self.ranks.call_on_first_rank(lambda: replaces or not self.output.exists()):
-            plan = with_variables_from_config(self.plan, self.job.task, self.ranks, self.stop)
+            plan = plan_with_variables_from_config(self.plan, self.job.task, self.ranks, self.stop)
             if plan is None:
                 report_stop(self.ranks, self.stop)
-                return STOPPED_STATUS
+                return STOPPED_EXIT_STATUS
             self.plan = plan
-        missing = self.ranks.call_on_first_rank(self._open_store)
+        missing = self.ranks.call_on_first_rank(self._open_result_file)
         items, requested_count = self.shard_solver.items_to_solve(missing)
         if self.ranks.is_first:
             points = self.job.points.count
             shard_clause = f"; shard {self.shard}" if self.shard.shard_count > 1 else ""
             kept_clause = f", {points - index_count(missing)} kept" if points > index_count(missing) else ""
-            if self.sweep_wide and self._lacks_only_sweep_wide(index_count(missing) - requested_count):
+            left_count = index_count(missing) - requested_count
+            if self.sweep_wide and self._lacks_only_sweep_wide_variables(left_count):
                 kept_clause += ", then the curves"
-            self._print_message(
-                f"{self.output}: {requested_count} of {counted(points, 'point')} to "
-                f"do{kept_clause}{shard_clause}"
-            )
-        contributions: list[RunContribution] = []
+            points_text = f"{requested_count} of {counted(points, 'point')} to do"
+            self._print_message(f"{self.output}: {points_text}{kept_clause}{shard_clause}")
+        contributions: list[ReportOfRank] = []
         if requested_count:
             self.ranks.call_on_first_rank(self._record_blas_kernels)
             contribution = self.shard_solver.solve(items, missing, requested_count, self.prepare)
             contributions = self.ranks.gather(contribution) or []
-        pending = self.ranks.call_on_first_rank(lambda: self._add_journals(requested_count, contributions))
+        pending = self.ranks.call_on_first_rank(
+            lambda: self._write_points_of_journals(requested_count, contributions)
+        )
         solved: dict[str, int] = {}
         if self.sweep_wide:
             title = None if self.request.quiet else self.job.title
@@ -119,12 +116,12 @@ class _RankRun:
             lambda: self._finish(requested_count, contributions, pending, solved, exceptions)
         )
 
-    def _lacks_only_sweep_wide(self, missing: int) -> bool:
+    def _lacks_only_sweep_wide_variables(self, missing: int) -> bool:
         """Whether the file lacks only the variables that depend on all points; called on the first rank."""
-        return not missing and "finished" not in self.store.attributes()
+        return not missing and "finished" not in self.result_file_writer.attributes()
 
-    def _add_journals(
-        self, requested_count: int, contributions: list[RunContribution]
+    def _write_points_of_journals(
+        self, requested_count: int, contributions: list[ReportOfRank]
     ) -> PendingSweepWideVariables:
         """Writes the points of all journals into the file; returns whether variables that depend on all
         points are still missing, with their work items. requested_count: number of points to be solved in
@@ -133,8 +130,8 @@ class _RankRun:
         if requested_count:
             history = run_history(contributions, self.ranks.MPI.Get_library_version())
             attributes = {"started": self.date_at_start, "stopped": self.stop.name}
-            self.store.add_journals(last_run_attributes(self.plan) | history | attributes)
-        if not self._lacks_only_sweep_wide(index_count(self.store.missing())):
+            self.result_file_writer.add_journals(last_run_attributes(self.plan) | history | attributes)
+        if not self._lacks_only_sweep_wide_variables(index_count(self.result_file_writer.missing_ranges())):
             return PendingSweepWideVariables(False)
         if not self.sweep_wide:
             return PendingSweepWideVariables(True)
@@ -147,27 +144,29 @@ class _RankRun:
         if is_problem or not self.request.quiet:
             click.echo(text)
 
-    def _open_store(self) -> list[IndexRange]:
+    def _open_result_file(self) -> list[IndexRange]:
         """Opens or creates the result file; returns the ranges of the flat indices of missing points."""
-        self.store = ResultFileWriter(self.output, self.plan, self.request.fresh, self.request.extend)
-        if self.sweep_wide and (self.request.fresh or not self._lacks_only_sweep_wide(0)):
+        self.result_file_writer = ResultFileWriter(
+            self.output, self.plan, self.request.fresh, self.request.extend
+        )
+        if self.sweep_wide and (self.request.fresh or not self._lacks_only_sweep_wide_variables(0)):
             self.sweep_wide.item_results.remove_all()
-        self._print_store_notes()
-        return self.store.missing()
+        self._print_result_file_notes()
+        return self.result_file_writer.missing_ranges()
 
-    def _print_store_notes(self) -> None:
+    def _print_result_file_notes(self) -> None:
         """Prints the notes of the store on points and journals found in unexpected places."""
-        for note in self.store.notes:
+        for note in self.result_file_writer.notes:
             self._print_message(f"{self.output}: {note}", is_problem=True)
-        self.store.notes.clear()
+        self.result_file_writer.notes.clear()
 
     def _record_blas_kernels(self) -> None:
         """Stores the names of the BLAS kernels of all ranks, and prints a warning if the kernels differ."""
-        attributes = self.store.attributes()
+        attributes = self.result_file_writer.attributes()
         stored = provenance.blas_kernels_in(attributes)
         kernels = provenance.merged_blas_kernels(stored, self.kernels.splitlines())
         if kernels != attributes.get(provenance.KERNELS_ATTRIBUTE):
-            self.store.add_journals({provenance.KERNELS_ATTRIBUTE: kernels})
+            self.result_file_writer.add_journals({provenance.KERNELS_ATTRIBUTE: kernels})
         if sentence := provenance.several_kernels_warning(kernels):
             click.echo(f"{self.output}: {sentence}")
 
@@ -178,16 +177,18 @@ class _RankRun:
             return False
         result = self.sweep_wide.result(pending.work_items) if self.sweep_wide else SweepWideResult(())
         if result is None:
-            self.store.add_journals({"stopped": self.stop.name})
+            self.result_file_writer.add_journals({"stopped": self.stop.name})
             return True
         attributes = {"finished": provenance.utc_time(), "stopped": self.stop.name}
-        reasons = failure_reasons_of_changed_points(result, self.solver.statuses, self.job.point_text)
-        self.store.finish(attributes, FinalVariables(result.variables, result.changed_points, reasons))
+        reasons = changed_point_failure_reasons(result, self.solver.statuses, self.job.point_text)
+        self.result_file_writer.finish(
+            attributes, FinalAdditions(result.sweep_wide_variables, result.changed_points, reasons)
+        )
         if self.sweep_wide:
             self.sweep_wide.item_results.remove_all()
         return False
 
-    def _print_failures(self, contributions: list[RunContribution], exceptions: int) -> None:
+    def _print_failures(self, contributions: list[ReportOfRank], exceptions: int) -> None:
         """Prints the first failed points, and the name of the file with the tracebacks of exceptions."""
         failures = [failure for contribution in contributions for failure in contribution.failures]
         columns = self.job.points.columns_by_name
@@ -207,7 +208,7 @@ class _RankRun:
     def _finish(
         self,
         requested_count: int,
-        contributions: list[RunContribution],
+        contributions: list[ReportOfRank],
         pending: PendingSweepWideVariables,
         solved: dict[str, int],
         exceptions: int,
@@ -216,10 +217,10 @@ class _RankRun:
         as from `solve_all`. exceptions: number of unforeseen exceptions on all ranks."""
         lacks_sweep_wide_variables = self._write_variables_and_check_missing(pending)
         sweep_wide = self.sweep_wide
-        missing_points = self.store.missing()
-        self._print_store_notes()
-        counts = self.store.status_counts()
-        self.store.close()
+        missing_points = self.result_file_writer.missing_ranges()
+        self._print_result_file_notes()
+        counts = self.result_file_writer.status_counts()
+        self.result_file_writer.close()
         unsolved_count = self.shard_solver.items_to_solve(missing_points)[1]
         text = f"shard {self.shard} of {self.output}" if missing_points else f"{self.output}"
         run_end = RunStatistics(
@@ -228,7 +229,7 @@ class _RankRun:
             unsolved_points=unsolved_count,
             points_stored_at_end=self.job.points.count - index_count(missing_points),
             seconds=self.seconds,
-            curve_seconds=time.monotonic() - self.clock_at_start - self.seconds,
+            sweep_wide_seconds=time.monotonic() - self.clock_at_start - self.seconds,
             interrupted_points=sum(contribution.statistics.was_interrupted for contribution in contributions),
             solved_items=solved if pending.is_missing and sweep_wide else None,
             items_for_next_run=len(sweep_wide.results) if sweep_wide and lacks_sweep_wide_variables else None,
@@ -242,7 +243,7 @@ class _RankRun:
         if unsolved_count or lacks_sweep_wide_variables:
             end_text = f"stopped by {self.stop.name}" if self.stop else "not complete"
             click.echo(f"{end_text}; {run_end.stored_points_clause()}, the same command continues the run")
-            return STOPPED_STATUS
+            return STOPPED_EXIT_STATUS
         if is_problem:
             click.echo(f"  `rodsweep show {self.output}` says what each status means")
         return int(is_problem)

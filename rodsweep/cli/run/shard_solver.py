@@ -25,7 +25,7 @@ from ...sweep.stop import StopRequest
 from ...tasks.protocol import Solver
 from ...tasks.running.job import Job
 from ...tasks.running.unforeseen_exceptions import FailureReasons
-from .run_end import RunContribution
+from .run_end import ReportOfRank
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,15 +55,15 @@ class ShardSolver:
 
         missing: ranges of the flat indices of all missing points.
         """
-        if self.solver.grouped is not None:
-            groups = self.solver.grouped[0]
+        if self.solver.groups_and_group_solver is not None:
+            groups = self.solver.groups_and_group_solver[0]
             items = self.shard.ranges_of_shard(groups.unsolved_ranges(missing), groups.count)
-            return items, groups.missing_total(items, missing)
-        if self.solver.chained is None:
+            return items, groups.missing_point_count(items, missing)
+        if self.solver.sweep_chains is None:
             items = self.shard.ranges_of_shard(missing, self.job.points.count)
             return items, index_count(items)
         is_missing = IndexSet(missing)
-        chains = self.solver.chained.chains
+        chains = self.solver.sweep_chains.chains
         items = self.shard.ranges_of_shard(chains.unsolved_ranges(is_missing), chains.count)
         missing_counts = (is_missing[chains.indices(chain)].sum() for item in items for chain in range(*item))
         return items, int(sum(missing_counts))
@@ -74,7 +74,7 @@ class ShardSolver:
         missing: list[IndexRange],
         missing_count: int,
         prepare: Callable[[], object],
-    ) -> RunContribution:
+    ) -> ReportOfRank:
         """Solves work items together with all other ranks; writes this rank's results into its journal.
 
         items, missing_count: returned by `items_to_solve`. prepare: function called before the first solve.
@@ -87,9 +87,9 @@ class ShardSolver:
         def keep(index: PointIndexOrIndices, result: Any) -> None:
             is_new = reasons.add(index, result)
             if isinstance(result, GroupResult):
-                journal.append_all(np.asarray(index), result.values, is_new)
+                journal.append_all(np.asarray(index), result.variable_values, is_new)
             else:
-                journal.append(int(index), solver.record(int(index), result), is_new)
+                journal.append(int(index), solver.file_values_of_outcome(int(index), result), is_new)
 
         is_shown = self.ranks.is_first and not self.quiet
         reporter = ProgressReporter(missing_count, self.job.title) if is_shown else SilentProgress()
@@ -107,24 +107,28 @@ class ShardSolver:
             ) from error
         finally:
             reporter.close()
-        failures = list(reasons.examples.values())
-        return RunContribution(host=socket.gethostname(), failures=failures, statistics=contribution)
+        failures = list(reasons.example_by_reason.values())
+        return ReportOfRank(host=socket.gethostname(), failures=failures, statistics=contribution)
 
     def _solve_item(
         self, missing: IndexSet, directory: Path
     ) -> Callable[[int], Iterable[tuple[PointIndexOrIndices, Any]]]:
         """Function from the number of a work item (a point, a chain or a group) to its results."""
         solver = self.solver
-        if solver.grouped:
-            return GroupSolver(*solver.grouped, solver.solve, missing)
-        if solver.chained:
-            checkpoints = Checkpoints(directory, self.plan.fingerprint, solver.chained.state_from_arrays)
-            return ChainSolver(solver.chained, missing, checkpoints, self.stop)
+        if solver.groups_and_group_solver:
+            return GroupSolver(*solver.groups_and_group_solver, solver.solve, missing)
+        if solver.sweep_chains:
+            checkpoints = Checkpoints(directory, self.plan.fingerprint, solver.sweep_chains.state_from_arrays)
+            return ChainSolver(solver.sweep_chains, missing, checkpoints, self.stop)
         return lambda index: ((index, solver.solve(index)),)
 
     def _item_name(self, item: int) -> str:
         """Name of a work item for the progress display. A group has the name of its first point."""
-        if self.solver.chained:
-            return f"chain {item + 1} of {self.solver.chained.chains.count}, from neighbour to neighbour"
-        first_index = int(self.solver.grouped[0].indices(item)[0]) if self.solver.grouped else item
+        if self.solver.sweep_chains:
+            return f"chain {item + 1} of {self.solver.sweep_chains.chains.count}, from neighbour to neighbour"
+        first_index = (
+            int(self.solver.groups_and_group_solver[0].indices(item)[0])
+            if self.solver.groups_and_group_solver
+            else item
+        )
         return f"point {first_index + 1} of {self.job.points.count}"

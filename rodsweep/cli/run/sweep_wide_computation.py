@@ -15,9 +15,9 @@ from ...sweep.chunk_queue import ChunkQueue, DependentItemQueue
 from ...sweep.loop import PointIndexOrIndices, RankStatistics, SweepCallbacks, sweep
 from ...sweep.progress import ProgressReporter, SilentProgress
 from ...sweep.ranks import Ranks
-from ...sweep.stop import RankListener, SingleRankCommunication, StopRequest
+from ...sweep.stop import SingleRankCommunication, SolverReportListener, StopRequest
 from ...tasks.protocol import NamedArrays, SweepWideResult, SweepWideSolver, WorkItems
-from ...tasks.running.unforeseen_exceptions import RUN_ENDING_EXCEPTIONS, SweepWideExceptionNote
+from ...tasks.running.unforeseen_exceptions import RUN_ENDING_EXCEPTIONS, SweepWideExceptionCallback
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +40,7 @@ class SweepWideComputation:
         solver: SweepWideSolver,
         output: Path,
         fingerprint: str,
-        note: SweepWideExceptionNote,
+        note: SweepWideExceptionCallback,
         stop: StopRequest,
     ):
         """solver: computes the variables. note: function called with every unforeseen exception; the result
@@ -66,8 +66,8 @@ class SweepWideComputation:
         while items is not None:
             pending = PendingSweepWideVariables(True, items)
             contributions = self.ranks.gather(self.solve(items, prepare, title)) or []
-            count = sum(contribution.solved_points for contribution in contributions)
-            solved_counts[items.outcome] = solved_counts.get(items.outcome, 0) + count
+            count = sum(contribution.solved_point_count for contribution in contributions)
+            solved_counts[items.done_item_phrase] = solved_counts.get(items.done_item_phrase, 0) + count
             items = self.ranks.call_on_first_rank(partial(self._next_items, items))
         return pending, solved_counts
 
@@ -94,8 +94,8 @@ class SweepWideComputation:
         if self.ranks.is_first and title:
             reporter = ProgressReporter(None, f"{title}, curves", items.progress_noun)
         loop = SweepCallbacks(
-            solve=partial(self._solve_item, items), store=keep, prepare=prepare, new_results=take_results,
-            item_label=items.item_label,
+            solve=partial(self._solve_item, items), store=keep, prepare=prepare,
+            results_since_last_call=take_results, item_label=items.item_label,
         )  # fmt: skip
         try:
             return sweep(self.ranks, queue, loop, reporter, self.stop)
@@ -132,6 +132,6 @@ class SweepWideComputation:
         if the run was stopped before these variables were complete."""
         if items is not None and items.items_to_solve(self.results):
             return None
-        with suppress(SolveStopped), reporting_to(RankListener(SingleRankCommunication(), self.stop)):
+        with suppress(SolveStopped), reporting_to(SolverReportListener(SingleRankCommunication(), self.stop)):
             return self.solver.result(read_view(self.output), self.results)
         return None

@@ -10,18 +10,18 @@ estimates are the values of an axis of gamma3.
 from collections.abc import Mapping
 from itertools import chain
 
-from ...model.arm.quantities import LOAD_OF_RATIO, LOADS, SECTION_SIZE_NAMES
+from ...model.arm.quantities import LOAD_NAME_BY_RELATIVE_LOAD, LOAD_NAMES, SECTION_SIZE_NAMES
 from ...model.parameters import PARAMETERS
 
-LOAD_KEYS = (*LOADS, *LOAD_OF_RATIO)
+LOAD_KEYS = (*LOAD_NAMES, *LOAD_NAME_BY_RELATIVE_LOAD)
 """Names of the config keys for the load, absolute or relative to flutter. An arm has at most one load."""
-SINGLE_PARAMETER_OF = dict.fromkeys(LOADS, "F") | {"poisson": "k2"}
+SINGLE_PARAMETER_OF = dict.fromkeys(LOAD_NAMES, "F") | {"poisson": "k2"}
 """Name of the only parameter that depends on a quantity of the arm, by name of the quantity. Quantities on
 which several parameters depend are not included."""
-PARAMETER_CHANGED_ALONG = SINGLE_PARAMETER_OF | dict.fromkeys(LOAD_OF_RATIO, "F")
+PARAMETER_CHANGED_ALONG = SINGLE_PARAMETER_OF | dict.fromkeys(LOAD_NAME_BY_RELATIVE_LOAD, "F")
 """Name of the parameter that changes along an axis of a grid over an arm's quantities, by name of the
 axis."""
-STORAGE_AXIS_OF_QUANTITY = SINGLE_PARAMETER_OF | {"drag": "gamma3", "tau2": "gamma3"}
+FILE_AXIS_OF_QUANTITY = SINGLE_PARAMETER_OF | {"drag": "gamma3", "tau2": "gamma3"}
 """Name of the parameter along whose axis a result file stores several values of a quantity or a unit of the
 arm, by name of this quantity or unit."""
 FLUID_QUANTITIES = ("viscosity", "fluid_density", "density_difference")
@@ -40,8 +40,8 @@ def grid_axis_names(sizes: Mapping[str, int], in_diagram: bool) -> tuple[str, ..
     sizes: number of values of each given quantity, and of each parameter that replaces the arm's value.
     """
     names = (name for name in (*NON_LOAD_KEYS, *LOAD_KEYS) if name in sizes)
-    quantities = [name for name in names if sizes[name] > 1 or name in LOAD_OF_RATIO]
-    if all(name in (STORAGE_AXIS_OF_QUANTITY if in_diagram else SINGLE_PARAMETER_OF) for name in quantities):
+    quantities = [name for name in names if sizes[name] > 1 or name in LOAD_NAME_BY_RELATIVE_LOAD]
+    if all(name in (FILE_AXIS_OF_QUANTITY if in_diagram else SINGLE_PARAMETER_OF) for name in quantities):
         return ()
     return (*quantities, *(name for name in PARAMETERS if sizes.get(name, 1) > 1))
 

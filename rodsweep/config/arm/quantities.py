@@ -8,7 +8,7 @@ from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
 from ...arrays import list_of
 from ...errors import InputError, short_repr
 from ...model.arm.drag import ALL_DRAG_ESTIMATES_NAME, DRAG_ESTIMATE_NAMES
-from ...model.arm.quantities import LOAD_OF_RATIO, UNITS
+from ...model.arm.quantities import LOAD_NAME_BY_RELATIVE_LOAD, UNITS_AND_EXAMPLES
 from ...model.units import load_over_flutter, quantity_in_si, split_quantity, value_in_unit
 from ..axis import AXIS_SCHEMA, RANGE_ENDS, Axis, as_axis
 from ..values import as_float
@@ -41,7 +41,7 @@ def _missing_unit_remark(name: str, span: dict[str, Any]) -> str:
     unitless = [end for end in RANGE_ENDS if end in span and not isinstance(span[end], str)]
     if len(unitless) != 1 or not all(end in span for end in RANGE_ENDS):
         return ""
-    unit = UNITS[name][0]
+    unit = UNITS_AND_EXAMPLES[name][0]
     return f" in {unit}; {unitless[0]} has no unit, so it is in {unit}"
 
 
@@ -50,7 +50,7 @@ def _si_number(name: str, value: Any) -> float:
     if not isinstance(value, str):
         return as_float(value)
     try:
-        return quantity_in_si(f"parameters.arm.{name}", value, *UNITS[name])
+        return quantity_in_si(f"parameters.arm.{name}", value, *UNITS_AND_EXAMPLES[name])
     except InputError as error:
         raise ValueError(str(error)) from None
 
@@ -63,8 +63,8 @@ def with_load_over_flutter(section: Mapping[str, Any]) -> dict[str, Any]:
     or if both `pressure` and `pressure_over_flutter` (or both force keys) are given.
     """
     result = dict(section)
-    for name, load in LOAD_OF_RATIO.items():
-        values = _written_values(section.get(load))
+    for name, load in LOAD_NAME_BY_RELATIVE_LOAD.items():
+        values = _values_as_written(section.get(load))
         ratios = [None if value is None else load_over_flutter(value) for value in values]
         if all(ratio is None for ratio in ratios):
             continue
@@ -110,8 +110,8 @@ def drag_names_of_indices(indices: list[float]) -> list[str]:
 def typed_unit(name: str, axis: Axis) -> str:
     """First unit that the user typed for the values of an axis of the quantity `name`; the SI unit if no unit
     was typed."""
-    units = [split_quantity(value)[1] for value in _written_values(axis.written) if isinstance(value, str)]
-    return next(filter(None, units), UNITS[name][0])
+    units = [split_quantity(value)[1] for value in _values_as_written(axis.written) if isinstance(value, str)]
+    return next(filter(None, units), UNITS_AND_EXAMPLES[name][0])
 
 
 def quantities_as_typed(quantities: Mapping[str, Axis]) -> str:
@@ -128,17 +128,20 @@ def quantities_as_typed(quantities: Mapping[str, Axis]) -> str:
             has_all = len(drag_list) == len(DRAG_ESTIMATE_NAMES)
             typed.append(f"drag {ALL_DRAG_ESTIMATES_NAME if has_all else ' and '.join(drag_list)}")
             continue
-        unit = typed_unit(name, axis) if name in UNITS else ""
-        texts = [f"{value_in_unit(end, unit, UNITS[name][0]) if unit else end:.6g}" for end in end_values]
+        unit = typed_unit(name, axis) if name in UNITS_AND_EXAMPLES else ""
+        texts = [
+            f"{value_in_unit(end, unit, UNITS_AND_EXAMPLES[name][0]) if unit else end:.6g}"
+            for end in end_values
+        ]
         typed.append(f"{name} {' to '.join(dict.fromkeys(texts))} {unit}".rstrip())
-        written_values = _written_values(axis.written)
+        written_values = _values_as_written(axis.written)
         if unit and not all(isinstance(written, str) or written == 0 for written in written_values):
             unitless.append(name)
     hint = f" ({' and '.join(unitless)} without a unit: SI)" if unitless else ""
     return f"{', '.join(typed)}{hint}".replace("_", " ")
 
 
-def _written_values(written: Any) -> list[Any]:
+def _values_as_written(written: Any) -> list[Any]:
     """List of the values in `written`, a quantity as the user wrote it; for a range, [start, stop]."""
     if isinstance(written, Mapping):
         return [written.get(end) for end in RANGE_ENDS]

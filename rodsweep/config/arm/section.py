@@ -11,9 +11,16 @@ from pydantic import Field, model_validator
 from ...arrays import Array, list_of
 from ...errors import InputError
 from ...model.arm.arm import SlenderArm
-from ...model.arm.quantities import ARM_SCALES, LOAD_OF_RATIO, LOADS, QUANTITIES, SCALE_NAMES, UNITS
+from ...model.arm.quantities import (
+    ARM_SCALES,
+    GIVEN_QUANTITIES,
+    LOAD_NAME_BY_RELATIVE_LOAD,
+    LOAD_NAMES,
+    LOAD_SCALE_NAMES,
+    UNITS_AND_EXAMPLES,
+)
 from ...model.material.rod_material import RodMaterial
-from ...model.parameters import NONLINEAR_PARAMETERS, parameter_names_except
+from ...model.parameters import NONLINEAR_ROD_PARAMETER_NAMES, parameter_names_except
 from ..axis import Axis, ParameterAxis
 from ..material import LawName, SectionName
 from ..values import StrictConfigSection
@@ -108,7 +115,7 @@ class ArmConfig(StrictConfigSection):
         return material_of(self)
 
     @property
-    def material(self) -> dict[str, Any]:
+    def given_material_keys(self) -> dict[str, Any]:
         """Values of the given keys among segments, law and section, by key."""
         return {name: getattr(self, name) for name in MATERIAL_KEYS if getattr(self, name) is not None}
 
@@ -130,16 +137,15 @@ class ArmConfig(StrictConfigSection):
         return next((name for name in LOAD_KEYS if getattr(self, name) is not None), None)
 
     @property
-    def load(self) -> str | None:
+    def load_name(self) -> str | None:
         """Name of the given load, "pressure" or "force", absolute or relative; None if no load is given."""
-        return LOAD_OF_RATIO.get(str(self.load_key), self.load_key)
+        return LOAD_NAME_BY_RELATIVE_LOAD.get(str(self.load_key), self.load_key)
 
     @property
     def varying_quantities(self) -> tuple[str, ...]:
         """Names of the quantities that have several values or are relative to flutter."""
-        return tuple(
-            name for name, axis in self.quantity_axes.items() if axis.size > 1 or name in LOAD_OF_RATIO
-        )
+        axes = self.quantity_axes.items()
+        return tuple(name for name, axis in axes if axis.size > 1 or name in LOAD_NAME_BY_RELATIVE_LOAD)
 
     @property
     def settings_of_results(self) -> dict[str, Any]:
@@ -147,15 +153,9 @@ class ArmConfig(StrictConfigSection):
         keys, by name; None for a quantity that varies between points."""
         grid_names = SINGLE_PARAMETER_OF if self.is_parameter_grid else self.varying_quantities
         si_values = {name: None if name in grid_names else value for name, value in self.first_values.items()}
-        load_kind_setting = {} if self.load_kind is None else {"load_kind": self.load_kind}
-        return (
-            si_values
-            | {
-                name: list(key_value) if name == "segments" else key_value
-                for name, key_value in self.material.items()
-            }
-            | load_kind_setting
-        )
+        load_kind = {} if self.load_kind is None else {"load_kind": self.load_kind}
+        segments = {} if self.segments is None else {"segments": list(self.segments)}
+        return si_values | self.given_material_keys | segments | load_kind
 
     @property
     def is_parameter_grid(self) -> bool:
@@ -172,15 +172,15 @@ class ArmConfig(StrictConfigSection):
         """Raises ValueError for a value out of range, or if the model does not cover a grid's first arm."""
         for name, axis in self.quantity_axes.items():
             smallest_value = float(axis.array()[0])
-            if name in LOAD_OF_RATIO and smallest_value < 0:
+            if name in LOAD_NAME_BY_RELATIVE_LOAD and smallest_value < 0:
                 raise ValueError(f"parameters.arm.{name} = {smallest_value:.6g} is below 0")
-            if name in UNITS and not (QUANTITIES[name].may_be_nonpositive or smallest_value > 0):
-                hint = (
-                    "; leave it out for a solid arm" if name == "inner_radius" and smallest_value == 0 else ""
-                )
-                raise ValueError(
-                    f"parameters.arm.{name} = {smallest_value:.6g} {UNITS[name][0]} is not above 0{hint}"
-                )
+            if smallest_value > 0 or name not in UNITS_AND_EXAMPLES:
+                continue
+            if not GIVEN_QUANTITIES[name].may_be_nonpositive:
+                value_text = f"{smallest_value:.6g} {UNITS_AND_EXAMPLES[name][0]}"
+                is_solid = name == "inner_radius" and smallest_value == 0
+                hint = "; leave it out for a solid arm" if is_solid else ""
+                raise ValueError(f"parameters.arm.{name} = {value_text} is not above 0{hint}")
         if self.is_parameter_grid:
             self.arm_of(self.first_values, with_load=True)
 
@@ -191,14 +191,14 @@ class ArmConfig(StrictConfigSection):
         Raises ValueError if the arm is not slender, or if the smallest load crushes the arm.
         """
         arm = self.arm_of(self.first_values, with_load=True)
-        names = (*parameter_names_except("F", NONLINEAR_PARAMETERS), *self.cone_parameters)
+        names = (*parameter_names_except("F", NONLINEAR_ROD_PARAMETER_NAMES), *self.cone_parameter_names)
         axes = {name: Axis(values=(arm.parameter(name),)) for name in names}
         for name in ("k2", "gamma3"):
             distinct = {getattr(self.arm_of(values), name) for values in self.values_of_arms()}
             axes[name] = Axis(values=tuple(sorted(distinct)))
-        if self.load:
-            axis = self.quantity_axes[self.load].scaled(1 / getattr(arm, SCALE_NAMES[self.load]))
-            axes = {"F": axis} | axes
+        if self.load_name:
+            load_scale = getattr(arm, LOAD_SCALE_NAMES[self.load_name])
+            axes = {"F": self.quantity_axes[self.load_name].scaled(1 / load_scale)} | axes
         return axes
 
     def grid_quantities(self) -> dict[str, Array]:
@@ -217,7 +217,7 @@ class ArmConfig(StrictConfigSection):
         return {name: array[0] if len(array) == 1 else array for name, array in (values | units).items()}
 
     @property
-    def cone_parameters(self) -> tuple[str, ...]:
+    def cone_parameter_names(self) -> tuple[str, ...]:
         """Names of parameters that only cones have: ("taper",) for cones, else ()."""
         return () if self.tip_radius is None else ("taper",)
 
@@ -239,11 +239,11 @@ class ArmConfig(StrictConfigSection):
         flutter is always left out. Raises ArmOutsideModel if the rod model does not apply to the arm.
         """
         section: dict[str, Any] = {name: value for name, value in values.items() if name in NON_LOAD_KEYS}
-        has_load = with_load and self.load_key in LOADS
+        has_load = with_load and self.load_key in LOAD_NAMES
         section |= {str(self.load_key): values[str(self.load_key)]} if has_load else NO_LOAD
         (drag,) = drag_names_of_indices([section.pop("drag", 0.0)])
         try:
-            return SlenderArm(**section, **self.material, drag=drag)
+            return SlenderArm(**section, **self.given_material_keys, drag=drag)
         except InputError as error:
             if type(error) in STATUS_OF_ERROR:
                 raise ArmOutsideModel(error) from None

@@ -10,7 +10,13 @@ from pydantic import BeforeValidator, WithJsonSchema
 
 from ...arrays import list_of
 from ...errors import InputError
-from ...model.arm.segments import EXAMPLE_SEGMENT, MAX_SEGMENTS, SEGMENT_KEYS, segment_texts, segments_of
+from ...model.arm.segments import (
+    EXAMPLE_SEGMENT,
+    MAX_SEGMENTS,
+    SEGMENT_KEYS,
+    segment_texts,
+    segments_from_texts,
+)
 from ...model.material.rod_material import DEFAULT_MATERIAL, RodMaterial
 from ...model.units import unit_of, value_in_unit
 from .status import ArmOutsideModel
@@ -44,7 +50,7 @@ def with_length(section: dict[str, Any]) -> dict[str, Any]:
         return section
     segment_texts = as_segments(section["segments"]) or ()
     unit = unit_of(segment_texts[0].partition(":")[0], "m")
-    total = sum(segment.length for segment in segments_of(segment_texts))
+    total = sum(segment.length for segment in segments_from_texts(segment_texts))
     return section | {"length": f"{value_in_unit(total, unit, 'm'):.15g} {unit}"}
 
 

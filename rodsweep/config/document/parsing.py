@@ -31,14 +31,14 @@ MAX_KEY_DEPTH = 20
 
 
 @contextmanager
-def refusals_with_file(path: Path) -> Iterator[None]:
+def refusals_naming_file(path: Path) -> Iterator[None]:
     """Names the config file `path` at the beginning of refusals raised within the context, of values that are
     checked after the file was read."""
     try:
         yield
     except InputError as error:
         named = InputError(f"{printable_name(path)}: {error}")
-        raise (named.marked_collective() if error.collective else named) from None
+        raise (named.marked_collective() if error.is_collective else named) from None
 
 
 def read_config_text(path: Path) -> str:

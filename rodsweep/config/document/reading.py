@@ -13,21 +13,21 @@ from pydantic import ValidationError
 from ruamel.yaml import YAML
 
 from ...errors import InputError, short_repr
-from ...model.parameters import OPTIONAL_PARAMETERS
+from ...model.parameters import OPTIONAL_PARAMETER_NAMES
 from ...wording import enumeration
 from ..arm.quantities import drag_names_of_indices
 from ..arm.section import ArmConfig
 from ..axis import Axis, axis_from_resolved
 from ..base_config import Config
 from ..material import with_profile_read
-from ..tasks import CONFIGS, makes_diagram
+from ..tasks import CONFIG_CLASSES_BY_TASK, makes_diagram
 from ..values import printable_name
 from .parsing import MAX_KEY_DEPTH, parsed_yaml, read_config_text
 from .refusals import MAX_KEY_LENGTH, dotted_key, message_of_problem, similar_keys
 
 EQUAL_AXIS_VALUES_TOLERANCE = 1e-12
 """Two values of an axis with at most this relative difference are equal within rounding."""
-MAX_HEADER_LENGTH = 10_000
+MAX_CSV_HEADER_LENGTH = 10_000
 """Maximum number of characters of a CSV file's header. `read_points` refuses a file with a longer first
 line."""
 
@@ -56,7 +56,7 @@ def read_config(path: Path, overrides: tuple[str, ...] = ()) -> tuple[Config, st
 def validated_config(tree: dict[str, Any]) -> Config:
     """Config from `tree`, nested dicts of keys and values; InputError, which states the first error, if
     invalid."""
-    config = CONFIGS[_task_name(tree)]
+    config = CONFIG_CLASSES_BY_TASK[_task_name(tree)]
     try:
         return config.model_validate(tree)
     except ValidationError as error:
@@ -80,11 +80,11 @@ def config_from_resolved(config_dict: dict[str, Any]) -> Config:
     rodsweep does not accept the config."""
     try:
         task = config_dict["task"]
-        section: Any = CONFIGS[task].model_fields[task].annotation
+        section: Any = CONFIG_CLASSES_BY_TASK[task].model_fields[task].annotation
         fields = section.model_fields
-        parameters = _with_axes(config_dict["parameters"])
+        parameters = _with_axis_objects(config_dict["parameters"])
         if "arm" in parameters:
-            values = parameters | {"arm": _with_axes(parameters["arm"])}
+            values = parameters | {"arm": _with_axis_objects(parameters["arm"])}
             parameters = _without_arm_axes(values, makes_diagram(task))
         # An option that is not used must not be given, but every resolved config has its default.
         given = {
@@ -93,14 +93,15 @@ def config_from_resolved(config_dict: dict[str, Any]) -> Config:
             if option not in fields or value != fields[option].default
         }
         options = {
-            name: _with_axes(value) if isinstance(value, dict) else value for name, value in given.items()
+            name: _with_axis_objects(value) if isinstance(value, dict) else value
+            for name, value in given.items()
         }
         return validated_config(config_dict | {"parameters": parameters, task: options})
     except (InputError, LookupError, TypeError, AttributeError) as error:
         raise ValueError(f"its config is not valid in this version of rodsweep: {error}") from None
 
 
-def _with_axes(section: dict[str, Any]) -> dict[str, Any]:
+def _with_axis_objects(section: dict[str, Any]) -> dict[str, Any]:
     """Keys and values of a section of a resolved config, with axes as `Axis` objects."""
     return {
         name: axis_from_resolved(value) if name != "arm" and isinstance(value, dict) else value
@@ -181,7 +182,7 @@ def _apply_override(tree: dict, override: str) -> None:
 
 def _task_name(tree: dict) -> str:
     """Name of the task of a parsed config; InputError for an unknown task or a section of another task."""
-    tasks_text = enumeration(tuple(CONFIGS), "or")
+    tasks_text = enumeration(tuple(CONFIG_CLASSES_BY_TASK), "or")
     if "task" not in tree:
         other_names = [name for name in tree if isinstance(name, str) and name not in Config.model_fields]
         if similar := similar_keys("task", other_names):
@@ -189,12 +190,12 @@ def _task_name(tree: dict) -> str:
             raise InputError(f"unknown key {key}; did you mean task? Its value should be {tasks_text}")
         raise InputError(f"task is missing; it should be {tasks_text}")
     task = tree["task"]
-    if not isinstance(task, str) or task not in CONFIGS:
+    if not isinstance(task, str) or task not in CONFIG_CLASSES_BY_TASK:
         given_text = "has no value" if task is None else f"= {short_repr(task)} is not allowed"
         raise InputError(f"task {given_text}; it should be {tasks_text}")
-    for name in CONFIGS:
+    for name in CONFIG_CLASSES_BY_TASK:
         if name in tree and name != task:
-            section: Any = CONFIGS[task].model_fields[task].annotation
+            section: Any = CONFIG_CLASSES_BY_TASK[task].model_fields[task].annotation
             if not isinstance(tree[name], dict) and name in section.model_fields:  # both, as modes
                 raise InputError(f"unknown key {name}; did you mean {task}.{name}?")
             raise InputError(f"{name} is given but the task is {task}; remove it")
@@ -220,7 +221,7 @@ def _with_optional_columns(tree: Any, directory: Path) -> Any:
     if parameters.get("columns") is not None:
         return tree
     header = _header_names(directory / parameters["points"])
-    columns = [name for name in OPTIONAL_PARAMETERS if name in header]
+    columns = [name for name in OPTIONAL_PARAMETER_NAMES if name in header]
     return tree | {"parameters": parameters | {"columns": columns}} if columns else tree
 
 
@@ -230,7 +231,7 @@ def _header_names(path: Path) -> list[str]:
         if not path.is_file():
             return []
         with path.open(newline="", encoding="utf-8-sig") as file:
-            line = file.readline(MAX_HEADER_LENGTH)
+            line = file.readline(MAX_CSV_HEADER_LENGTH)
         return [cell.strip() for cell in next(csv.reader([line]), [])]
     except (OSError, ValueError, csv.Error):
         return []

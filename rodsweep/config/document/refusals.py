@@ -10,7 +10,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from ...errors import short_repr
-from ...model.arm.quantities import radius_of_diameter
+from ...model.arm.quantities import radius_name_of_diameter
 from ...model.parameters import PARAMETERS
 from ...wording import enumeration
 from ..base_config import Config
@@ -61,7 +61,7 @@ def message_of_problem(config: type[Config], problem: Any) -> str:
 def unknown_key_hint(key: str, allowed: Sequence[str], start_kind: str = "known keys are") -> str:
     """Hint for an unknown key: "did you mean ...?" with similar known keys, or a list of all known keys.
     start_kind: beginning of the list. For a diameter, the hint is to give the radius."""
-    if radius := radius_of_diameter(key, allowed):
+    if radius := radius_name_of_diameter(key, allowed):
         return f"give {radius}, half of it"
     if similar := similar_keys(key, allowed):
         return f"did you mean {enumeration(tuple(similar), 'or')}?"

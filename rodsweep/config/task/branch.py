@@ -8,9 +8,9 @@ from pydantic import Field, model_validator
 
 from ...errors import short_repr
 from ...model.parameters import (
-    NONLINEAR_PARAMETERS,
+    NONLINEAR_ROD_PARAMETER_NAMES,
     PARAMETERS,
-    TRANSVERSE_PARAMETERS,
+    TRANSVERSE_PARAMETER_NAMES,
     parameter_names_except,
 )
 from ..base_config import Config
@@ -21,7 +21,7 @@ from ..values import Number, StrictConfigSection
 class BranchOptions(StrictConfigSection):
     """Options of the task branch: parameter and range of the branches, number of stored cycles."""
 
-    along: Literal[TRANSVERSE_PARAMETERS] = "F"  # type: ignore[valid-type]  # pydantic reads it at run time
+    along: Literal[TRANSVERSE_PARAMETER_NAMES] = "F"  # type: ignore[valid-type]  # pydantic reads it at run time
     """Parameter along which branches are followed. All other parameters are axes."""
     start: Annotated[Number, Field(gt=-inf, lt=inf)] = 0.0
     """Smallest value of the parameter `along`; a branch that reaches this value ends."""
@@ -44,13 +44,13 @@ class BranchOptions(StrictConfigSection):
 
     @model_validator(mode="after")
     def _require_valid_range(self) -> "BranchOptions":
-        allowed = PARAMETERS[self.along].allowed
+        allowed = PARAMETERS[self.along].allowed_range
         for key, value in (("start", self.start), ("stop", self.stop)):
             if not allowed.contains(value) or not isfinite(value):
                 # Stiffnesses may be infinite, the ends of a branch may not.
                 raise ValueError(
                     f"{key} = {value:g} is not allowed along {self.along}; it should be "
-                    f"{allowed.finite_description_for(value)}"
+                    f"{allowed.finite_description_for_rejected(value)}"
                 )
         if not self.start < self.stop:
             raise ValueError(f"start = {self.start:g} is not below stop = {self.stop:g}")
@@ -62,6 +62,7 @@ class BranchConfig(Config):
 
     task: Literal["branch"]
     parameters: NonlinearParametersSection
+    """Axes of the parameters, a file of points, or an arm."""
     accuracy: Annotated[Number, Field(ge=1e-11, le=1e-2)] = 1e-7
     """Relative error of the parameter of each cycle at a given deflection, and of its period and largest y at
     the stored parameter p. Where the largest y is steep, |(p/y) dy/dp| > 100 as near Hopf points and folds,
@@ -72,11 +73,12 @@ class BranchConfig(Config):
     branch: BranchOptions = BranchOptions()
 
     parameters_depend_on_options: ClassVar[bool] = True
+    """True: the parameter `along` is not needed."""
 
     @property
     def parameter_names(self) -> tuple[str, ...]:
         return (
-            *parameter_names_except(self.branch.along, NONLINEAR_PARAMETERS),
+            *parameter_names_except(self.branch.along, NONLINEAR_ROD_PARAMETER_NAMES),
             *self.optional_parameters_in_use,
         )
 
@@ -84,12 +86,12 @@ class BranchConfig(Config):
     def rod_parameters_used(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
         along = options.get("along", "F")
         # Options of a Python call may be of any type, as an array, whose comparison is not one truth value.
-        return parameter_names_except(along if isinstance(along, str) else "", NONLINEAR_PARAMETERS)
+        return parameter_names_except(along if isinstance(along, str) else "", NONLINEAR_ROD_PARAMETER_NAMES)
 
     @classmethod
     def refuse_options_of_arm(cls, options: Mapping[str, Any]) -> None:
         along = options.get("along", "F")
-        if isinstance(along, str) and along != "F" and along in TRANSVERSE_PARAMETERS:
+        if isinstance(along, str) and along != "F" and along in TRANSVERSE_PARAMETER_NAMES:
             raise ValueError(
                 f"branch.along: {along} is not allowed with parameters.arm, which gives {along}; follow F, "
                 "or give the parameters without an arm"

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from ...model.parameters import NONLINEAR_PARAMETERS, parameter_names_except
+from ...model.parameters import NONLINEAR_ROD_PARAMETER_NAMES, parameter_names_except
 from ..base_config import Config, CrossingCount
 from ..parameters_section import DEFAULT_F_MAX, NonlinearParametersSection
 from ..values import Number, StrictConfigSection
@@ -31,6 +31,7 @@ class CriticalityConfig(Config):
 
     task: Literal["criticality"]
     parameters: NonlinearParametersSection
+    """Axes of the parameters, a file of points, or an arm."""
     accuracy: Annotated[Number, Field(ge=1e-13, le=1e-2)] = 1e-10
     """Relative error of each Hopf point, of the eigenvalue's slope and of the Landau coefficient. The errors
     of the amplitude coefficient and of the frequency slope follow from these errors; the file has all error
@@ -39,7 +40,7 @@ class CriticalityConfig(Config):
 
     @classmethod
     def rod_parameters_used(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
-        return parameter_names_except("F", NONLINEAR_PARAMETERS)
+        return parameter_names_except("F", NONLINEAR_ROD_PARAMETER_NAMES)
 
     @model_validator(mode="after")
     def _refuse_force(self) -> "CriticalityConfig":

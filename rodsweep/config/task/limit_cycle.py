@@ -4,17 +4,20 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from ...model.parameters import NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS
+from ...model.parameters import NONLINEAR_ROD_PARAMETER_NAMES, OPTIONAL_PARAMETER_NAMES
 from ...wording import enumeration
 from ..arm.axes import SINGLE_PARAMETER_OF
 from ..base_config import Config, NodeCount
 from ..parameters_section import NonlinearParametersSection
 from ..values import Number, StrictConfigSection
 
-LONGEST_AXIS = "longest"
-ChainParameter = Literal[(*NONLINEAR_PARAMETERS, *OPTIONAL_PARAMETERS, *SINGLE_PARAMETER_OF, LONGEST_AXIS)]  # type: ignore[valid-type]  # pydantic reads it at run time, from the table
+LONGEST_AXIS_KEYWORD = "longest"
+# Pydantic reads the names at run time, from the table.
+ChainParameter = Literal[  # type: ignore[valid-type]
+    (*NONLINEAR_ROD_PARAMETER_NAMES, *OPTIONAL_PARAMETER_NAMES, *SINGLE_PARAMETER_OF, LONGEST_AXIS_KEYWORD)
+]
 
-LEAST_PERIODS = {"collocation": 3, "integration": 16}
+MIN_MOST_PERIODS_BY_METHOD = {"collocation": 3, "integration": 16}
 """Smallest allowed `most_periods` by method. Collocation: a shorter motion is not classified. Integration:
 two motions are compared for the errors; the first is integrated over at least ten returns and the second over
 at least six, so that its returns can be compared (`tests/solve/cycle/test_fewest_returns.py`)."""
@@ -32,7 +35,7 @@ class LimitCycleOptions(StrictConfigSection):
     start: Literal["mode", "neighbour", "hopf"] = "mode"
     """Initial guess at each point: the leading mode, the cycle of a neighbouring point, or the cycle near the
     Hopf point."""
-    along: ChainParameter = LONGEST_AXIS
+    along: ChainParameter = LONGEST_AXIS_KEYWORD
     """Parameter along which the cycle of a point is the initial guess at the next point, or the quantity of
     the arm that changes only this parameter; `longest`: the parameter with the most values."""
     direction: Literal["up", "down"] = "up"
@@ -48,7 +51,7 @@ class LimitCycleOptions(StrictConfigSection):
     transient: Annotated[int, Field(ge=0, le=100_000)] = 0
     """Number of times, from the start of the motion until the cycle is reached, at which the tip is stored; 0
     stores no transient."""
-    most_periods: Annotated[int, Field(ge=LEAST_PERIODS["collocation"], le=1_000_000)] = 400
+    most_periods: Annotated[int, Field(ge=MIN_MOST_PERIODS_BY_METHOD["collocation"], le=1_000_000)] = 400
     """Maximum number of periods of the motion, counted as returns of the tip to theta = 0; at least 16 with
     method: integration, which integrates two motions. The maximum number of time steps is 200 times this
     number, and at least 20000. A motion that has not settled by then is `not_settled`."""
@@ -61,6 +64,7 @@ class LimitCycleConfig(Config):
 
     task: Literal["limit_cycle"]
     parameters: NonlinearParametersSection
+    """Axes of the parameters, a file of points, or an arm."""
     accuracy: Annotated[Number, Field(ge=1e-11, le=1e-2)] = 1e-7
     """Relative error of the period and of the tip's largest y. Other extrema of the tip may have errors a
     hundred times larger, relative to the largest y. The file has error estimates of all these numbers."""
@@ -75,7 +79,7 @@ class LimitCycleConfig(Config):
         """
         value_counts = self.parameters.sizes_of_single_parameter_axes
         parameter = self.limit_cycle.along
-        if parameter == LONGEST_AXIS:
+        if parameter == LONGEST_AXIS_KEYWORD:
             return max(value_counts, key=lambda name: value_counts[name], default=parameter)
         return SINGLE_PARAMETER_OF.get(parameter, parameter)
 
@@ -111,11 +115,11 @@ class LimitCycleConfig(Config):
         arm = self.parameters.arm
         parameter = self.limit_cycle.along
         if parameter in SINGLE_PARAMETER_OF and (
-            arm is None or parameter not in {arm.load, *arm.quantity_axes}
+            arm is None or parameter not in {arm.load_name, *arm.quantity_axes}
         ):
             raise ValueError(
                 f"limit_cycle.along is {parameter} but parameters.arm.{parameter} is not given; give it, or "
-                f"set along to {enumeration(NONLINEAR_PARAMETERS, 'or')}"
+                f"set along to {enumeration(NONLINEAR_ROD_PARAMETER_NAMES, 'or')}"
             )
         if self.limit_cycle.start == "neighbour" and self.parameters.is_list:
             raise ValueError(
@@ -129,7 +133,7 @@ class LimitCycleConfig(Config):
     def _require_enough_periods(self) -> None:
         """Raises ValueError if no motion can settle within `most_periods`."""
         options = self.limit_cycle
-        least = LEAST_PERIODS[options.method]
+        least = MIN_MOST_PERIODS_BY_METHOD[options.method]
         if options.most_periods < least:
             raise ValueError(
                 f"limit_cycle.most_periods = {options.most_periods} is not allowed with method: "
@@ -147,7 +151,7 @@ class LimitCycleConfig(Config):
             raise ValueError(
                 f"limit_cycle.start: neighbour needs an axis of a single parameter; those of parameters.arm, "
                 f"{' and '.join(axes)}, change several at once. Give several values of "
-                f"{enumeration((*SINGLE_PARAMETER_OF, *NONLINEAR_PARAMETERS), 'or')}, or start: mode"
+                f"{enumeration((*SINGLE_PARAMETER_OF, *NONLINEAR_ROD_PARAMETER_NAMES), 'or')}, or start: mode"
             )
         raise ValueError(
             f"limit_cycle.along is {parameter} but parameters.{parameter} is not given; give several values "

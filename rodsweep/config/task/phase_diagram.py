@@ -8,17 +8,17 @@ from typing import Annotated, Any, ClassVar, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from ...model.arm.quantities import LOAD_OF_RATIO
-from ...model.parameters import NON_OPTIONAL_LINEAR_PARAMETERS, PARAMETERS, TRANSVERSE_PARAMETERS
+from ...model.arm.quantities import LOAD_NAME_BY_RELATIVE_LOAD
+from ...model.parameters import NON_OPTIONAL_LINEAR_PARAMETER_NAMES, PARAMETERS, TRANSVERSE_PARAMETER_NAMES
 from ...wording import enumeration
 from ..arm.axes import FLUID_QUANTITIES, SINGLE_PARAMETER_OF
 from ..axis import Axis
 from ..base_config import CrossingCount, LinearConfig
-from ..parameters_section import DEFAULT_VALUES_OF_PARAMETERS, DiagramParametersSection, LinearAxes
+from ..parameters_section import DEFAULT_VALUES_OF_PARAMETERS, DiagramParametersSection, LinearAxesSection
 from ..values import Number, StrictConfigSection
 
 
-class BautinAlong(LinearAxes):
+class BautinAlong(LinearAxesSection):
     """The option bautin_along: a third parameter and its values, along which generalised Hopf points are
     followed."""
 
@@ -52,14 +52,14 @@ class PhaseDiagramOptions(StrictConfigSection):
     def bautin_parameter(self) -> tuple[str, Axis] | None:
         """Returns (name, values) of the third parameter, in `bautin_along`; None if `bautin_along` is not
         given."""
-        axes = [(name, getattr(self.bautin_along, name, None)) for name in TRANSVERSE_PARAMETERS]
+        axes = [(name, getattr(self.bautin_along, name, None)) for name in TRANSVERSE_PARAMETER_NAMES]
         return next(((name, axis) for name, axis in axes if axis is not None), None)
 
     @model_validator(mode="after")
     def _require_valid_bautin_along(self) -> "PhaseDiagramOptions":
         if self.bautin_along is None:
             return self
-        names = [name for name in TRANSVERSE_PARAMETERS if getattr(self.bautin_along, name) is not None]
+        names = [name for name in TRANSVERSE_PARAMETER_NAMES if getattr(self.bautin_along, name) is not None]
         if len(names) != 1:
             raise ValueError(f"bautin_along has {len(names)} parameters; give one, with at least two values")
         name = names[0]
@@ -81,14 +81,17 @@ class PhaseDiagramConfig(LinearConfig):
     phase_diagram: PhaseDiagramOptions = PhaseDiagramOptions()
 
     allows_crushed_rods: ClassVar[bool] = True
+    """True: a crushed rod is a state of the diagram."""
     needs_several_rods: ClassVar[bool] = True
+    """True: a diagram needs a grid of rods."""
     nonlinear_parameters_used: ClassVar[tuple[str, ...]] = ("gamma1",)
+    """gamma1, on which the criticality and the cycles depend."""
 
     @property
     def plane_parameters(self) -> tuple[str, ...]:
         """(parameter along a row, parameter across rows): names of the parameters with several values.
 
-        The names are in the order of NON_OPTIONAL_LINEAR_PARAMETERS and OPTIONAL_PARAMETERS.
+        The names are in the order of NON_OPTIONAL_LINEAR_PARAMETER_NAMES and OPTIONAL_PARAMETER_NAMES.
         """
         return tuple(name for name, axis in self.parameters.axes.items() if axis.size > 1)
 
@@ -157,43 +160,36 @@ class PhaseDiagramConfig(LinearConfig):
 
     @model_validator(mode="after")
     def _require_two_axes(self) -> "PhaseDiagramConfig":
-        allowed = enumeration(NON_OPTIONAL_LINEAR_PARAMETERS, "and")
+        allowed = enumeration(NON_OPTIONAL_LINEAR_PARAMETER_NAMES, "and")
         if self.parameters.points is not None:
             raise ValueError(
                 "parameters.points is given but the task phase_diagram needs axes; remove it and give "
                 f"{allowed}"
             )
-        self.parameters.require_points(NON_OPTIONAL_LINEAR_PARAMETERS, or_points=False)
+        self.parameters.require_points(NON_OPTIONAL_LINEAR_PARAMETER_NAMES, or_points=False)
         if self.parameters.arm_axes:
-            varied = next(
-                name for name in self.parameters.arm_axes if name not in (*SINGLE_PARAMETER_OF, "drag")
-            )
-            changed_parameters_text = (
-                "no parameter" if varied in FLUID_QUANTITIES else "several parameters at once"
-            )
-            reason = (
-                "is relative to flutter"
-                if varied in LOAD_OF_RATIO
-                else f"has several values, which change {changed_parameters_text}"
-            )
+            allowed_names = (*SINGLE_PARAMETER_OF, "drag")
+            varied = next(name for name in self.parameters.arm_axes if name not in allowed_names)
+            changed = "no parameter" if varied in FLUID_QUANTITIES else "several parameters at once"
+            reason = f"has several values, which change {changed}"
+            if varied in LOAD_NAME_BY_RELATIVE_LOAD:
+                reason = "is relative to flutter"
             raise ValueError(
-                f"parameters.arm.{LOAD_OF_RATIO.get(varied, varied)} {reason}; the axes of a phase "
-                f"diagram are {enumeration((*SINGLE_PARAMETER_OF, 'drag'), 'or')}, or parameters given in "
-                "addition to the arm"
+                f"parameters.arm.{LOAD_NAME_BY_RELATIVE_LOAD.get(varied, varied)} {reason}; the axes of a "
+                f"phase diagram are {enumeration(allowed_names, 'or')}, or parameters given in addition to "
+                "the arm"
             )
         varied_names = self.plane_parameters
         if len(varied_names) != 2:
             raise ValueError(_axis_count_refusal(varied_names))
         line_axis = self.parameters.axes[varied_names[0]]
         if inf in (line_axis.values or ()):
-            stiffnesses_text = enumeration(
-                tuple(name for name in NON_OPTIONAL_LINEAR_PARAMETERS if PARAMETERS[name].rigid_adjective),
-                "and",
-            )
+            names = NON_OPTIONAL_LINEAR_PARAMETER_NAMES
+            stiffnesses = tuple(name for name in names if PARAMETERS[name].rigid_adjective)
             raise ValueError(
                 f"parameters.{varied_names[0]} contains inf, which is not allowed on the axis along which a "
                 f"phase diagram is searched; remove it (on the other axis, {varied_names[1]}, "
-                f"{stiffnesses_text} may be inf)"
+                f"{enumeration(stiffnesses, 'and')} may be inf)"
             )
         return self
 
@@ -219,14 +215,14 @@ class PhaseDiagramConfig(LinearConfig):
 def _require_finite_values(name: str, values: Sequence[float]) -> None:
     """Raises ValueError for the first of the `values` of the parameter `name` in bautin_along that is
     infinite or outside the range of the parameter."""
-    allowed = PARAMETERS[name].allowed
+    allowed = PARAMETERS[name].allowed_range
     invalid_value = next(
         (value for value in values if not allowed.contains(value) or not isfinite(value)), None
     )
     if invalid_value is not None:
         raise ValueError(
             f"bautin_along.{name} = {invalid_value:g} is not allowed; it must be "
-            f"{allowed.finite_description_for(invalid_value)}"
+            f"{allowed.finite_description_for_rejected(invalid_value)}"
         )
 
 
@@ -237,5 +233,5 @@ def _axis_count_refusal(varied_names: Sequence[str]) -> str:
     names_text = f" ({', '.join(varied_names)})" if varied_names else ""
     return (
         f"parameters has {axis_count_text} with more than one value{names_text}; a phase diagram needs "
-        f"exactly two of {enumeration(TRANSVERSE_PARAMETERS, 'and')}"
+        f"exactly two of {enumeration(TRANSVERSE_PARAMETER_NAMES, 'and')}"
     )

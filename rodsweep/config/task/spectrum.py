@@ -5,7 +5,7 @@ from typing import Any, ClassVar, Literal
 
 from pydantic import model_validator
 
-from ...model.parameters import NON_OPTIONAL_LINEAR_PARAMETERS
+from ...model.parameters import NON_OPTIONAL_LINEAR_PARAMETER_NAMES
 from ..base_config import LinearConfig, ModeCount, NodeCount
 from ..values import StrictConfigSection
 
@@ -37,13 +37,14 @@ class SpectrumConfig(LinearConfig):
     spectrum: SpectrumOptions = SpectrumOptions()
 
     nonlinear_parameters_used: ClassVar[tuple[str, ...]] = ("gamma1",)
+    """gamma1, on which the longitudinal eigenvalues depend."""
 
     @classmethod
     def rod_parameters_used(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
         return (
-            (*NON_OPTIONAL_LINEAR_PARAMETERS, *cls.nonlinear_parameters_used)
+            (*NON_OPTIONAL_LINEAR_PARAMETER_NAMES, *cls.nonlinear_parameters_used)
             if options.get("longitudinal")
-            else NON_OPTIONAL_LINEAR_PARAMETERS
+            else NON_OPTIONAL_LINEAR_PARAMETER_NAMES
         )
 
     @property

@@ -18,11 +18,11 @@ from ...model.compiled.kernel_constants import KernelConstants
 from ..exponents import MACHINE_EPSILON
 from ..parameter_path import ParameterPath
 from .determinant import CoefficientSamples, coefficient_samples, elements_for
-from .elements.minor_rates import PADDED
+from .elements.minor_rates import PADDED_LENGTH
 from .elements.propagators import element_propagators
 from .elements.settings import ARM_ELEMENT_SETTINGS
 
-LINEAR_SCALE = math.inf
+LINEAR_SPACING = math.inf
 """Value of `ArmFamily.scale` for series in p itself, not in a logarithm of p."""
 
 
@@ -32,21 +32,27 @@ class ArmFamilySettings(KernelConstants):
 
     arm_counts: tuple[int, ...] = (12, 17, 24, 24, 34)
     """Number of arms in each trial. 12 suffice on 21 of 24 random paths from 0 to three times a load."""
-    spacing_scales: tuple[float, ...] = (LINEAR_SCALE, LINEAR_SCALE, LINEAR_SCALE, 0.05, 0.05)
+    log_spacing_scales_over_interval: tuple[float, ...] = (
+        LINEAR_SPACING,
+        LINEAR_SPACING,
+        LINEAR_SPACING,
+        0.05,
+        0.05,
+    )
     """`ArmFamily.scale` over the length of the interval, for each trial. Logarithmic spacing needs fewer arms
     near complex forces of the size of the stiffness, where the stretch of rubber has branch points."""
     max_propagator_entries: int = 500_000
     """No family is made if the propagators of one arm have more entries: single arms are then faster."""
-    converged_tail_ratio: float = 1e-15
+    max_chebyshev_tail: float = 1e-15
     """The series has converged if the last two Chebyshev coefficients of every propagator are at most this
     number times its largest entry."""
     coefficient_tolerance_factor: float = 10.0
-    """The tolerance for series of the coefficients along the arms is `converged_tail_ratio` times this
+    """The tolerance for series of the coefficients along the arms is `max_chebyshev_tail` times this
     factor."""
 
     def trials(self) -> list[tuple[int, float]]:
-        """Pairs from `arm_counts` and `spacing_scales`, in the order of the trials."""
-        return list(zip(self.arm_counts, self.spacing_scales, strict=True))
+        """Pairs from `arm_counts` and `log_spacing_scales_over_interval`, in the order of the trials."""
+        return list(zip(self.arm_counts, self.log_spacing_scales_over_interval, strict=True))
 
 
 ARM_FAMILY_SETTINGS = ArmFamilySettings()
@@ -55,19 +61,19 @@ ARM_FAMILY_SETTINGS = ArmFamilySettings()
 class ArmFamily(NamedTuple):
     """Propagators of all arms with p from `p_low` to `p_high`, for |w| <= W, as Chebyshev series in p.
 
-    largest_w: W. scale: the series are in log(1 + (p - low)/scale), or in p if scale is `LINEAR_SCALE`.
-    coefficients: Chebyshev coefficients, (nodes, elements, terms, PADDED). entry_sizes: sizes to which the
-    interpolation errors of propagator entries are relative, at w = 0, and summed over the positive powers of
-    w/W, (elements, 2, PADDED). A size is the largest modulus on the interval, plus the last two Chebyshev
-    coefficients in units of the rounding error.
+    largest_w: W. log_spacing_scale: the series are in log(1 + (p - low)/scale), or in p if scale is
+    `LINEAR_SPACING`. coefficients: Chebyshev coefficients, (nodes, elements, terms, PADDED_LENGTH).
+    reference_entry_sizes: sizes to which the interpolation errors of propagator entries are relative, at w =
+    0, and summed over the positive powers of w/W, (elements, 2, PADDED_LENGTH). A size is the largest modulus
+    on the interval, plus the last two Chebyshev coefficients in units of the rounding error.
     """
 
     p_low: float
     p_high: float
-    scale: float
+    log_spacing_scale: float
     largest_w: float
     coefficients: Array
-    entry_sizes: Array
+    reference_entry_sizes: Array
 
 
 def interpolated_family(path: ParameterPath, low: float, high: float, W: float) -> ArmFamily | None:
@@ -82,19 +88,21 @@ def interpolated_family(path: ParameterPath, low: float, high: float, W: float) 
         if not _series_converges(samples):
             continue
         elements = elements_for(arms, samples, W)
-        entry_count = len(elements.lengths) * ARM_ELEMENT_SETTINGS.max_terms * PADDED
+        entry_count = len(elements.lengths) * ARM_ELEMENT_SETTINGS.max_terms * PADDED_LENGTH
         if entry_count > ARM_FAMILY_SETTINGS.max_propagator_entries:
             # Later trials have as many entries for each arm, so that none of them would be smaller.
             return None
-        propagators = element_propagators([rod.F for rod in arms], elements.local, elements.lengths, W)
-        if _has_small_coefficient_tail(propagators, ARM_FAMILY_SETTINGS.converged_tail_ratio):
+        propagators = element_propagators(
+            [rod.F for rod in arms], elements.local_coefficients, elements.lengths, W
+        )
+        if _has_small_coefficient_tail(propagators, ARM_FAMILY_SETTINGS.max_chebyshev_tail):
             coefficients = np.tensordot(_chebyshev_coefficient_matrix(node_count), propagators, 1)
             # The last coefficients show truncation errors, which may exceed rounding errors of small entries.
             largest_entry = (
                 np.abs(propagators).max(axis=0) + np.abs(coefficients[-2:]).sum(axis=0) / MACHINE_EPSILON
             )
-            entry_sizes = np.stack([largest_entry[:, 0], largest_entry[:, 1:].sum(axis=1)], axis=1)
-            return ArmFamily(low, high, scale, W, np.ascontiguousarray(coefficients), entry_sizes)
+            reference_entry_sizes = np.stack([largest_entry[:, 0], largest_entry[:, 1:].sum(axis=1)], axis=1)
+            return ArmFamily(low, high, scale, W, np.ascontiguousarray(coefficients), reference_entry_sizes)
     return None
 
 
@@ -111,16 +119,16 @@ def has_smooth_coefficients(path: ParameterPath, low: float, high: float) -> boo
 
 def _series_converges(samples: CoefficientSamples) -> bool:
     """Whether the Chebyshev series in p of the coefficients along the arms converges at every sample."""
-    tolerance = ARM_FAMILY_SETTINGS.coefficient_tolerance_factor * ARM_FAMILY_SETTINGS.converged_tail_ratio
+    tolerance = ARM_FAMILY_SETTINGS.coefficient_tolerance_factor * ARM_FAMILY_SETTINGS.max_chebyshev_tail
     # The series are in p, so the axis of the arms comes first.
-    return _has_small_coefficient_tail(np.moveaxis(np.array(samples.local), 1, 0), tolerance)
+    return _has_small_coefficient_tail(np.moveaxis(np.array(samples.local_coefficients), 1, 0), tolerance)
 
 
 def _interpolation_points(low: float, high: float, scale: float, point_count: int) -> Array:
     """Increasing values of p, low to high, of the interpolated arms, (point_count,); scale: see
     `ArmFamily`."""
     t: Array = (chebyshev_points(point_count) + 1) / 2
-    if scale < LINEAR_SCALE:
+    if scale < LINEAR_SPACING:
         t = np.expm1(t * math.log1p((high - low) / scale)) * scale / (high - low)
     # Beyond the interval, by rounding, the model may have no arm.
     return np.minimum(low + (high - low) * t, high)

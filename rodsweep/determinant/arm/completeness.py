@@ -34,48 +34,52 @@ from .value import determinant_from_propagators
 class CompletenessSettings(KernelConstants):
     """Settings for proofs of completeness, and for the points x_j at which D'/D is summed."""
 
-    further_eigenvalue_count: int = 2
+    eigenvalue_count_beyond_modes: int = 2
     """Number of eigenvalues requested beyond the modes to prove. With 2 additional eigenvalues, 59 of 100
     random arms need a count; with 0, 73 arms. A count costs more than two eigenvalues."""
-    point_counts: tuple[int, ...] = (3, 6)
+    real_point_counts: tuple[int, ...] = (3, 6)
     """Numbers k of points x_j of successive trials. Fewer points can lie closer to the hull; more points
     suffice for a wider hull."""
-    max_last_points_over_w: tuple[float, ...] = (1.5, 6.0)
-    """Largest x_k divided by the largest known |w|, for each of `point_counts`. Most proofs with a larger x_k
-    fail, because unknown and known eigenvalues then contribute almost equally."""
-    min_first_point_over_line: float = 0.35
+    max_real_points_over_largest_w: tuple[float, ...] = (1.5, 6.0)
+    """Largest x_k divided by the largest known |w|, for each of `real_point_counts`. Most proofs with a
+    larger x_k fail, because unknown and known eigenvalues then contribute almost equally."""
+    min_real_point_over_line_distance: float = 0.35
     """Smallest x_1 divided by the distance of the line from the imaginary axis."""
-    min_first_point: float = 1e-6
+    min_real_point: float = 1e-6
     """Smallest x_1, in 1/tau2; needed if the line and the hull are close to 0."""
-    point_spread: float = 1.0
+    relative_real_point_spread: float = 1.0
     """(x_k - x_1)/x_1."""
-    widening_factor: float = 1.3
+    real_point_shift_factor: float = 1.3
     """Factor by which the points x_j move outwards until every term of R has a real part >= 0."""
-    strip_count: int = 24
+    hull_strip_count: int = 24
     """Number of vertical strips of the hull right of the line, each with its own bound of Re phi."""
-    max_remainder_fraction: float = 0.7
+    max_remainder_over_contribution: float = 0.7
     """Completeness is proved if R with its rounding error, and -R, are below this fraction of the least
     contribution of an unknown eigenvalue."""
-    rounding_of_slope: float = 10.0
+    log_derivative_rounding_ratio: float = 10.0
     """Relative rounding error of D'/D divided by the relative rounding error of D. Measured: at most 0.08
     between two sets of elements, over 45 random arms."""
-    field_ranges: ClassVar = {"widening_factor": (1.0, math.inf), "max_remainder_fraction": (0.0, 1.0)}
+    field_ranges: ClassVar = {
+        "real_point_shift_factor": (1.0, math.inf),
+        "max_remainder_over_contribution": (0.0, 1.0),
+    }
+    """Exclusive bounds (lower, upper) of fields, by name, that the proofs require; see `KernelConstants`."""
 
     def proof_trials(self) -> list[tuple[int, float]]:
         """Pairs (k, largest x_k divided by the largest known |w|) of all trials, in order."""
-        return list(zip(self.point_counts, self.max_last_points_over_w, strict=True))
+        return list(zip(self.real_point_counts, self.max_real_points_over_largest_w, strict=True))
 
 
 COMPLETENESS_SETTINGS = CompletenessSettings()
 
 
 class Remainder(NamedTuple):
-    """The sum R of phi over all unknown eigenvalues (see the module docstring). rounding: rounding error of
-    R. min_contribution: lower bound of the contribution of an unknown eigenvalue right of the line to R."""
+    """The sum R of phi over all unknown eigenvalues (see the module docstring). min_unknown_contribution:
+    lower bound of the contribution of an unknown eigenvalue right of the line to R."""
 
     R: float
-    rounding: float
-    min_contribution: float
+    rounding_error: float
+    min_unknown_contribution: float
 
 
 class CompletenessProof(NamedTuple):
@@ -88,17 +92,14 @@ class CompletenessProof(NamedTuple):
 def prove_complete(
     line: float, known_w: Complex, errors: Array, determinant: ArmDeterminant, hull: EigenvalueHull
 ) -> CompletenessProof:
-    """Proof, if possible, that all eigenvalues with Re w >= line are known.
-
-    line: if positive, or if no hull exists, nothing is proved. known_w, errors: known eigenvalues and their
-    absolute errors, (n,) each. Eigenvalues whose conjugate is not in `known_w` are treated as unknown. Raises
-    FloatingPointError if no elements resolve the arm.
-    """
+    """Proof, if possible, that all eigenvalues with Re w >= line are known. line: if positive, or if no hull
+    exists, nothing is proved. known_w, errors: known eigenvalues and their absolute errors, (n,) each. Raises
+    FloatingPointError if no elements resolve the arm."""
     # Negated, so that a line of nan proves nothing.
     if not math.isfinite(hull.a) or not line <= 0:
         return CompletenessProof(False, 0)
     # R must be real, so an eigenvalue without its conjugate is treated as unknown.
-    paired = has_conjugate(known_w)
+    paired = is_real_or_conjugate_known(known_w)
     largest_w = float(np.abs(known_w).max())
     evaluation_count = 0
     for k, max_ratio in COMPLETENESS_SETTINGS.proof_trials():
@@ -112,7 +113,7 @@ def prove_complete(
     return CompletenessProof(False, evaluation_count)
 
 
-def has_conjugate(known_w: Complex) -> np.ndarray:
+def is_real_or_conjugate_known(known_w: Complex) -> np.ndarray:
     """Mask, (n,), of known eigenvalues that are real or whose conjugate is known too."""
     conjugates = set(list_of(known_w.conj()))
     return np.array([w in conjugates for w in list_of(known_w)], dtype=bool)
@@ -128,7 +129,9 @@ def largest_w_of_proof(line: float, hull: EigenvalueHull, known_w: Complex) -> f
     return math.inf
 
 
-def cheapest_proof(line: float, hull: EigenvalueHull, known_w: Complex, mode_count: int) -> tuple[int, float]:
+def requirements_of_cheapest_proof(
+    line: float, hull: EigenvalueHull, known_w: Complex, mode_count: int
+) -> tuple[int, float]:
     """Returns (number of leading eigenvalues that the cheapest proof needs, largest |w| of this proof). line:
     Re w of the vertical line. known_w: approximate eigenvalues, (n,), leading first. The cheapest proof has
     the smallest |w|, and therefore the fewest elements. The number is at least `mode_count`, or 0 if no proof
@@ -155,8 +158,8 @@ def _last_proof_point(points: Array) -> float:
 def proves_completeness(remainder: Remainder) -> bool:
     """Whether R excludes an unknown eigenvalue right of the line. False also if R is far below 0: some known
     eigenvalue is then not a root of D."""
-    max_remainder = COMPLETENESS_SETTINGS.max_remainder_fraction * remainder.min_contribution
-    return remainder.R + remainder.rounding < max_remainder and -max_remainder < remainder.R
+    max_remainder = COMPLETENESS_SETTINGS.max_remainder_over_contribution * remainder.min_unknown_contribution
+    return remainder.R + remainder.rounding_error < max_remainder and -max_remainder < remainder.R
 
 
 @compiled
@@ -164,18 +167,18 @@ def points_right_of_hull(line: float, a: float, c: float, k: int) -> Array:
     """Points x_1 < ... < x_k, (k,), so far right that each term of R has real part >= 0; empty if such points
     would overflow. line: Re w of the vertical line. k: number of points. a, c: constants of the hull."""
     # As close to the hull as allowed: from farther away all eigenvalues contribute alike.
-    x = max(a * a, COMPLETENESS_SETTINGS.min_first_point_over_line * abs(line))
-    x = max(x, COMPLETENESS_SETTINGS.min_first_point)
-    points = x * (1 + COMPLETENESS_SETTINGS.point_spread * np.arange(k) / max(k - 1, 1))
-    while not _largest_angle_sum(points, a, c) < math.pi / 2:
+    x = max(a * a, COMPLETENESS_SETTINGS.min_real_point_over_line_distance * abs(line))
+    x = max(x, COMPLETENESS_SETTINGS.min_real_point)
+    points = x * (1 + COMPLETENESS_SETTINGS.relative_real_point_spread * np.arange(k) / max(k - 1, 1))
+    while not _max_argument_sum(points, a, c) < math.pi / 2:
         if not points[0] < 1 / EXPONENT_SETTINGS.min_divisor:
             return points[:0]
-        points *= COMPLETENESS_SETTINGS.widening_factor
+        points *= COMPLETENESS_SETTINGS.real_point_shift_factor
     return points
 
 
 @compiled
-def _largest_angle_sum(points: Array, a: float, c: float) -> float:
+def _max_argument_sum(points: Array, a: float, c: float) -> float:
     """Upper bound of sum_j arg(x_j - v) over v in the hull (a, c); inf if a point x_j may lie in the hull."""
     b = 1 - c
     total = 0.0
@@ -194,12 +197,9 @@ def _largest_angle_sum(points: Array, a: float, c: float) -> float:
 def remainder_of_sum(
     line: float, known: Complex, error: Array, hull: EigenvalueHull, points: Array, level: tuple[float, Array]
 ) -> Remainder:
-    """The sum R over the unknown eigenvalues, with its rounding error and the least contribution of an
-    unknown eigenvalue right of the line.
-
-    line: Re w. known, error: known eigenvalues, closed under conjugation, and their errors, (n,) each.
-    points: x_j, (k,). level: (W, propagators for |w| <= W), W at least the last point.
-    """
+    """The sum R over the unknown eigenvalues. line: Re w. known, error: known eigenvalues, closed under
+    conjugation, and their errors, (n,) each. points: x_j, (k,). level: (W, propagators for |w| <= W), W at
+    least the last point."""
     k = len(points)
     R = 0.0
     rounding = 0.0
@@ -212,7 +212,7 @@ def remainder_of_sum(
         slope = (value.D_w / value.D).real
         R += weight * slope
         # The c_j alternate in sign: R may be far smaller than the terms that are rounded.
-        slope_rounding = abs(weight * slope) * COMPLETENESS_SETTINGS.rounding_of_slope
+        slope_rounding = abs(weight * slope) * COMPLETENESS_SETTINGS.log_derivative_rounding_ratio
         rounding += slope_rounding * value.rounding_error / abs(value.D)
     for n in range(len(known)):
         w = known[n]
@@ -223,20 +223,20 @@ def remainder_of_sum(
             rate += 1 / abs(x - w)
         R -= phi.real
         rounding += abs(phi) * rate * error[n]
-    return Remainder(R, rounding, _least_term_right_of(line, points, hull[0], hull[1]))
+    return Remainder(R, rounding, _min_contribution_right_of(line, points, hull[0], hull[1]))
 
 
 @compiled
-def _least_term_right_of(line: float, points: Array, a: float, c: float) -> float:
+def _min_contribution_right_of(line: float, points: Array, a: float, c: float) -> float:
     """Lower bound of Re phi at real w, and of 2 Re phi at complex w, in the hull (a, c) right of the line."""
     b = 1 - c
     rightmost = max(a * a / (4 * b), line)
     lower_bound = 1.0
     for x in points:
         lower_bound /= x - line
-    for i in range(COMPLETENESS_SETTINGS.strip_count):
-        start = line + (rightmost - line) * i / COMPLETENESS_SETTINGS.strip_count
-        stop = line + (rightmost - line) * (i + 1) / COMPLETENESS_SETTINGS.strip_count
+    for i in range(COMPLETENESS_SETTINGS.hull_strip_count):
+        start = line + (rightmost - line) * i / COMPLETENESS_SETTINGS.hull_strip_count
+        stop = line + (rightmost - line) * (i + 1) / COMPLETENESS_SETTINGS.hull_strip_count
         depth = max(-start, 0.0)
         n = (a + math.sqrt(a * a + 4 * b * depth)) / (2 * b)
         height = a * n + c * n * n

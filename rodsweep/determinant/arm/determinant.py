@@ -17,14 +17,14 @@ from ...model.local_coefficients import local_coefficient_array
 from ...model.material.rod_material import LocalCoefficients
 from ...model.rod import Rod
 from ..value import DeterminantValue, eigenvalue_error_and_scales
-from .elements.edges import element_edges, halved_where_coarse, sum_and_remainder
+from .elements.edges import edges_with_coarse_elements_halved, element_edges, two_sum
 from .elements.propagators import element_propagators, gauss_method
 from .elements.settings import ARM_ELEMENT_SETTINGS
 from .local_waves import ExponentSamples, exponent_samples, mean_wave_number_and_w_scale
 from .value import determinant_from_propagators
 
 PropagatorsUpToW = tuple[float, Array]
-"""(W, propagators that are valid for |w| <= W, (elements, terms, PADDED))."""
+"""(W, propagators that are valid for |w| <= W, (elements, terms, PADDED_LENGTH))."""
 
 
 class ArmDeterminant:
@@ -39,10 +39,10 @@ class ArmDeterminant:
         self.samples = exponent_samples(float(rod.F), coefficients, weights)
         with_arm_dimension = LocalCoefficients(*(x[None] for x in coefficients))
         # The mean of c2 gamma2 + c3 gamma3 is the square of an exponent per w: a large drag slows all motion.
-        mean_drag = float(self.samples.squares[0] @ weights)
+        mean_drag = float(self.samples.squared_exponent_coefficients[0] @ weights)
         self._smallest_W = ARM_ELEMENT_SETTINGS.min_W / max(1.0, mean_drag)
         self._coefficient_samples = CoefficientSamples(
-            points, with_arm_dimension, self.samples.squares[:, None]
+            points, with_arm_dimension, self.samples.squared_exponent_coefficients[:, None]
         )
 
     def value(self, w: complex) -> DeterminantValue:
@@ -54,7 +54,7 @@ class ArmDeterminant:
         """D and D' at w times exp(-S), from elements made for w_factor * |w|, w_factor >= 1. The differences
         between values for several factors show the rounding error of D."""
         W, polynomials = self.propagators_for(
-            w_factor * abs(w), ARM_ELEMENT_SETTINGS.max_reuse_ratio_if_compared
+            w_factor * abs(w), ARM_ELEMENT_SETTINGS.max_reused_W_over_w_in_comparisons
         )
         return determinant_from_propagators(complex(w), W, polynomials)
 
@@ -67,9 +67,9 @@ class ArmDeterminant:
         return mean_wave_number_and_w_scale(w, self.samples)[1]
 
     @cached_property
-    def gauss_samples(self) -> ExponentSamples:
+    def exponent_samples_at_gauss_points(self) -> ExponentSamples:
         """Samples of the arm at the Gauss points of each interval between breaks of the profile."""
-        points, _, weights = gauss_method(ARM_ELEMENT_SETTINGS.stages)
+        points, _, weights = gauss_method(ARM_ELEMENT_SETTINGS.stage_count)
         lengths = np.diff(self.rod.material.breaks)[:, None]
         coefficients = self.rod.local_coefficients(
             (self.rod.material.breaks[:-1, None] + lengths * points).ravel()
@@ -77,37 +77,41 @@ class ArmDeterminant:
         return exponent_samples(float(self.rod.F), coefficients, (lengths * weights).ravel())
 
     def propagators_for(self, min_W: float, max_ratio: float | None = None) -> PropagatorsUpToW:
-        """Returns (W, propagators that are valid for |w| <= W, (elements, terms, PADDED)) with W >= min_W.
-        Existing propagators with the smallest such W are reused if W <= max_ratio * min_W; otherwise new
-        propagators are made. max_ratio: by default `ARM_ELEMENT_SETTINGS.max_reuse_ratio`."""
-        max_ratio = ARM_ELEMENT_SETTINGS.max_reuse_ratio if max_ratio is None else max_ratio
+        """Returns (W, propagators that are valid for |w| <= W, (elements, terms, PADDED_LENGTH)) with W >=
+        min_W. Existing propagators with the smallest such W are reused if W <= max_ratio * min_W; otherwise
+        new propagators are made. max_ratio: by default `ARM_ELEMENT_SETTINGS.max_reused_W_over_w`."""
+        max_ratio = ARM_ELEMENT_SETTINGS.max_reused_W_over_w if max_ratio is None else max_ratio
         min_W = max(min_W, self._smallest_W)
         for known_set in self._known_propagators:
             if min_W <= known_set[0] <= max_ratio * min_W:
                 return known_set
-        W = ARM_ELEMENT_SETTINGS.w_bound_ratio * min_W
+        W = ARM_ELEMENT_SETTINGS.W_over_w * min_W
         elements = elements_for([self.rod], self._coefficient_samples, W)
-        propagator_set = W, element_propagators([self.rod.F], elements.local, elements.lengths, W)[0]
+        propagator_set = (
+            W,
+            element_propagators([self.rod.F], elements.local_coefficients, elements.lengths, W)[0],
+        )
         self._known_propagators = sorted([*self._known_propagators, propagator_set], key=itemgetter(0))
         return propagator_set
 
 
 class CoefficientSamples(NamedTuple):
     """Samples of n arms between the breaks of their profile. points: material coordinates u, (points,).
-    local: `LocalCoefficients` at the points, each (n, points). squares: coefficients of z+-, as in
-    `ExponentSamples`, (4, n, points)."""
+    local_coefficients: `LocalCoefficients` at the points, each (n, points). squared_exponent_coefficients:
+    coefficients of z+-, as in `ExponentSamples`, (4, n, points)."""
 
     points: Array
-    local: LocalCoefficients
-    squares: Array
+    local_coefficients: LocalCoefficients
+    squared_exponent_coefficients: Array
 
 
-class ArmElements(NamedTuple):
+class ElementsOfArms(NamedTuple):
     """Elements of n arms: their lengths, (elements,), and `LocalCoefficients` at their Gauss points,
     (6, n, elements, stages)."""
 
     lengths: Array
-    local: Array
+    local_coefficients: Array
+    """`LocalCoefficients` of n arms at the Gauss points of the elements, (6, n, elements, stages)."""
 
 
 def coefficient_samples(rods: list[Rod]) -> CoefficientSamples:
@@ -116,25 +120,29 @@ def coefficient_samples(rods: list[Rod]) -> CoefficientSamples:
     points, weights, _ = sampled_arm(min(rods, key=lambda rod: rod.material.is_piecewise_constant(rod.taper)))
     coefficients = LocalCoefficients(*local_coefficient_array(rods, points))
     forces = np.array([[rod.F] for rod in rods])
-    return CoefficientSamples(points, coefficients, exponent_samples(forces, coefficients, weights).squares)
+    return CoefficientSamples(
+        points, coefficients, exponent_samples(forces, coefficients, weights).squared_exponent_coefficients
+    )
 
 
-def elements_for(rods: list[Rod], samples: CoefficientSamples, W: float) -> ArmElements:
+def elements_for(rods: list[Rod], samples: CoefficientSamples, W: float) -> ElementsOfArms:
     """The elements that resolve every arm of `rods` for |w| <= W; all arms have the same material. Raises
     FloatingPointError if `max_elements` elements do not resolve an arm."""
     tapers = np.array([rod.taper for rod in rods])
-    edges = element_edges(W, samples.squares, tapers, samples.points, rods[0].material.breaks)
+    edges = element_edges(
+        W, samples.squared_exponent_coefficients, tapers, samples.points, rods[0].material.breaks
+    )
     forces = np.array([rod.F for rod in rods], float)
-    points, _, _ = gauss_method(ARM_ELEMENT_SETTINGS.stages)
+    points, _, _ = gauss_method(ARM_ELEMENT_SETTINGS.stage_count)
     for _ in range(ARM_ELEMENT_SETTINGS.max_halvings):
         if not len(edges) <= ARM_ELEMENT_SETTINGS.max_elements:
             break
         lengths = edges[1:] - edges[:-1]
-        u, remainder = sum_and_remainder(edges[:-1, None], lengths[:, None] * points)
+        u, remainder = two_sum(edges[:-1, None], lengths[:, None] * points)
         coefficients = local_coefficient_array(rods, u, remainder)
-        halved_edges = halved_where_coarse(edges, W, forces, coefficients)
+        halved_edges = edges_with_coarse_elements_halved(edges, W, forces, coefficients)
         if halved_edges is edges:
-            return ArmElements(lengths, coefficients)
+            return ElementsOfArms(lengths, coefficients)
         edges = halved_edges
     max_elements = ARM_ELEMENT_SETTINGS.max_elements
     raise FloatingPointError(

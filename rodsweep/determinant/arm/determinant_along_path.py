@@ -24,8 +24,8 @@ from .newton import refine_eigenvalue_and_error
 from .rounding import rounding_error_from_propagators
 from .value import determinant_from_propagators
 
-CENTRAL_DIFFERENCE_STENCIL = ((1, 0.5), (-1, -0.5))
-FORWARD_DIFFERENCE_STENCIL = ((0, -1.5), (1, 2.0), (2, -0.5))
+SECOND_ORDER_CENTRAL_STENCIL = ((1, 0.5), (-1, -0.5))
+SECOND_ORDER_FORWARD_STENCIL = ((0, -1.5), (1, 2.0), (2, -0.5))
 """Differences of second order for a first derivative: pairs (offset in steps, weight times step)."""
 
 
@@ -33,9 +33,10 @@ FORWARD_DIFFERENCE_STENCIL = ((0, -1.5), (1, 2.0), (2, -0.5))
 class ArmDoubleEigenvalueSettings:
     """Settings for double eigenvalues of arms along a path, and for differences by the path variable."""
 
-    max_step_divisions: int = 20
-    """Maximum number of divisions of a difference step by `step_divisor`, to 1e-12 of the first step."""
-    step_divisor: float = 4.0
+    max_difference_step_divisions: int = 20
+    """Maximum number of divisions of a difference step by `difference_step_divisor`, to 1e-12 of the first
+    step."""
+    difference_step_divisor: float = 4.0
     """A difference step is divided by this number if a neighbour is not a valid arm."""
 
 
@@ -54,24 +55,26 @@ class _DoubleEigenvalueJacobian(NamedTuple):
 class _DoubleEigenvalueStep(NamedTuple):
     """A step of Newton's method to a double eigenvalue: changes of x and p, and their rounding errors."""
 
-    in_x: float
-    in_p: float
+    change_of_x: float
+    change_of_p: float
     rounding_error_of_x: float
     rounding_error_of_p: float
 
     @property
     def errors(self) -> tuple[float, float]:
         """Errors of x and p after the last step."""
-        return max(self.rounding_error_of_x, abs(self.in_x)), max(self.rounding_error_of_p, abs(self.in_p))
+        return max(self.rounding_error_of_x, abs(self.change_of_x)), max(
+            self.rounding_error_of_p, abs(self.change_of_p)
+        )
 
     def is_converged(self, previous_x_step: float) -> bool:
         """Whether Newton's method has converged: the step in p is of the size of rounding errors, and the
         step in x too, or more than half as long as `previous_x_step`, the |change of x| in the previous
         step."""
         converged = ROOT_NEWTON_SETTINGS.converged_step_in_rounding_errors
-        return abs(self.in_p) <= converged * self.rounding_error_of_p and (
-            abs(self.in_x) <= converged * self.rounding_error_of_x
-            or abs(self.in_x) > ROOT_NEWTON_SETTINGS.converging_step_ratio * previous_x_step
+        return abs(self.change_of_p) <= converged * self.rounding_error_of_p and (
+            abs(self.change_of_x) <= converged * self.rounding_error_of_x
+            or abs(self.change_of_x) > ROOT_NEWTON_SETTINGS.min_stagnant_step_ratio * previous_x_step
         )
 
 
@@ -95,7 +98,7 @@ class ArmAlongPath:
         if family is not None and abs(guess) < family.largest_w / 2:
             w, slope, error = eigenvalue_of_family_arm(family, guess, p)
             # Near a double eigenvalue the interpolation errors of the family are magnified.
-            if error <= ROOT_SETTINGS.double_root_correction_ratio * abs(w):
+            if error <= ROOT_SETTINGS.min_double_root_correction_over_w * abs(w):
                 return w, slope, error
         determinant = self.determinant(p)
         w, error = refine_eigenvalue_and_error(guess, determinant)
@@ -131,8 +134,8 @@ class ArmAlongPath:
             if uses_families or jacobian is None:
                 jacobian = self._jacobian(x, p, expected_distance)
             step = self._newton_step(x, p, jacobian, family)
-            x += step.in_x
-            p += step.in_p
+            x += step.change_of_x
+            p += step.change_of_p
             # Negated comparisons are also true for NaN.
             if (
                 not abs(p - start_p) <= 2 * expected_distance
@@ -147,7 +150,7 @@ class ArmAlongPath:
                 # The interpolation error of a family is relative to its largest p. The last steps use D of
                 # the arms themselves.
                 uses_families = False
-            previous_x_step = abs(step.in_x)
+            previous_x_step = abs(step.change_of_x)
         return FAILED_EIGENVALUE
 
     def _jacobian(self, x: float, p: float, expected_distance: float) -> _DoubleEigenvalueJacobian:
@@ -155,7 +158,7 @@ class ArmAlongPath:
         `double_eigenvalue`."""
         # Every value is brought to one scale S, since values with different scales cannot be subtracted.
         log_scale = self._determinant_value(x, p).log_scale
-        h = DETERMINANT_SETTINGS.second_difference_step_ratio * abs(x)
+        h = DETERMINANT_SETTINGS.second_derivative_step_over_w * abs(x)
         D_ww = (
             self._real_determinant(x + h, p, log_scale)[1] - self._real_determinant(x - h, p, log_scale)[1]
         ) / (2 * h)
@@ -214,27 +217,27 @@ class ArmAlongPath:
         """Returns (stencil, step) of a difference by p. stencil: pairs (offset in steps, weight times step).
         step: at most `max_step`.
 
-        The step is shortened, at most `max_step_divisions` times, until all neighbouring arms are valid: not
-        crushed, no negative compliance or drag. The stencil is one-sided at p = 0, and where p is so small
-        that no shortened step keeps p - step positive, unless p is the force.
+        The step is shortened, at most `max_difference_step_divisions` times, until all neighbouring arms are
+        valid: not crushed, no negative compliance or drag. The stencil is one-sided at p = 0, and where p is
+        so small that no shortened step keeps p - step positive, unless p is the force.
         """
         first_step = min(ROOT_NEWTON_SETTINGS.jacobian_step_ratio * max(abs(p), 1.0), max_step)
         # p = 0 ends the range of compliances and drags, but not of the force, which has either sign.
         if p == 0 and self.path.name != "F":
-            return FORWARD_DIFFERENCE_STENCIL, first_step
-        central_step = self._valid_step(p, first_step, CENTRAL_DIFFERENCE_STENCIL)
+            return SECOND_ORDER_FORWARD_STENCIL, first_step
+        central_step = self._valid_step(p, first_step, SECOND_ORDER_CENTRAL_STENCIL)
         if central_step is not None:
-            return CENTRAL_DIFFERENCE_STENCIL, central_step
-        forward_step = self._valid_step(p, first_step, FORWARD_DIFFERENCE_STENCIL)
-        return FORWARD_DIFFERENCE_STENCIL, forward_step or first_step
+            return SECOND_ORDER_CENTRAL_STENCIL, central_step
+        forward_step = self._valid_step(p, first_step, SECOND_ORDER_FORWARD_STENCIL)
+        return SECOND_ORDER_FORWARD_STENCIL, forward_step or first_step
 
     def _valid_step(self, p: float, step: float, stencil: tuple[tuple[int, float], ...]) -> float | None:
         """The difference step `step` at p, shortened until all neighbours of `stencil` are valid arms; None
         if the shortest allowed step has an invalid neighbour."""
-        for _ in range(ARM_DOUBLE_EIGENVALUE_SETTINGS.max_step_divisions):
+        for _ in range(ARM_DOUBLE_EIGENVALUE_SETTINGS.max_difference_step_divisions):
             if all(self._is_valid_at(p + offset * step) for offset, _ in stencil):
                 return step
-            step /= ARM_DOUBLE_EIGENVALUE_SETTINGS.step_divisor
+            step /= ARM_DOUBLE_EIGENVALUE_SETTINGS.difference_step_divisor
         return None
 
     def _is_valid_at(self, p: float) -> bool:

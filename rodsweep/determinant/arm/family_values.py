@@ -8,27 +8,27 @@ import math
 import numpy as np
 
 from ...arrays import Array
-from ...model.compiled.compilation import compiled, compiled_for_vectors
+from ...model.compiled.compilation import compiled, compiled_with_reordered_sums
 from ..exponents import EXPONENT_SETTINGS, MACHINE_EPSILON
 from ..roots.settings import ROOT_NEWTON_SETTINGS
 from ..value import DeterminantValue
-from .arm_family import LINEAR_SCALE, ArmFamily
+from .arm_family import LINEAR_SPACING, ArmFamily
 from .newton import ARM_ROOT_SETTINGS
-from .rounding import error_of_interpolated_chain
+from .rounding import error_from_interpolated_propagators
 from .value import determinant_from_propagators, path_value_from_propagators
 
 
 @compiled
 def write_propagators(family: ArmFamily, p: float, polynomials: Array, p_derivatives: Array) -> None:
     """Writes the propagators of the arm at p into polynomials, and their derivatives by p into p_derivatives,
-    both (elements, terms, PADDED)."""
+    both (elements, terms, PADDED_LENGTH)."""
     half = (family.p_high - family.p_low) / 2
     t = (p - (family.p_low + family.p_high) / 2) / half
-    if family.scale < LINEAR_SCALE:
-        log_width = math.log1p(2 * half / family.scale)
-        t = 2 * math.log1p((p - family.p_low) / family.scale) / log_width - 1
+    if family.log_spacing_scale < LINEAR_SPACING:
+        log_width = math.log1p(2 * half / family.log_spacing_scale)
+        t = 2 * math.log1p((p - family.p_low) / family.log_spacing_scale) / log_width - 1
         # dp/dt at this p turns derivatives by the Chebyshev variable t into derivatives by p.
-        half = (p - family.p_low + family.scale) * log_width / 2
+        half = (p - family.p_low + family.log_spacing_scale) * log_width / 2
     nodes = len(family.coefficients)
     T = np.empty(nodes)
     rates = np.empty(nodes)
@@ -52,7 +52,7 @@ def write_propagators(family: ArmFamily, p: float, polynomials: Array, p_derivat
     _sum_series(series, T, rates, polynomials.reshape(-1), p_derivatives.reshape(-1))
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def _sum_series(series: Array, T: Array, rates: Array, values: Array, slopes: Array) -> None:
     """values = sum_k T[k] series[k], slopes = sum_k rates[k] series[k], (n,) each; series: (nodes, n)."""
     nodes, n = series.shape
@@ -78,7 +78,7 @@ def _sum_series(series: Array, T: Array, rates: Array, values: Array, slopes: Ar
 
 @compiled
 def propagators_at(family: ArmFamily, p: float) -> tuple[float, Array]:
-    """Returns (W, propagators for |w| <= W, (elements, terms, PADDED)) of the arm at p of a family."""
+    """Returns (W, propagators for |w| <= W, (elements, terms, PADDED_LENGTH)) of the arm at p of a family."""
     polynomials = np.empty(family.coefficients.shape[1:])
     write_propagators(family, p, polynomials, np.empty_like(polynomials))
     return family.largest_w, polynomials
@@ -111,7 +111,7 @@ def eigenvalue_of_family_arm(family: ArmFamily, guess: complex, p: float) -> tup
         if w.imag == 0:
             step = complex(step.real, 0.0)
         if (
-            not abs(step) < ROOT_NEWTON_SETTINGS.converging_step_ratio * previous_step
+            not abs(step) < ROOT_NEWTON_SETTINGS.min_stagnant_step_ratio * previous_step
             or abs(w) > family.largest_w
         ):
             break
@@ -123,5 +123,5 @@ def eigenvalue_of_family_arm(family: ArmFamily, guess: complex, p: float) -> tup
     slope = -D_p / D_w if D_w != 0 else 0j
     if w.imag == 0:
         slope = complex(slope.real, 0.0)
-    e = error_of_interpolated_chain(w, W, polynomials, S, family.entry_sizes)
-    return w, slope, (e + ARM_ROOT_SETTINGS.residual * abs(D)) / size + MACHINE_EPSILON * abs(w)
+    e = error_from_interpolated_propagators(w, W, polynomials, S, family.reference_entry_sizes)
+    return w, slope, (e + ARM_ROOT_SETTINGS.residual_factor * abs(D)) / size + MACHINE_EPSILON * abs(w)

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import Array, Complex
-from ...model.compiled.compilation import compiled, compiled_for_vectors
+from ...model.compiled.compilation import compiled, compiled_with_reordered_sums
 from ...model.material.rod_material import LocalCoefficients
 from ..exponents import EXPONENT_SETTINGS
 
@@ -20,13 +20,13 @@ from ..exponents import EXPONENT_SETTINGS
 class ExponentSamples(NamedTuple):
     """Coefficients of z+-(w) at points along an arm, and the weights of a quadrature over these points.
 
-    squares: coefficients of z+-, the squared exponents (see the module docstring), (4, points): c2 gamma2 +
-    c3 gamma3 (of w) and F c3 g (subtracted) in the mean of z+ and z-; g nu gamma2 c3 (of w) and c2 c3 gamma2
-    gamma3 (of w^2) in P^2. weights: quadrature weights, (points,).
+    squared_exponent_coefficients: coefficients of z+-, the squared exponents (see the module docstring), (4,
+    points): c2 gamma2 + c3 gamma3 (of w) and F c3 g (subtracted) in the mean of z+ and z-; g nu gamma2 c3 (of
+    w) and c2 c3 gamma2 gamma3 (of w^2) in P^2. quadrature_weights: quadrature weights, (points,).
     """
 
-    squares: Array
-    weights: Array
+    squared_exponent_coefficients: Array
+    quadrature_weights: Array
 
 
 def exponent_samples(F: float | Array, coefficients: LocalCoefficients, weights: Array) -> ExponentSamples:
@@ -40,7 +40,7 @@ def exponent_samples(F: float | Array, coefficients: LocalCoefficients, weights:
     )
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def sqrt_in_upper_half_plane(real: float, imag: float) -> tuple[float, float]:
     """(real part, imaginary part) of the square root of real + i imag, imag >= 0."""
     # The larger part comes from a sum of positive terms; the smaller then follows without cancellation.
@@ -49,13 +49,13 @@ def sqrt_in_upper_half_plane(real: float, imag: float) -> tuple[float, float]:
     return (larger, smaller) if real >= 0 else (smaller, larger)
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def modulus_of_parts(real: float, imag: float) -> float:
     """Modulus of the number real + i imag."""
     return math.sqrt(real * real + imag * imag)
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def mean_wave_number_and_w_scale(w: complex, samples: ExponentSamples) -> tuple[float, float]:
     """Returns (wave number, scale of w) at w. wave number: (|sqrt z+| + |sqrt z-|)/2, a bound of |q|,
     averaged along the arm. scale of w: change of w over which an exponent of D changes by about one,
@@ -64,8 +64,8 @@ def mean_wave_number_and_w_scale(w: complex, samples: ExponentSamples) -> tuple[
     rate_sum = 0.0
     a = w.real
     b = w.imag
-    for i in range(len(samples.weights)):
-        linear, constant, square_linear, square_quadratic = samples.squares[:, i]
+    for i in range(len(samples.quadrature_weights)):
+        linear, constant, square_linear, square_quadratic = samples.squared_exponent_coefficients[:, i]
         x, y = sqrt_in_upper_half_plane(
             a * (square_linear + square_quadratic * a) - square_quadratic * b * b,
             b * (square_linear + 2 * square_quadratic * a),
@@ -82,8 +82,8 @@ def mean_wave_number_and_w_scale(w: complex, samples: ExponentSamples) -> tuple[
             modulus_of_parts(linear + real_rate, imag_rate) / max(1.0, first_root),
             modulus_of_parts(linear - real_rate, imag_rate) / max(1.0, second_root),
         )
-        wave_number += samples.weights[i] * (first_root + second_root) / 2
-        rate_sum += samples.weights[i] * max(rates[0], rates[1]) / 2
+        wave_number += samples.quadrature_weights[i] * (first_root + second_root) / 2
+        rate_sum += samples.quadrature_weights[i] * max(rates[0], rates[1]) / 2
     return wave_number, 1 / max(rate_sum, EXPONENT_SETTINGS.min_divisor)
 
 

@@ -26,12 +26,12 @@ from .value import determinant_from_propagators
 class ArmRootSettings(KernelConstants):
     """Settings for the refinement of eigenvalues of arms."""
 
-    residual: float = 2.0
+    residual_factor: float = 2.0
     """Factor of |D|, the residual after Newton's method, in the error of D at a root."""
-    min_remaining_ratio: float = 1e-8
+    max_remainder_for_restart_at_zero: float = 1e-8
     """If a Newton step leaves at most this fraction of |w|, the next step starts from w = 0: the remainder
     has lost half of its digits. The leading eigenvalue of a strongly pulled arm is exponentially small."""
-    max_later_w_ratio: float = 16.0
+    max_later_w_over_root_w: float = 16.0
     """If D is needed later at a larger |w|, at most this number times |w| of the roots, the roots use the
     elements for the larger |w|: at most four times as many. Rounding errors grow with their number."""
 
@@ -40,9 +40,9 @@ ARM_ROOT_SETTINGS = ArmRootSettings()
 
 
 @compiled
-def _second_derivative(w: complex, S: float, level: PropagatorsUpToW) -> complex:
+def _second_derivative_by_propagators(w: complex, S: float, level: PropagatorsUpToW) -> complex:
     """D'' exp(-S) at w, by a central difference of D', from the propagators of `level`."""
-    h = DETERMINANT_SETTINGS.second_difference_step_ratio * abs(w)
+    h = DETERMINANT_SETTINGS.second_derivative_step_over_w * abs(w)
     value_after = determinant_from_propagators(w + h, level[0], level[1])
     value_before = determinant_from_propagators(w - h, level[0], level[1])
     D_ww = scaled_second_derivative_between(value_after, value_before, S, h)
@@ -53,13 +53,13 @@ def _second_derivative(w: complex, S: float, level: PropagatorsUpToW) -> complex
 def _root_error_from_value(w: complex, value: DeterminantValue, level: PropagatorsUpToW) -> float:
     """`root_error` at w, from the value of D at w and the propagators of `level`."""
     rounding = rounding_error_from_propagators(w, level[0], level[1], value.log_scale)
-    e = ARM_ROOT_SETTINGS.residual * abs(value.D) + rounding
+    e = ARM_ROOT_SETTINGS.residual_factor * abs(value.D) + rounding
     size = abs(value.D_w)
     error = e / max(size, EXPONENT_SETTINGS.min_divisor)
-    if error > ROOT_SETTINGS.double_root_correction_ratio * abs(w):
+    if error > ROOT_SETTINGS.min_double_root_correction_over_w * abs(w):
         # Near a double root e/|D'| is unbounded, but a root of the second-order polynomial is near.
-        D_ww = abs(_second_derivative(w, value.log_scale, level))
-        if size**2 < ROOT_SETTINGS.min_squared_slope_ratio * e * D_ww:
+        D_ww = abs(_second_derivative_by_propagators(w, value.log_scale, level))
+        if size**2 < ROOT_SETTINGS.min_half_root_distance_in_corrections * e * D_ww:
             root_distance = math.sqrt(2 * e / D_ww)
             error = min(max(error, root_distance), size / D_ww + root_distance)
     return error + MACHINE_EPSILON * abs(w)
@@ -77,7 +77,7 @@ def _newton_from_guess(guess: complex, level: PropagatorsUpToW, last: float) -> 
     propagators of `level`.
 
     last: length of the previous step; the iteration ends at a step that hardly decreases
-    (`ROOT_NEWTON_SETTINGS.converging_step_ratio`). The error is -1 if |w| exceeds W, the bound of the
+    (`ROOT_NEWTON_SETTINGS.min_stagnant_step_ratio`). The error is -1 if |w| exceeds W, the bound of the
     propagators.
     """
     w = guess
@@ -88,15 +88,15 @@ def _newton_from_guess(guess: complex, level: PropagatorsUpToW, last: float) -> 
         if guess.imag == 0:
             step = complex(step.real, 0.0)
         # w stays where D was just evaluated, so that its error needs no further value.
-        if not abs(step) < ROOT_NEWTON_SETTINGS.converging_step_ratio * last:
+        if not abs(step) < ROOT_NEWTON_SETTINGS.min_stagnant_step_ratio * last:
             return w, _root_error_from_value(w, value, level), last
         last = abs(step)
         # D(0) = 1 and D'(0) are exact where the digits of w are lost.
-        w = w - step if abs(w - step) > ARM_ROOT_SETTINGS.min_remaining_ratio * abs(w) else 0j
-        if abs(w.imag) <= ROOT_NEWTON_SETTINGS.real_tolerance * abs(w):
+        w = w - step if abs(w - step) > ARM_ROOT_SETTINGS.max_remainder_for_restart_at_zero * abs(w) else 0j
+        if abs(w.imag) <= ROOT_NEWTON_SETTINGS.real_axis_tolerance * abs(w):
             w = complex(w.real, 0.0)
         # The error needs D' at w + h too, which must also lie within W.
-        if not (1 + DETERMINANT_SETTINGS.second_difference_step_ratio) * abs(w) <= level[0]:
+        if not (1 + DETERMINANT_SETTINGS.second_derivative_step_over_w) * abs(w) <= level[0]:
             return w, -1.0, last
     return w, _root_error_by_propagators(w, level), last
 
@@ -132,17 +132,17 @@ def _parabola_roots_by_propagators(middle: complex, level: PropagatorsUpToW) -> 
     if middle.imag == 0:
         D = complex(D.real, 0.0)
         D_w = complex(D_w.real, 0.0)
-    return roots_of_parabola(middle, D, D_w, _second_derivative(middle, S, level))
+    return roots_of_parabola(middle, D, D_w, _second_derivative_by_propagators(middle, S, level))
 
 
 def _propagators_up_to(w: complex, determinant: ArmDeterminant) -> PropagatorsUpToW:
     """Returns (W, propagators) that are valid for D and D'' at w."""
-    return determinant.propagators_for((1 + DETERMINANT_SETTINGS.second_difference_step_ratio) * abs(w))
+    return determinant.propagators_for((1 + DETERMINANT_SETTINGS.second_derivative_step_over_w) * abs(w))
 
 
 def second_derivative(w: complex, log_scale: float, determinant: ArmDeterminant) -> complex:
     """D'' exp(-S) of an arm at w, by a central difference of D'; real for real w."""
-    return _second_derivative(complex(w), log_scale, _propagators_up_to(w, determinant))
+    return _second_derivative_by_propagators(complex(w), log_scale, _propagators_up_to(w, determinant))
 
 
 def root_error(w: complex, determinant: ArmDeterminant) -> float:

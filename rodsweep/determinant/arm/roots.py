@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import Array, Complex, list_of
-from ...model.dispersion import end_coefficients, local_wave_numbers
+from ...model.dispersion import local_coefficients_at_ends, local_wave_numbers
 from ..exponents import EXPONENT_SETTINGS
 from ..roots.roots import Roots
 from ..roots.settings import ROOT_NEWTON_SETTINGS, ROOT_SETTINGS
@@ -27,7 +27,7 @@ from .newton import (
     taylor_parabola_roots,
 )
 
-NOT_RESOLVED_AT_ENDS: Array = np.full(2, -math.inf)
+UNRESOLVED_END_WAVE_NUMBERS: Array = np.full(2, -math.inf)
 """Largest wave numbers at the ends of an arm for a mesh that resolves waves by their mean only, (2,)."""
 
 
@@ -37,7 +37,7 @@ def refine_mesh_eigenvalues(
     hull: EigenvalueHull,
     max_q: float,
     largest_w: float = 0.0,
-    max_end_q: Array = NOT_RESOLVED_AT_ENDS,
+    max_end_q: Array = UNRESOLVED_END_WAVE_NUMBERS,
 ) -> Roots:
     """Roots of an arm's D, refined from the eigenvalues in `mesh_w`, (n,), that approximate a root of D.
 
@@ -50,8 +50,8 @@ def refine_mesh_eigenvalues(
     resolved = _resolved_guesses(guesses, determinant, max_q, max_end_q)
     _prepare_elements(determinant, max((abs(guess.w) for guess in resolved), default=0.0), largest_w)
     errors = list_of(root_errors([guess.w for guess in resolved], determinant))
-    max_ratio = ROOT_SETTINGS.max_pair_correction_ratio
-    near = [(guess, e) for guess, e in zip(resolved, errors, strict=True) if e <= max_ratio * guess.scale]
+    max_ratio = ROOT_SETTINGS.max_pair_correction_over_w_scale
+    near = [(guess, e) for guess, e in zip(resolved, errors, strict=True) if e <= max_ratio * guess.w_scale]
     # From two close guesses Newton's method may find one root twice, so these are moved apart first.
     near_w, half_distances = _separated_close_roots(
         [guess.w for guess, _ in near], [error for _, error in near], determinant
@@ -59,33 +59,35 @@ def refine_mesh_eigenvalues(
     refined = [
         k
         for k, (guess, error) in enumerate(near)
-        if half_distances[k] < math.inf or error <= ROOT_SETTINGS.max_correction_ratio * guess.scale
+        if half_distances[k] < math.inf
+        or error <= ROOT_SETTINGS.max_newton_correction_over_w_scale * guess.w_scale
     ]
     located = _refine_guesses([(near_w[k], half_distances[k]) for k in refined], determinant)
     located.sort(key=lambda root: (-root.w.real, -root.w.imag))
     leading_growth = located[0].w.real if located else -math.inf
-    near_indices = {guess.mesh_index for guess, _ in near}
+    near_indices = {guess.mesh_eigenvalue_index for guess, _ in near}
     # An eigenvalue inside the hull that approximates no root is spurious, or hides one that leads.
     spurious_count = sum(
-        guess.w.real > leading_growth for guess in guesses if guess.mesh_index not in near_indices
+        guess.w.real > leading_growth for guess in guesses if guess.mesh_eigenvalue_index not in near_indices
     )
     guesses_of_roots = [near[refined[root.guess_index]][0] for root in located]
     return _roots_with_errors(located, guesses_of_roots, determinant, spurious_count)
 
 
 class _Guess(NamedTuple):
-    """Eigenvalue w of a mesh in the a-priori box, and its index in the list of eigenvalues. wave_number: mean
-    of |q| along the arm. scale: change of w over which an exponent of D changes by about one."""
+    """Eigenvalue w of a mesh in the a-priori box, and its index in the list of eigenvalues. mean_wave_number:
+    mean of |q| along the arm. w_scale: change of w over which an exponent of D changes by about one."""
 
-    mesh_index: int
+    mesh_eigenvalue_index: int
+    """Index of the eigenvalue in the list of the mesh's eigenvalues."""
     w: complex
-    wave_number: float
-    scale: float
+    mean_wave_number: float
+    w_scale: float
 
 
 def _guesses_in_box(mesh_w: Complex, determinant: ArmDeterminant, hull: EigenvalueHull) -> list[_Guess]:
     """The eigenvalues `mesh_w` of a mesh, (n,), that lie in the a-priori box; real where nearly real."""
-    tolerance = ROOT_NEWTON_SETTINGS.real_tolerance
+    tolerance = ROOT_NEWTON_SETTINGS.real_axis_tolerance
     w = [w.real + 0j if abs(w.imag) <= tolerance * abs(w) else w for w in list_of(mesh_w)]
     in_box = [i for i, value in enumerate(w) if _is_in_eigenvalue_box(value, hull)]
     w_in_box = [w[i] for i in in_box]
@@ -101,9 +103,9 @@ def _resolved_guesses(
     rod = determinant.rod
     resolved = []
     for guess in guesses:
-        is_resolved = guess.wave_number <= max_q
+        is_resolved = guess.mean_wave_number <= max_q
         if not is_resolved:
-            end_wave_numbers = local_wave_numbers(guess.w, float(rod.F), end_coefficients(rod))
+            end_wave_numbers = local_wave_numbers(guess.w, float(rod.F), local_coefficients_at_ends(rod))
             is_resolved = bool((end_wave_numbers <= max_end_q).any())
         if is_resolved:
             resolved.append(guess)
@@ -111,35 +113,41 @@ def _resolved_guesses(
 
 
 def _roots_with_errors(
-    located: "list[_LocatedRoot]", guesses: list[_Guess], determinant: ArmDeterminant, unmatched_count: int
+    located: "list[_LocatedRoot]",
+    guesses: list[_Guess],
+    determinant: ArmDeterminant,
+    unmatched_mesh_eigenvalue_count: int,
 ) -> Roots:
     """The `Roots` of the sorted roots `located`, each refined from the guess at the same place."""
     errors = _errors_of_located_roots(located, determinant)
     # For so few numbers Python is faster than NumPy.
     displacement = [
-        abs(root.w - guess.w) / max(abs(root.w), guess.scale)
+        abs(root.w - guess.w) / max(abs(root.w), guess.w_scale)
         for root, guess in zip(located, guesses, strict=True)
     ]
     is_imaginary = [
         abs(root.w.real)
-        <= max(ROOT_SETTINGS.axis_tolerance_in_errors * error, ROOT_SETTINGS.axis_tolerance * abs(root.w))
+        <= max(
+            ROOT_SETTINGS.imaginary_axis_tolerance_in_errors * error,
+            ROOT_SETTINGS.imaginary_axis_tolerance * abs(root.w),
+        )
         for root, error in zip(located, errors, strict=True)
     ]
     return Roots(
-        mesh_indices=np.array([guess.mesh_index for guess in guesses], np.int64),
+        mesh_indices=np.array([guess.mesh_eigenvalue_index for guess in guesses], np.int64),
         w=np.array([root.w for root in located], complex),
         error=np.array(errors, float),
-        displacement=np.array(displacement, float),
-        wave_number=np.array([guess.wave_number for guess in guesses], float),
+        relative_mesh_displacement=np.array(displacement, float),
+        wave_number=np.array([guess.mean_wave_number for guess in guesses], float),
         is_imaginary=np.array(is_imaginary, bool),
-        unmatched_count=unmatched_count,
+        unmatched_mesh_eigenvalue_count=unmatched_mesh_eigenvalue_count,
     )
 
 
 def _prepare_elements(determinant: ArmDeterminant, needed_w: float, later_w: float) -> None:
-    """Makes elements for all |w| up to `later_w` if `later_w` is at most `max_later_w_ratio` times
+    """Makes elements for all |w| up to `later_w` if `later_w` is at most `max_later_w_over_root_w` times
     `needed_w`, else for all |w| up to `needed_w`."""
-    if needed_w < later_w <= ARM_ROOT_SETTINGS.max_later_w_ratio * needed_w:
+    if needed_w < later_w <= ARM_ROOT_SETTINGS.max_later_w_over_root_w * needed_w:
         with suppress(FloatingPointError):  # too many elements: they are needed later, if at all
             determinant.propagators_for(later_w)
     determinant.propagators_for(needed_w)
@@ -163,7 +171,7 @@ def _separated_close_roots(
     half_distance = [math.inf] * len(w)
     eigenvalues_and_errors = zip(w, errors, strict=True)
     if not any(
-        abs(a - b) <= ROOT_SETTINGS.pair_distance_in_errors * (e + f)
+        abs(a - b) <= ROOT_SETTINGS.max_pair_distance_in_errors * (e + f)
         for (a, e), (b, f) in combinations(eigenvalues_and_errors, 2)
     ):
         return w, half_distance
@@ -172,7 +180,9 @@ def _separated_close_roots(
         if half_distance[i] < math.inf or not unpaired:
             continue
         partner = min(unpaired, key=lambda j: abs(w[j] - w[i]))
-        if abs(w[partner] - w[i]) <= ROOT_SETTINGS.pair_distance_in_errors * (errors[i] + errors[partner]):
+        if abs(w[partner] - w[i]) <= ROOT_SETTINGS.max_pair_distance_in_errors * (
+            errors[i] + errors[partner]
+        ):
             for _ in range(ROOT_SETTINGS.parabolas_per_pair):
                 middle = (w[i] + w[partner]) / 2
                 # The middle of a real or conjugate pair is real, and rounding must not move it off the axis.
@@ -221,7 +231,7 @@ def _errors_of_located_roots(roots: list[_LocatedRoot], determinant: ArmDetermin
                 value = determinant.value(first_root.w)
                 D_ww = abs(second_derivative(first_root.w, value.log_scale, determinant))
                 next_root = 2 * abs(value.D_w) / max(D_ww, EXPONENT_SETTINGS.min_divisor)
-                if distance < ROOT_SETTINGS.same_root_fraction * next_root:
+                if distance < ROOT_SETTINGS.same_root_fraction_of_next_distance * next_root:
                     errors[i] = max(errors[i], next_root)
                     errors[j] = max(errors[j], next_root)
     return errors

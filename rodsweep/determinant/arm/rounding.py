@@ -30,13 +30,13 @@ from .elements.evaluation import (
     fill_real_propagator_value,
     powers_and_derivatives,
 )
-from .elements.minor_rates import PADDED, SM
+from .elements.minor_rates import PADDED_LENGTH, SM
 from .elements.modulus_sums import (
     modulus_sum_of_form,
     modulus_sum_of_form_at_real_w,
-    modulus_sum_of_real_form,
+    modulus_sum_of_form_from_sizes,
 )
-from .elements.settings import MINORS
+from .elements.settings import MINOR_COUNT
 from .value import divide_by_norm, divide_real_by_norm
 
 
@@ -44,11 +44,11 @@ from .value import divide_by_norm, divide_real_by_norm
 class ArmRoundingSettings(KernelConstants):
     """Settings for the rounding error of D."""
 
-    error_per_product: float = 1.5
+    error_per_product_in_epsilons: float = 1.5
     """Relative rounding error of a product of propagator and minor, divided by the spacing of doubles at 1.
     Measured: 1.5 times the difference of 700 eigenvalues of random arms, half of them close to crushing,
     between four divisions of the arm into elements exceeds the resulting bound by at most 1 %."""
-    error_per_interpolated_entry: float = 1.0
+    error_per_entry_in_epsilons: float = 1.0
     """Error of an interpolated entry of a propagator, divided by the spacing of doubles at 1 and by the
     largest modulus of the entry on the interval. Measured: 1300 eigenvalues of random arms on intervals of F,
     k1, gamma3 and taper differ from those of the arms themselves by at most half of the resulting bound."""
@@ -60,71 +60,73 @@ ARM_ROUNDING_SETTINGS = ArmRoundingSettings()
 @compiled
 def rounding_error_from_propagators(w: complex, W: float, polynomials: Array, S: float) -> float:
     """Bound of the rounding error of D exp(-S) at w, to first order. polynomials: propagators valid for |w|
-    <= W, (elements, terms, PADDED). S: logarithm of the scale of the result."""
+    <= W, (elements, terms, PADDED_LENGTH). S: logarithm of the scale of the result."""
     if w.imag == 0:
-        return _error_of_real_chain(w.real, W, polynomials, S)
-    return error_of_interpolated_chain(w, W, polynomials, S, np.empty((0, 2, PADDED)))
+        return _rounding_error_from_real_propagators(w.real, W, polynomials, S)
+    return error_from_interpolated_propagators(w, W, polynomials, S, np.empty((0, 2, PADDED_LENGTH)))
 
 
 @compiled
-def _error_of_real_chain(w: float, W: float, polynomials: Array, S: float) -> float:
+def _rounding_error_from_real_propagators(w: float, W: float, polynomials: Array, S: float) -> float:
     """`rounding_error_from_propagators` at real w, where all minors are real."""
     elements, terms, _ = polynomials.shape
     powers = powers_and_derivatives(complex(w / W, 0.0), terms)
-    C = np.empty((elements, PADDED))
-    x = np.zeros((elements + 1, MINORS))
+    C = np.empty((elements, PADDED_LENGTH))
+    x = np.zeros((elements + 1, MINOR_COUNT))
     x[0, SM] = 1.0
     scale = np.zeros(elements + 1)
     for e in range(elements):
         fill_real_propagator_value(polynomials[e], powers, C[e])
         apply_real_propagator(C[e], x[e], x[e + 1])
         scale[e + 1] = scale[e] + divide_real_by_norm(x[e + 1])
-    next_moduli = np.zeros(MINORS)
+    next_moduli = np.zeros(MINOR_COUNT)
     next_moduli[SM] = 1.0
-    moduli = np.empty(MINORS)
+    moduli = np.empty(MINOR_COUNT)
     scale_after = -S
     total = 0.0
-    # From tip to clamp, as in `error_of_interpolated_chain`.
+    # From tip to clamp, as in `error_from_interpolated_propagators`.
     for e in range(elements - 1, -1, -1):
         errors = modulus_sum_of_form_at_real_w(next_moduli, C[e], x[e])
         total += math.exp(scale[e] + scale_after) * errors
         apply_transposed_real_propagator(C[e], next_moduli, moduli)
         scale_after += divide_real_by_norm(moduli)
         next_moduli, moduli = moduli, next_moduli
-    return MACHINE_EPSILON * ARM_ROUNDING_SETTINGS.error_per_product * total
+    return MACHINE_EPSILON * ARM_ROUNDING_SETTINGS.error_per_product_in_epsilons * total
 
 
 @compiled
-def error_of_interpolated_chain(
-    w: complex, W: float, polynomials: Array, S: float, entry_sizes: Array
+def error_from_interpolated_propagators(
+    w: complex, W: float, polynomials: Array, S: float, reference_entry_sizes: Array
 ) -> float:
     """Bound of the rounding and interpolation error of D exp(-S) at w, to first order.
 
-    polynomials: interpolated propagators valid for |w| <= W, (elements, terms, PADDED). S: logarithm of the
-    scale of the result. entry_sizes: sizes to which the interpolation errors of propagator entries are
-    relative, (elements, 2, PADDED); no elements if nothing is interpolated.
+    polynomials: interpolated propagators valid for |w| <= W, (elements, terms, PADDED_LENGTH). S: logarithm
+    of the scale of the result. reference_entry_sizes: sizes to which the interpolation errors of propagator
+    entries are relative, (elements, 2, PADDED_LENGTH); no elements if nothing is interpolated.
     """
     elements, terms, _ = polynomials.shape
     powers = powers_and_derivatives(w / W, terms)
-    C = np.empty((elements, 2, PADDED))
-    x = np.zeros((elements + 1, 2, MINORS))
+    C = np.empty((elements, 2, PADDED_LENGTH))
+    x = np.zeros((elements + 1, 2, MINOR_COUNT))
     x[0, 0, SM] = 1.0
     scale = np.zeros(elements + 1)
     for e in range(elements):
         fill_propagator_value(polynomials[e], powers, C[e])
         apply_propagator(C[e], x[e], x[e + 1])
         scale[e + 1] = scale[e] + divide_by_norm(x[e + 1])
-    next_moduli = np.zeros((2, MINORS))
+    next_moduli = np.zeros((2, MINOR_COUNT))
     next_moduli[0, SM] = 1.0
-    moduli = np.empty((2, MINORS))
+    moduli = np.empty((2, MINOR_COUNT))
     scale_after = -S
     total = 0.0
     # `next_moduli` holds a_e of the module docstring, so the elements are visited from tip to clamp.
     for e in range(elements - 1, -1, -1):
-        errors = ARM_ROUNDING_SETTINGS.error_per_product * modulus_sum_of_form(next_moduli, C[e], x[e])
-        if len(entry_sizes):
-            sizes = modulus_sum_of_real_form(next_moduli, entry_sizes[e], abs(w / W), x[e])
-            errors += ARM_ROUNDING_SETTINGS.error_per_interpolated_entry * sizes
+        errors = ARM_ROUNDING_SETTINGS.error_per_product_in_epsilons * modulus_sum_of_form(
+            next_moduli, C[e], x[e]
+        )
+        if len(reference_entry_sizes):
+            sizes = modulus_sum_of_form_from_sizes(next_moduli, reference_entry_sizes[e], abs(w / W), x[e])
+            errors += ARM_ROUNDING_SETTINGS.error_per_entry_in_epsilons * sizes
         total += math.exp(scale[e] + scale_after) * errors
         apply_transposed_propagator(C[e], next_moduli, moduli)
         scale_after += divide_by_norm(moduli)

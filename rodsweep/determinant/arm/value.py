@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Array
-from ...model.compiled.compilation import compiled, compiled_for_vectors
+from ...model.compiled.compilation import compiled, compiled_with_reordered_sums
 from ...model.compiled.kernel_constants import KernelConstants
 from ..exponents import TWO_MACHINE_EPSILONS
 from ..parameter_path import PathDeterminantValue
@@ -20,44 +20,44 @@ from ..value import DeterminantValue
 from .elements.evaluation import (
     apply_propagator,
     apply_real_propagator,
-    fill_propagator,
+    fill_propagator_and_derivative,
     fill_propagator_value,
-    fill_real_propagator,
+    fill_real_propagator_and_derivative,
     fill_real_propagator_value,
     powers_and_derivatives,
     propagate_real_tangent,
     propagate_tangent,
 )
-from .elements.minor_rates import PADDED, SM
+from .elements.minor_rates import PADDED_LENGTH, SM
 from .elements.modulus_sums import minor_sm_modulus_sum, real_minor_sm_modulus_sum
-from .elements.settings import MINORS
+from .elements.settings import MINOR_COUNT
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArmValueSettings(KernelConstants):
     """Settings for D from propagators."""
 
-    max_norm_ratio: float = 1e100
-    """Minors are divided by their norm if the norm is not between 1/max_norm_ratio and max_norm_ratio."""
+    max_minor_norm: float = 1e100
+    """Minors are divided by their norm if the norm is not between 1/max_minor_norm and max_minor_norm."""
 
 
 ARM_VALUE_SETTINGS = ArmValueSettings()
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def _norm(x: Array) -> float:
-    """Euclidean norm of the minors x, (2, MINORS)."""
+    """Euclidean norm of the minors x, (2, MINOR_COUNT)."""
     total = 0.0
-    for i in range(MINORS):
+    for i in range(MINOR_COUNT):
         total += x[0, i] * x[0, i] + x[1, i] * x[1, i]
     return math.sqrt(total)
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def _real_norm(x: Array) -> float:
-    """Euclidean norm of the real minors x, (MINORS,)."""
+    """Euclidean norm of the real minors x, (MINOR_COUNT,)."""
     total = 0.0
-    for i in range(MINORS):
+    for i in range(MINOR_COUNT):
         total += x[i] * x[i]
     return math.sqrt(total)
 
@@ -65,13 +65,13 @@ def _real_norm(x: Array) -> float:
 @compiled
 def _needs_rescaling(size: float) -> bool:
     """Whether minors of the norm `size` must be divided by it."""
-    return not 1 / ARM_VALUE_SETTINGS.max_norm_ratio < size < ARM_VALUE_SETTINGS.max_norm_ratio
+    return not 1 / ARM_VALUE_SETTINGS.max_minor_norm < size < ARM_VALUE_SETTINGS.max_minor_norm
 
 
 @compiled
 def divide_by_norm(x: Array) -> float:
-    """Divides the minors x, (2, MINORS), by their norm if it is not between 1/`max_norm_ratio` and
-    `max_norm_ratio`. Returns the logarithm of the divisor."""
+    """Divides the minors x, (2, MINOR_COUNT), by their norm if it is not between 1/`max_minor_norm` and
+    `max_minor_norm`. Returns the logarithm of the divisor."""
     size = _norm(x)
     if not _needs_rescaling(size):
         return 0.0
@@ -81,7 +81,7 @@ def divide_by_norm(x: Array) -> float:
 
 @compiled
 def divide_real_by_norm(x: Array) -> float:
-    """`divide_by_norm` for real minors x, (MINORS,)."""
+    """`divide_by_norm` for real minors x, (MINOR_COUNT,)."""
     size = _real_norm(x)
     if not _needs_rescaling(size):
         return 0.0
@@ -90,24 +90,24 @@ def divide_real_by_norm(x: Array) -> float:
 
 
 @compiled
-def _multiply_along_chain(
+def _multiply_propagators(
     z: complex, W: float, polynomials: Array, p_derivatives: Array
 ) -> tuple[complex, complex, complex, float]:
     """Returns (D, dD/dw, dD/dp, S) of `path_value_from_propagators` at w = z W; dD/dp is 0 if `p_derivatives`
     is empty. polynomials, p_derivatives: propagators and their derivatives by p, (elements, terms,
-    PADDED)."""
+    PADDED_LENGTH)."""
     elements, terms, _ = polynomials.shape
     has_p_derivative = len(p_derivatives) > 0
     powers = powers_and_derivatives(z, terms)
-    C = np.empty((4, PADDED))
-    C_p = np.empty((2, PADDED))
+    C = np.empty((4, PADDED_LENGTH))
+    C_p = np.empty((2, PADDED_LENGTH))
     # minors and their derivatives by w and p, here and at the end of the element
-    minors = np.zeros((3, 2, MINORS))
-    next_minors = np.zeros((3, 2, MINORS))
+    minors = np.zeros((3, 2, MINOR_COUNT))
+    next_minors = np.zeros((3, 2, MINOR_COUNT))
     minors[0, 0, SM] = 1.0
     S = 0.0
     for e in range(elements):
-        fill_propagator(polynomials[e], powers, C)
+        fill_propagator_and_derivative(polynomials[e], powers, C)
         apply_propagator(C, minors[0], next_minors[0])
         propagate_tangent(C, minors[1], C[2:], minors[0], next_minors[1])
         if has_p_derivative:
@@ -127,21 +127,21 @@ def _multiply_along_chain(
 
 
 @compiled
-def _multiply_along_real_chain(
+def _multiply_real_propagators(
     z: float, W: float, polynomials: Array, p_derivatives: Array
 ) -> tuple[complex, complex, complex, float]:
-    """`_multiply_along_chain` at real z, where D and its derivatives are real."""
+    """`_multiply_propagators` at real z, where D and its derivatives are real."""
     elements, terms, _ = polynomials.shape
     has_p_derivative = len(p_derivatives) > 0
     powers = powers_and_derivatives(complex(z, 0.0), terms)
-    C = np.empty((2, PADDED))
-    C_p = np.empty(PADDED)
-    minors = np.zeros((3, MINORS))
-    next_minors = np.zeros((3, MINORS))
+    C = np.empty((2, PADDED_LENGTH))
+    C_p = np.empty(PADDED_LENGTH)
+    minors = np.zeros((3, MINOR_COUNT))
+    next_minors = np.zeros((3, MINOR_COUNT))
     minors[0, SM] = 1.0
     S = 0.0
     for e in range(elements):
-        fill_real_propagator(polynomials[e], powers, C)
+        fill_real_propagator_and_derivative(polynomials[e], powers, C)
         apply_real_propagator(C[0], minors[0], next_minors[0])
         propagate_real_tangent(C[0], minors[1], C[1], minors[0], next_minors[1])
         if has_p_derivative:
@@ -160,11 +160,11 @@ def _multiply_along_real_chain(
 @compiled
 def scaled_determinant_from_propagators(w: complex, W: float, polynomials: Array) -> tuple[complex, float]:
     """Returns (D exp(-S), S) at w, without derivatives. polynomials: propagators for |w| <= W, (elements,
-    terms, PADDED)."""
+    terms, PADDED_LENGTH)."""
     powers = powers_and_derivatives(w / W, polynomials.shape[1])
-    C = np.empty((2, PADDED))
-    minors = np.zeros((2, MINORS))
-    next_minors = np.empty((2, MINORS))
+    C = np.empty((2, PADDED_LENGTH))
+    minors = np.zeros((2, MINOR_COUNT))
+    next_minors = np.empty((2, MINOR_COUNT))
     minors[0, SM] = 1.0
     S = 0.0
     for e in range(len(polynomials)):
@@ -177,7 +177,8 @@ def scaled_determinant_from_propagators(w: complex, W: float, polynomials: Array
 
 @compiled
 def log_modulus_from_propagators(w: complex, W: float, polynomials: Array) -> float:
-    """log |D| at w; -inf if D = 0. polynomials: propagators for |w| <= W, (elements, terms, PADDED)."""
+    """log |D| at w; -inf if D = 0. polynomials: propagators for |w| <= W, (elements, terms,
+    PADDED_LENGTH)."""
     D, S = scaled_determinant_from_propagators(w, W, polynomials)
     return S + math.log(abs(D)) if D != 0 else -math.inf
 
@@ -189,18 +190,20 @@ def path_value_from_propagators(
     """D, dD/dw and dD/dp at w, times exp(-S). At real w every value is real.
 
     polynomials, p_derivatives: propagators valid for |w| <= W and their derivatives by p, (elements, terms,
-    PADDED). dD/dp is 0 if `p_derivatives` is empty. The rounding error is the error of the products at the
-    tip; the bound of the whole error is `rodsweep.determinant.arm.rounding.rounding_error_from_propagators`.
+    PADDED_LENGTH). dD/dp is 0 if `p_derivatives` is empty. The rounding error is the error of the products at
+    the tip; the bound of the whole error is
+    `rodsweep.determinant.arm.rounding.rounding_error_from_propagators`.
     """
     if w.imag == 0:
-        D, D_w, D_p, S = _multiply_along_real_chain(w.real / W, W, polynomials, p_derivatives)
+        D, D_w, D_p, S = _multiply_real_propagators(w.real / W, W, polynomials, p_derivatives)
     else:
-        D, D_w, D_p, S = _multiply_along_chain(w / W, W, polynomials, p_derivatives)
+        D, D_w, D_p, S = _multiply_propagators(w / W, W, polynomials, p_derivatives)
     return PathDeterminantValue(D, D_w, D_p, S, (len(polynomials) + 2) * TWO_MACHINE_EPSILONS)
 
 
 @compiled
 def determinant_from_propagators(w: complex, W: float, polynomials: Array) -> DeterminantValue:
-    """D and dD/dw at w, times exp(-S). polynomials: propagators for |w| <= W, (elements, terms, PADDED)."""
+    """D and dD/dw at w, times exp(-S). polynomials: propagators for |w| <= W, (elements, terms,
+    PADDED_LENGTH)."""
     D, D_w, _, S, rounding_error = path_value_from_propagators(w, W, polynomials, polynomials[:0])
     return DeterminantValue(D, D_w, S, rounding_error)

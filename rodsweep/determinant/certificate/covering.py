@@ -28,7 +28,7 @@ from ...model.compiled.compilation import compiled
 from ...model.compiled.kernel_constants import KernelConstants
 from ...model.rod import Coefficients
 from ..exponents import EXPONENT_SETTINGS
-from ..parameter_path import coefficients_at, determinant_along_path, dispersion_coefficient_derivatives
+from ..parameter_path import coefficients_at, determinant_value_on_path, dispersion_coefficient_derivatives
 from ..roots.newton import FAILED_EIGENVALUE, LocatedEigenvalue, crossing_by_newton
 from .discs import DISC_BOUND_SETTINGS, BidiscCentre, DerivativePair, bidisc_centre, bound_on_bidisc
 
@@ -37,45 +37,49 @@ from .discs import DISC_BOUND_SETTINGS, BidiscCentre, DerivativePair, bidisc_cen
 class BoxProofSettings(KernelConstants):
     """Settings for the proofs about one box of the (eta, p) plane, and for the number of boxes."""
 
-    first_radius_ratio: float = 0.45
+    first_half_width_over_radius: float = 0.45
     """First trial ratio t of the half-width of a box to the radius of the bidisc on which D is bounded."""
-    radius_ratio_factor: float = 0.6
+    half_width_over_radius_factor: float = 0.6
     """The next trial ratio is this number times the previous trial ratio t."""
-    max_radius_ratios: int = 30
+    max_half_width_over_radius_trials: int = 30
     """Maximum number of trial ratios t, of which the last is 2e-7."""
-    min_half_width_ratio: float = 1e-9
+    min_half_width_over_centre: float = 1e-9
     """An undecided box is left open, undivided, if half-widths are below this number times eta and |p|."""
     max_boxes: int = 1_000_000
     """After this number of examined boxes, further undecided boxes are left open, not divided."""
-    max_known_zero_distance: float = 1.5
+    max_known_zero_distance_in_half_widths: float = 1.5
     """Distance from the centre of a regular box, in half-widths of the box, up to which a known zero is the
     only zero in the doubled box."""
-    outside_distance: float = 0.01
+    neighbour_zero_distance_in_half_widths: float = 0.01
     """Distance beyond the edge of a regular box, in half-widths of the box, from which a zero is left to the
     neighbouring box that contains it."""
     field_ranges: ClassVar = {
-        "first_radius_ratio": (0.0, 1.0),
-        "radius_ratio_factor": (0.0, 1.0),
-        "max_known_zero_distance": (1.0, 2.0),
+        "first_half_width_over_radius": (0.0, 1.0),
+        "half_width_over_radius_factor": (0.0, 1.0),
+        "max_known_zero_distance_in_half_widths": (1.0, 2.0),
     }
 
 
 BOX_PROOF_SETTINGS = BoxProofSettings()
 
-EMPTY_BOX = 0
-REGULAR_BOX = 1
+ZERO_FREE_BOX = 0
+BOX_WITH_AT_MOST_ONE_ZERO = 1
 UNDECIDED_BOX = 2
-"""Outcomes of `box_outcome_and_costs`. EMPTY_BOX: D has no zero in the box. REGULAR_BOX: D has at
-most one zero in the doubled box. UNDECIDED_BOX: neither is proved."""
+"""Outcomes of `box_outcome_and_costs`. ZERO_FREE_BOX: D has no zero in the box. BOX_WITH_AT_MOST_ONE_ZERO: D
+has at most one zero in the doubled box. UNDECIDED_BOX: neither is proved."""
 
 
-class Box(NamedTuple):
+class CrossingBox(NamedTuple):
     """A rectangle of the (eta, p) plane: frequency eta on the imaginary axis, path variable p."""
 
     eta_from: float
+    """Smallest frequency eta of the box, in 1/tau2."""
     eta_to: float
+    """Largest frequency eta of the box, in 1/tau2."""
     p_from: float
+    """Smallest path variable p of the box."""
     p_to: float
+    """Largest path variable p of the box."""
 
 
 @compiled
@@ -102,20 +106,22 @@ def mean_exponent_slopes(centre: BidiscCentre) -> DerivativePair:
     size_minus = math.exp(root_minus.real - centre.log_scale)
     a = size_plus / (size_plus + size_minus)
     b = size_minus / (size_plus + size_minus)
-    w_rate = a * centre.slopes_plus[0] / (2 * root_plus) + b * centre.slopes_minus[0] / (2 * root_minus)
-    return w_rate, a * centre.slopes_plus[1] / (2 * root_plus) + b * centre.slopes_minus[1] / (2 * root_minus)
+    w_rate = a * centre.z_plus_slopes[0] / (2 * root_plus) + b * centre.z_minus_slopes[0] / (2 * root_minus)
+    return w_rate, a * centre.z_plus_slopes[1] / (2 * root_plus) + b * centre.z_minus_slopes[1] / (
+        2 * root_minus
+    )
 
 
 @compiled
-def is_remainder_below(
+def is_taylor_remainder_below(
     centre: BidiscCentre, rates: DerivativePair, half: tuple[float, float], margin: float, power: int
 ) -> bool:
     """Whether the Taylor remainder M t^2/(1 - t)^power of D exp(-L dw - K dp) over a box is proved to be
     below `margin`. t: half-widths of the box divided by the radii of the bidisc on which M bounds the
     function; several t are tried. rates: (L, K). half: half-widths of the box."""
-    t = BOX_PROOF_SETTINGS.first_radius_ratio
+    t = BOX_PROOF_SETTINGS.first_half_width_over_radius
     previous_remainder = math.inf
-    for _ in range(BOX_PROOF_SETTINGS.max_radius_ratios):
+    for _ in range(BOX_PROOF_SETTINGS.max_half_width_over_radius_trials):
         M = bound_on_bidisc(centre, rates, (half[0] / t, half[1] / t))
         remainder = M * t * t / (1 - t) ** power
         if remainder < margin:
@@ -124,7 +130,7 @@ def is_remainder_below(
         if remainder > previous_remainder:
             return False
         previous_remainder = remainder
-        t *= BOX_PROOF_SETTINGS.radius_ratio_factor
+        t *= BOX_PROOF_SETTINGS.half_width_over_radius_factor
     return False
 
 
@@ -134,11 +140,11 @@ def box_outcome_and_costs(
 ) -> tuple[int, float, float]:
     """Returns (outcome, cost in eta, cost in p) for the box about w = i eta with half-widths `half`.
 
-    outcome: EMPTY_BOX, REGULAR_BOX or UNDECIDED_BOX. cost: for an undecided box, the change of the exponents
-    of D across the box in this variable; the variable with the higher cost is divided. 0 for other boxes.
-    coefficients, direction: coefficients at the centre and their derivative by p.
+    outcome: ZERO_FREE_BOX, BOX_WITH_AT_MOST_ONE_ZERO or UNDECIDED_BOX. cost: for an undecided box, the change
+    of the exponents of D across the box in this variable; the variable with the higher cost is divided. 0 for
+    other boxes. coefficients, direction: coefficients at the centre and their derivative by p.
     """
-    D, D_w, D_p, S, rounding_error = determinant_along_path(w, coefficients, direction)
+    D, D_w, D_p, S, rounding_error = determinant_value_on_path(w, coefficients, direction)
     centre = bidisc_centre(w, coefficients, dispersion_coefficient_derivatives(coefficients, direction), S)
     mean = mean_exponent_slopes(centre)
     rounding = DISC_BOUND_SETTINGS.rounding_safety_factor * rounding_error
@@ -148,8 +154,8 @@ def box_outcome_and_costs(
             a = 1j * (D_w - rates[0] * D) * half[0]
             b = (D_p - rates[1] * D) * half[1]
             margin = DISC_BOUND_SETTINGS.max_D_change_ratio * distance_from_zero_bound(D, a, b) - rounding
-            if margin > 0 and is_remainder_below(centre, rates, half, margin, 1):
-                return EMPTY_BOX, 0.0, 0.0
+            if margin > 0 and is_taylor_remainder_below(centre, rates, half, margin, 1):
+                return ZERO_FREE_BOX, 0.0, 0.0
     # In the doubled box each derivative of f changes by at most 3 M t^2/(1 - t)^2.
     a = 2j * (D_w - mean[0] * D) * half[0]
     b = 2 * (D_p - mean[1] * D) * half[1]
@@ -159,8 +165,8 @@ def box_outcome_and_costs(
         min_singular_value = abs((a * b.conjugate()).imag) / (abs(a) + abs(b))
         margin = (DISC_BOUND_SETTINGS.max_D_change_ratio * min_singular_value - rounding) / 3
         doubled_half_widths = (2 * half[0], 2 * half[1])
-        if margin > 0 and is_remainder_below(centre, mean, doubled_half_widths, margin, 2):
-            return REGULAR_BOX, 0.0, 0.0
+        if margin > 0 and is_taylor_remainder_below(centre, mean, doubled_half_widths, margin, 2):
+            return BOX_WITH_AT_MOST_ONE_ZERO, 0.0, 0.0
     cost_eta, cost_p = exponent_changes(centre, half)
     return UNDECIDED_BOX, cost_eta, cost_p
 
@@ -172,13 +178,16 @@ def exponent_changes(centre: BidiscCentre, half: tuple[float, float]) -> tuple[f
     size = abs(centre.w)
     root_plus = math.sqrt(max(abs(centre.z_plus), 1.0))
     root_minus = math.sqrt(max(abs(centre.z_minus), 1.0))
-    plus = centre.slopes_plus
-    minus = centre.slopes_minus
+    plus = centre.z_plus_slopes
+    minus = centre.z_minus_slopes
     w_change = max(abs(plus[0]) / root_plus, abs(minus[0]) / root_minus) * half[0] / 2
     p_change = max(abs(plus[1]) / root_plus, abs(minus[1]) / root_minus) * half[1] / 2
     stiffness = abs((nu + F * c2) * nu) + c2 * gamma3 * size
     # The bounds on the bidisc also need a small change of the radicand of P.
-    factor = abs(centre.derivatives.G_p) + abs(centre.derivatives.X_p) * size
+    factor = (
+        abs(centre.dispersion_coefficient_derivatives.G_p)
+        + abs(centre.dispersion_coefficient_derivatives.X_p) * size
+    )
     return max(w_change, half[0] / size), max(
         p_change, factor * half[1] / max(stiffness, EXPONENT_SETTINGS.min_divisor)
     )
@@ -187,13 +196,13 @@ def exponent_changes(centre: BidiscCentre, half: tuple[float, float]) -> tuple[f
 @compiled
 def cover_with_boxes(
     first: Array, origin: Coefficients, direction: Coefficients
-) -> tuple[list[LocatedEigenvalue], list[Box], int]:
+) -> tuple[list[LocatedEigenvalue], list[CrossingBox], int]:
     """Returns (zeros of D(i eta; p) in the boxes `first`, (n, 4); boxes left open; number of examined boxes).
     origin, direction: coefficients at p = 0 and their derivative by p."""
-    stack = [Box(first[i, 0], first[i, 1], first[i, 2], first[i, 3]) for i in range(len(first))]
+    stack = [CrossingBox(first[i, 0], first[i, 1], first[i, 2], first[i, 3]) for i in range(len(first))]
     # numba infers the type of an empty list from its element.
     zeros = [FAILED_EIGENVALUE for _ in range(0)]
-    undecided = [Box(0.0, 0.0, 0.0, 0.0) for _ in range(0)]
+    undecided = [CrossingBox(0.0, 0.0, 0.0, 0.0) for _ in range(0)]
     count = 0
     while len(stack) > 0:
         # The last box comes first (depth first), so that the stack stays short.
@@ -204,31 +213,31 @@ def cover_with_boxes(
         count += 1
         coefficients = coefficients_at(p, origin, direction)
         outcome, cost_eta, cost_p = box_outcome_and_costs(complex(0.0, eta), coefficients, direction, half)
-        if outcome == EMPTY_BOX:
+        if outcome == ZERO_FREE_BOX:
             continue
-        if outcome == REGULAR_BOX:
+        if outcome == BOX_WITH_AT_MOST_ONE_ZERO:
             zero = crossing_by_newton(eta, p, origin, direction, half)
             distance = _distance_from_box_centre(zero, eta, p, half)
             if distance <= 2:  # false if Newton's method failed, which returns nan
                 # A zero outside the box is found from a neighbouring box too.
-                is_known = distance > 1 + BOX_PROOF_SETTINGS.outside_distance
+                is_known = distance > 1 + BOX_PROOF_SETTINGS.neighbour_zero_distance_in_half_widths
                 for other in zeros:  # the doubled box contains at most one zero
                     other_distance = _distance_from_box_centre(other, eta, p, half)
-                    is_known = is_known or other_distance <= BOX_PROOF_SETTINGS.max_known_zero_distance
+                    is_known |= other_distance <= BOX_PROOF_SETTINGS.max_known_zero_distance_in_half_widths
                 if not is_known:
                     zeros.append(zero)
                 continue
-        min_half_width = BOX_PROOF_SETTINGS.min_half_width_ratio
+        min_half_width = BOX_PROOF_SETTINGS.min_half_width_over_centre
         if count > BOX_PROOF_SETTINGS.max_boxes or (
             half[0] < min_half_width * eta and half[1] < min_half_width * abs(p)
         ):
             undecided.append(box)
         elif cost_eta >= cost_p:
-            stack.append(Box(box.eta_from, eta, box.p_from, box.p_to))
-            stack.append(Box(eta, box.eta_to, box.p_from, box.p_to))
+            stack.append(CrossingBox(box.eta_from, eta, box.p_from, box.p_to))
+            stack.append(CrossingBox(eta, box.eta_to, box.p_from, box.p_to))
         else:
-            stack.append(Box(box.eta_from, box.eta_to, box.p_from, p))
-            stack.append(Box(box.eta_from, box.eta_to, p, box.p_to))
+            stack.append(CrossingBox(box.eta_from, box.eta_to, box.p_from, p))
+            stack.append(CrossingBox(box.eta_from, box.eta_to, p, box.p_to))
     return zeros, undecided, count
 
 

@@ -14,7 +14,7 @@ from ...model.compiled.compilation import compiled
 from ...model.compiled.kernel_constants import KernelConstants
 from ...model.rod import Coefficients
 from ..exponents import EXPONENT_SETTINGS
-from ..parameter_path import DispersionCoefficientDerivatives, exponent_slopes
+from ..parameter_path import DispersionCoefficientDerivatives, squared_exponent_slopes_by_p
 from ..value import exponent_derivatives
 
 
@@ -27,16 +27,17 @@ class DiscBoundSettings(KernelConstants):
     unfavourable values was 0.7."""
     max_D_change_ratio: float = 0.9
     """A proof needs a change of D over the disc below this number times |D|; below 1, so that D is not 0."""
-    max_expanded_z_change: float = 0.5
+    max_relative_z_change_for_expansion: float = 0.5
     """sqrt(z) is expanded about the centre of a disc if the relative change x of z over the disc is below
     this number. The remainder is proportional to x^2/(1 - x)."""
-    max_P_factor_change: float = 0.98
+    max_relative_P_factor_change: float = 0.98
     """If either factor of P^2 changes over a disc by more than this fraction, the bound is inf."""
     field_ranges: ClassVar = {
         "max_D_change_ratio": (0.0, 1.0),
-        "max_expanded_z_change": (0.0, 1.0),
-        "max_P_factor_change": (0.0, 1.0),
+        "max_relative_z_change_for_expansion": (0.0, 1.0),
+        "max_relative_P_factor_change": (0.0, 1.0),
     }
+    """Exclusive bounds (lower, upper) of fields, by name, that the proofs require; see `KernelConstants`."""
 
 
 DISC_BOUND_SETTINGS = DiscBoundSettings()
@@ -50,18 +51,18 @@ BidiscRadii = tuple[float, float]
 
 class BidiscCentre(NamedTuple):
     """The centre (w, p) of a bidisc, with the exponents of D at the centre. coefficients: (F, nu, c2, gamma3)
-    at p. derivatives: of T, N, G and X by p. log_scale: S, the logarithm of the scale of D. P, z_plus,
-    z_minus: P, z+ and z-. slopes_plus, slopes_minus: (dz/dw, dz/dp) of z+ and of z-."""
+    at p. dispersion_coefficient_derivatives: of T, N, G and X by p. log_scale: S, the logarithm of the scale
+    of D. P, z_plus, z_minus: P, z+ and z-. z_plus_slopes, z_minus_slopes: (dz/dw, dz/dp) of z+ and of z-."""
 
     w: complex
     coefficients: Coefficients
-    derivatives: DispersionCoefficientDerivatives
+    dispersion_coefficient_derivatives: DispersionCoefficientDerivatives
     log_scale: float
     P: complex
     z_plus: complex
     z_minus: complex
-    slopes_plus: DerivativePair
-    slopes_minus: DerivativePair
+    z_plus_slopes: DerivativePair
+    z_minus_slopes: DerivativePair
 
 
 @compiled
@@ -74,10 +75,12 @@ def bidisc_centre(
     """The centre of a bidisc at w. dispersion_coefficient_derivatives: derivatives by p of T, N, G and X. S:
     logarithm of the scale of D at w."""
     exponents = exponent_derivatives(w, coefficients)
-    p_slope_plus, p_slope_minus = exponent_slopes(w, exponents, dispersion_coefficient_derivatives)
+    p_slope_plus, p_slope_minus = squared_exponent_slopes_by_p(
+        w, exponents, dispersion_coefficient_derivatives
+    )
     drag = coefficients.c2 + coefficients.gamma3
-    slopes_plus = (drag + 2 * exponents.P_w, p_slope_plus)
-    slopes_minus = (drag - 2 * exponents.P_w, p_slope_minus)
+    z_plus_slopes = (drag + 2 * exponents.P_w, p_slope_plus)
+    z_minus_slopes = (drag - 2 * exponents.P_w, p_slope_minus)
     return BidiscCentre(
         w,
         coefficients,
@@ -86,20 +89,20 @@ def bidisc_centre(
         exponents.P,
         exponents.z_plus,
         exponents.z_minus,
-        slopes_plus,
-        slopes_minus,
+        z_plus_slopes,
+        z_minus_slopes,
     )
 
 
 @compiled
-def nonlinear_root_bound(root: complex, nonlinear_change: float, x: float) -> float:
+def nonlinear_sqrt_change_bound(root: complex, nonlinear_change: float, x: float) -> float:
     """Bound of the nonlinear part of the change of sqrt(z) = `root`. x: bound of the total change of z over
     |z|. nonlinear_change: bound of the nonlinear part of the change of z."""
     return nonlinear_change / (2 * abs(root)) + abs(root) * x * x / (8 * (1 - x))
 
 
 @compiled
-def bounds_of_E_on_bidisc(
+def entire_cosh_bounds_on_bidisc(
     z: complex,
     slopes: DerivativePair,
     rates: DerivativePair,
@@ -121,10 +124,10 @@ def bounds_of_E_on_bidisc(
     simple_bound = math.sqrt(max((abs(z) + z.real) / 2 + change, 0.0)) + rate_change
     growing_exponent = simple_bound
     decaying_exponent = simple_bound
-    if change < DISC_BOUND_SETTINGS.max_expanded_z_change * abs(z):
+    if change < DISC_BOUND_SETTINGS.max_relative_z_change_for_expansion * abs(z):
         w_slope = slopes[0] / (2 * root)
         p_slope = slopes[1] / (2 * root)
-        nonlinear_root_change = nonlinear_root_bound(root, nonlinear_change, change / abs(z))
+        nonlinear_root_change = nonlinear_sqrt_change_bound(root, nonlinear_change, change / abs(z))
         growing_change = abs(w_slope - rates[0]) * radii[0] + abs(p_slope - rates[1]) * radii[1]
         decaying_change = abs(w_slope + rates[0]) * radii[0] + abs(p_slope + rates[1]) * radii[1]
         growing_exponent = min(growing_exponent, root.real + growing_change + nonlinear_root_change)
@@ -151,7 +154,7 @@ def bound_for_equal_exponents(centre: BidiscCentre, rates: DerivativePair, radii
     w = centre.w
     S = centre.log_scale
     F, nu, c2, gamma3 = centre.coefficients
-    T_p, N_p, N_pp, G_p, G_pp, X_p, X_pp = centre.derivatives
+    T_p, N_p, N_pp, G_p, G_pp, X_p, X_pp = centre.dispersion_coefficient_derivatives
     rho, sigma = radii
     g = nu + F * c2
     X = c2 * gamma3
@@ -161,7 +164,7 @@ def bound_for_equal_exponents(centre: BidiscCentre, rates: DerivativePair, radii
     dX = (abs(X_p) + abs(X_pp) / 2 * sigma) * sigma
     max_squared_P = max_w * (abs(g * nu + X * w) + dG + X * rho + dX * max_w)
     nonlinear_change = abs(T_p) * sigma * rho + abs(N_pp) / 2 * sigma * sigma + 2 * math.sqrt(max_squared_P)
-    E, E1 = bounds_of_E_on_bidisc(
+    E, E1 = entire_cosh_bounds_on_bidisc(
         T * w - F * g, (complex(T), T_p * w - N_p), rates, radii, nonlinear_change, S
     )
     rate_change = abs(rates[0]) * rho + abs(rates[1]) * sigma
@@ -189,7 +192,7 @@ def bound_for_distinct_exponents(centre: BidiscCentre, rates: DerivativePair, ra
     S = centre.log_scale
     P = centre.P
     F, nu, c2, gamma3 = centre.coefficients
-    T_p, _, N_pp, G_p, G_pp, X_p, X_pp = centre.derivatives
+    T_p, _, N_pp, G_p, G_pp, X_p, X_pp = centre.dispersion_coefficient_derivatives
     rho, sigma = radii
     g = nu + F * c2
     X = c2 * gamma3
@@ -200,8 +203,8 @@ def bound_for_distinct_exponents(centre: BidiscCentre, rates: DerivativePair, ra
     e1 = rho / abs(w)
     max_change = dG + X * rho + dX * (abs(w) + rho)
     e2 = max_change / modulus if modulus > max_change else 1.0
-    if e1 > DISC_BOUND_SETTINGS.max_P_factor_change or (
-        max_change > 0 and e2 > DISC_BOUND_SETTINGS.max_P_factor_change
+    if e1 > DISC_BOUND_SETTINGS.max_relative_P_factor_change or (
+        max_change > 0 and e2 > DISC_BOUND_SETTINGS.max_relative_P_factor_change
     ):
         return math.inf
     # If g nu and X are 0, the second factor is 0 on the whole bidisc and does not change.
@@ -217,8 +220,12 @@ def bound_for_distinct_exponents(centre: BidiscCentre, rates: DerivativePair, ra
         nonlinear_change += 2 * abs(P) * (majorant + second_order * sigma / modulus / 2)
         min_P = abs(P) * math.sqrt((1 - e1) * (1 - e2))
         slope_bound += (abs(g * nu + 2 * X * w) + dG + 2 * (X * rho + dX * (abs(w) + rho))) / min_P
-    terms = bounds_of_E_on_bidisc(centre.z_plus, centre.slopes_plus, rates, radii, nonlinear_change, S)[0]
-    terms += bounds_of_E_on_bidisc(centre.z_minus, centre.slopes_minus, rates, radii, nonlinear_change, S)[0]
+    terms = entire_cosh_bounds_on_bidisc(
+        centre.z_plus, centre.z_plus_slopes, rates, radii, nonlinear_change, S
+    )[0]
+    terms += entire_cosh_bounds_on_bidisc(
+        centre.z_minus, centre.z_minus_slopes, rates, radii, nonlinear_change, S
+    )[0]
     rate_change = abs(rates[0]) * rho + abs(rates[1]) * sigma
     return (
         math.exp(min(rate_change - S, EXPONENT_SETTINGS.max_exponent))

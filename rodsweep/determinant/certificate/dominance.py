@@ -20,14 +20,14 @@ from ...model.compiled.compilation import compiled
 from ...model.compiled.kernel_constants import KernelConstants
 from ...model.rod import Coefficients
 from ..value import exponent_derivatives, scaled_determinant
-from .discs import DISC_BOUND_SETTINGS, bounds_of_E_on_bidisc, nonlinear_root_bound
+from .discs import DISC_BOUND_SETTINGS, entire_cosh_bounds_on_bidisc, nonlinear_sqrt_change_bound
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DominanceSettings(KernelConstants):
     """Settings for discs in which one exponential of D dominates."""
 
-    first_radius_over_branch_distance: float = 0.25
+    first_radius_over_branch_point_distance: float = 0.25
     """Radius of the first trial disc divided by the distance of the start of the step from a branch point of
     z+-."""
     max_halvings: int = 2
@@ -35,16 +35,17 @@ class DominanceSettings(KernelConstants):
     overlap_enlargement_fraction: float = 1e-3
     """The radius of a disc exceeds half the step that the disc covers by this fraction, so that rounding
     leaves no gap between discs."""
-    end_rounding: float = 1e-15
+    segment_end_tolerance: float = 1e-15
     """A step ends at the end of the segment if the distance to the end, divided by the length of the segment,
     is at most this number, the size of rounding errors."""
-    max_factor_change: float = 0.5
+    max_dominant_factor_change: float = 0.5
     """Dominance is proved only on discs over which no factor of A changes by more than this fraction; the
     phase of each factor then changes by less than a right angle."""
     field_ranges: ClassVar = {
-        "first_radius_over_branch_distance": (0.0, 1.0),
-        "max_factor_change": (0.0, 1.0),
+        "first_radius_over_branch_point_distance": (0.0, 1.0),
+        "max_dominant_factor_change": (0.0, 1.0),
     }
+    """Exclusive bounds (lower, upper) of fields, by name, that the proofs require; see `KernelConstants`."""
 
 
 DOMINANCE_SETTINGS = DominanceSettings()
@@ -55,7 +56,7 @@ class SquaredExponent(NamedTuple):
 
     z: complex
     slope: complex
-    root: complex
+    sqrt_z: complex
 
 
 @compiled
@@ -67,7 +68,7 @@ def _dominant_and_recessive(
     drag = coefficients.c2 + coefficients.gamma3
     plus_exponent = SquaredExponent(plus, drag + 2 * P_w, cmath.sqrt(plus))
     minus_exponent = SquaredExponent(minus, drag - 2 * P_w, cmath.sqrt(minus))
-    if plus_exponent.root.real >= minus_exponent.root.real:
+    if plus_exponent.sqrt_z.real >= minus_exponent.sqrt_z.real:
         return P, plus_exponent, minus_exponent
     return P, minus_exponent, plus_exponent
 
@@ -86,7 +87,10 @@ def _nonlinear_change_bounds(
     e2 = 0.0
     if X > 0:
         e2 = X * rho / abs(gn + X * w)
-    if e1 > DOMINANCE_SETTINGS.max_factor_change or e2 > DOMINANCE_SETTINGS.max_factor_change:
+    if (
+        e1 > DOMINANCE_SETTINGS.max_dominant_factor_change
+        or e2 > DOMINANCE_SETTINGS.max_dominant_factor_change
+    ):
         return math.inf, math.inf
     min_factor = math.sqrt((1 - e1) * (1 - e2))
     numerator = abs(gn + 2 * X * w)
@@ -95,7 +99,7 @@ def _nonlinear_change_bounds(
 
 
 @compiled
-def is_dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
+def has_dominant_exponential(w: complex, rho: float, coefficients: Coefficients) -> bool:
     """Whether one exponential is proved to dominate D = A (1 + e), |e| < 1, within rho of w."""
     P, (z, slope, root), (z_other, slope_other, root_other) = _dominant_and_recessive(w, coefficients)
     if P == 0 or root.real <= root_other.real:
@@ -103,19 +107,22 @@ def is_dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
     nonlinear_change, slope_change = _nonlinear_change_bounds(w, rho, P, coefficients)
     total_change = abs(slope) * rho + nonlinear_change
     x = total_change / abs(z)
-    if x > DOMINANCE_SETTINGS.max_factor_change or slope_change > DOMINANCE_SETTINGS.max_factor_change * abs(
-        slope
+    if (
+        x > DOMINANCE_SETTINGS.max_dominant_factor_change
+        or slope_change > DOMINANCE_SETTINGS.max_dominant_factor_change * abs(slope)
     ):
         return False
     L = slope / (2 * root)
     change_by_L = abs(L) * rho
-    curvature = nonlinear_root_bound(root, nonlinear_change, x)
+    curvature = nonlinear_sqrt_change_bound(root, nonlinear_change, x)
     # Exponents are compared by their rates if the recessive exponent changes little, otherwise by extremes.
     lowest_dominant = root.real - change_by_L - curvature
     other_change = abs(slope_other) * rho + nonlinear_change
     highest_recessive = math.sqrt(max((abs(z_other) + z_other.real) / 2 + other_change, 0.0))
-    if other_change < DOMINANCE_SETTINGS.max_factor_change * abs(z_other):
-        other_root_change = nonlinear_root_bound(root_other, nonlinear_change, other_change / abs(z_other))
+    if other_change < DOMINANCE_SETTINGS.max_dominant_factor_change * abs(z_other):
+        other_root_change = nonlinear_sqrt_change_bound(
+            root_other, nonlinear_change, other_change / abs(z_other)
+        )
         relative_change = abs(slope_other / (2 * root_other) - L) * rho + other_root_change
         if not root.real - curvature > root_other.real + relative_change:
             return False
@@ -129,7 +136,7 @@ def is_dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
     remainder = constant_bound + max_w * (abs(slope) + slope_change) / (4 * (abs(z) - total_change)) * (
         2 * constant_bound + math.exp(2 * change_by_L + curvature - 2 * S)
     )
-    E = bounds_of_E_on_bidisc(z_other, (slope_other, 0j), (L, 0j), (rho, 0.0), nonlinear_change, S)[0]
+    E = entire_cosh_bounds_on_bidisc(z_other, (slope_other, 0j), (L, 0j), (rho, 0.0), nonlinear_change, S)[0]
     remainder += max_w / 2 * (abs(slope_other) + slope_change) * E
     return remainder < DISC_BOUND_SETTINGS.max_D_change_ratio * A
 
@@ -138,11 +145,13 @@ def is_dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
 def dominant_prefactor_and_exponent(w: complex, coefficients: Coefficients) -> tuple[complex, complex]:
     """Returns (w z'/z, sqrt z) at w, with which the dominant term of D is A = (w z'/z) exp(sqrt z)/4."""
     _, dominant, _ = _dominant_and_recessive(w, coefficients)
-    return w * dominant.slope / dominant.z, dominant.root
+    return w * dominant.slope / dominant.z, dominant.sqrt_z
 
 
 @compiled
-def _phase_beyond_dominant(w: complex, factors: tuple[complex, complex], coefficients: Coefficients) -> float:
+def _phase_minus_dominant_phase(
+    w: complex, factors: tuple[complex, complex], coefficients: Coefficients
+) -> float:
     """arg(1 + e) = arg(D/A), phase of D minus phase of A. factors: result of
     `dominant_prefactor_and_exponent` at w."""
     D, _, _, _ = scaled_determinant(w, coefficients)
@@ -168,9 +177,9 @@ def phase_over_dominated_segment(
     wave = (0j, 0j)
     first_wave = (0j, 0j)
     while t < length:
-        rho = DOMINANCE_SETTINGS.first_radius_over_branch_distance * abs(w)
+        rho = DOMINANCE_SETTINGS.first_radius_over_branch_point_distance * abs(w)
         if X > 0:
-            rho = min(rho, DOMINANCE_SETTINGS.first_radius_over_branch_distance * abs(gn + X * w) / X)
+            rho = min(rho, DOMINANCE_SETTINGS.first_radius_over_branch_point_distance * abs(gn + X * w) / X)
         # A disc covers the step with its diameter.
         rho = min(rho, (length - t) / 2)
         proved = False
@@ -178,7 +187,7 @@ def phase_over_dominated_segment(
             disc_count += 1
             # The disc is a little wider than the step, so that rounding leaves no gap between discs.
             radius = (1 + DOMINANCE_SETTINGS.overlap_enlargement_fraction) * rho
-            if is_dominated(w + direction * rho, radius, coefficients):
+            if has_dominant_exponential(w + direction * rho, radius, coefficients):
                 proved = True
                 break
             rho /= 2
@@ -189,14 +198,14 @@ def phase_over_dominated_segment(
             wave = dominant_prefactor_and_exponent(w, coefficients)
             first_wave = wave
         # A remainder of the size of rounding would leave a last disc of radius 0.
-        t = length if t + 2 * rho >= length * (1 - DOMINANCE_SETTINGS.end_rounding) else t + 2 * rho
+        t = length if t + 2 * rho >= length * (1 - DOMINANCE_SETTINGS.segment_end_tolerance) else t + 2 * rho
         w = start + direction * t
         next_wave = dominant_prefactor_and_exponent(w, coefficients)
         # The change of arg A over the step, in closed form; it may exceed 2 pi.
         change += (next_wave[1] - wave[1]).imag + cmath.phase(next_wave[0] / wave[0])
         wave = next_wave
     if t > 0.0:
-        change += _phase_beyond_dominant(w, wave, coefficients) - _phase_beyond_dominant(
+        change += _phase_minus_dominant_phase(w, wave, coefficients) - _phase_minus_dominant_phase(
             start, first_wave, coefficients
         )
     return t, change, disc_count

@@ -13,7 +13,7 @@ import numpy as np
 
 from ...arrays import Array
 from ..parameter_path import ParameterPath, coefficients_at
-from .box import BOX_SETTINGS, frequency_bound_on_path, zero_free_radius
+from .eigenvalue_box import BOX_SETTINGS, frequency_bound_on_path, zero_free_radius
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -22,14 +22,14 @@ class CoveringSettings:
 
     min_intervals: int = 8
     """Minimum number of intervals of p into which the path is divided."""
-    max_eta_ratio: float = 4.0
+    max_upper_over_lower_eta: float = 4.0
     """Largest ratio of the upper to the lower end of a first box in eta."""
     max_nu_decrease_fraction: float = 0.5
     """nu decreases over an interval of p by at most this fraction of nu at the start of the interval."""
     min_interval_over_longest: float = 1e-6
     """Shortest interval divided by the longest interval. Near p = 0 intervals are short, because a drag or
     compliance p at most doubles over an interval."""
-    min_last_interval_ratio: float = 1e-3
+    min_last_over_previous_interval: float = 1e-3
     """If the last interval of p is below this fraction of the previous interval, the two are merged."""
     eta_padding: float = 1e-6
     """Length added to the upper bound of eta, in 1/tau2, because the bound is 0 at F = 0."""
@@ -54,7 +54,7 @@ def path_intervals(path: ParameterPath, p_start: float, p_stop: float) -> list[t
             step = min(step, max(p, COVERING_SETTINGS.min_interval_over_longest * width))
         end = p + step
         # On a path of a few roundings, p + step is p.
-        is_last = end <= p or p_stop - end < COVERING_SETTINGS.min_last_interval_ratio * step
+        is_last = end <= p or p_stop - end < COVERING_SETTINGS.min_last_over_previous_interval * step
         edges.append(p_stop if is_last else end)
     return list(zip(edges[:-1], edges[1:], strict=True))
 
@@ -64,7 +64,7 @@ def first_crossing_boxes(path: ParameterPath, p_start: float, p_stop: float) -> 
     4). None if no a-priori bound exists, or if the lower bound of eta underflows, or almost."""
     boxes = []
     for interval_start, interval_end in path_intervals(path, p_start, p_stop):
-        max_eta = (1 + BOX_SETTINGS.bound_excess) * frequency_bound_on_path(
+        max_eta = (1 + BOX_SETTINGS.relative_bound_excess) * frequency_bound_on_path(
             path, interval_start, interval_end
         ) + COVERING_SETTINGS.eta_padding
         if not math.isfinite(max_eta):
@@ -72,7 +72,9 @@ def first_crossing_boxes(path: ParameterPath, p_start: float, p_stop: float) -> 
         min_eta = zero_free_radius(path, interval_start, interval_end, max_eta)
         if min_eta * sys.float_info.max <= max_eta:  # `min_eta` is 0 or so small that top/min_eta overflows
             return None
-        count = max(1, math.ceil(math.log(max_eta / min_eta) / math.log(COVERING_SETTINGS.max_eta_ratio)))
+        count = max(
+            1, math.ceil(math.log(max_eta / min_eta) / math.log(COVERING_SETTINGS.max_upper_over_lower_eta))
+        )
         # Boxes of one ratio: discs about a centre must not reach the branch point of P at eta = 0.
         edges = np.geomspace(min_eta, max_eta, count + 1)
         boxes += [(edges[i], edges[i + 1], interval_start, interval_end) for i in range(count)]

@@ -1,8 +1,8 @@
 """Proved number of transverse eigenvalues of a uniform rod right of a vertical line, without mesh or shift.
 
-All eigenvalues with Re w >= -depth lie in the box of `rodsweep.determinant.certificate.box`, so their number
-is the winding number of the entire function D around the box. D is real on the real axis, so the upper half
-of the box suffices: count = (change of arg D along the upper half)/pi.
+All eigenvalues with Re w >= -depth lie in the box of `rodsweep.determinant.certificate.eigenvalue_box`, so
+their number is the winding number of the entire function D around the box. D is real on the real axis, so the
+upper half of the box suffices: count = (change of arg D along the upper half)/pi.
 
 The change of phase is proved. Where one exponential of D dominates, large discs without a zero of D are
 proved (`rodsweep.determinant.certificate.dominance`); elsewhere the contour is covered by smaller discs about
@@ -21,8 +21,8 @@ from ...model.compiled.compilation import compiled
 from ...model.compiled.kernel_constants import KernelConstants
 from ...model.rod import Coefficients, Rod
 from ..value import scaled_determinant
-from .box import eigenvalue_box, zero_free_radius_of_rod
 from .dominance import phase_over_dominated_segment
+from .eigenvalue_box import eigenvalue_box, zero_free_radius_of_rod
 from .zero_free_disc import zero_free_disc_at
 
 
@@ -30,27 +30,28 @@ from .zero_free_disc import zero_free_disc_at
 class WindingSettings(KernelConstants):
     """Settings for the contour around which the winding number of D is computed."""
 
-    width_factor: float = 4.0
+    contour_width_factor: float = 4.0
     """Factor on the width of the box. Wider is cheaper: one exponential dominates D far from eigenvalues."""
-    additional_width: float = 50.0
+    additional_contour_width: float = 50.0
     """Length added to the width of the box, in 1/tau2, because a wider box is cheaper to walk around."""
-    min_height_over_line_distance: float = 0.5
+    min_contour_height_over_line_distance: float = 0.5
     """Smallest height of the box divided by the distance of the line from the imaginary axis."""
     integer_tolerance: float = 1e-3
     """The count fails if the computed winding number differs from the nearest integer by more than this."""
-    walk_length_ratio: float = 0.25
+    node_walk_length_over_w: float = 0.25
     """After a failed proof of dominance at w, the phase is followed by nodes over this length times |w|
     before dominance is tried again. The length doubles after each failure."""
-    max_step_ratio: float = 1.9
+    first_step_over_zero_free_radius: float = 1.9
     """The first step tried from a node is this number times its zero-free radius. A step beyond the zero-free
     radius needs a next node whose zero-free radius covers the step."""
     safe_step_over_radius: float = 0.999
     """If the first step fails, the step is this times the zero-free radius: below 1, because of rounding."""
-    min_zero_free_radius_ratio: float = 1e-13
+    min_zero_free_radius_over_w: float = 1e-13
     """The count fails if the zero-free radius of a node is below this times |w|: a zero is too close."""
     max_edge_nodes: int = 20_000
     """Maximum number of nodes on one edge of the box; the paper's rods need about 30 nodes on all edges."""
     field_ranges: ClassVar = {"safe_step_over_radius": (0.0, 1.0)}
+    """Exclusive bounds (lower, upper) of fields, by name, that the proofs require; see `KernelConstants`."""
 
 
 WINDING_SETTINGS = WindingSettings()
@@ -83,7 +84,7 @@ def phase_change(start: complex, end: complex, coefficients: Coefficients) -> tu
     t = 0.0
     total = 0.0
     node_count = 0
-    node_walk_length = WINDING_SETTINGS.walk_length_ratio
+    node_walk_length = WINDING_SETTINGS.node_walk_length_over_w
     while t < length:
         w = start + direction * t
         dominated_length, change, discs = phase_over_dominated_segment(w, direction, length - t, coefficients)
@@ -91,7 +92,7 @@ def phase_change(start: complex, end: complex, coefficients: Coefficients) -> tu
         node_count += discs
         # Dominance that fails is tried again only after a longer walk: each failure costs three discs.
         node_walk_length = (
-            WINDING_SETTINGS.walk_length_ratio if dominated_length > 0 else 2 * node_walk_length
+            WINDING_SETTINGS.node_walk_length_over_w if dominated_length > 0 else 2 * node_walk_length
         )
         t = length if dominated_length == length - t else t + dominated_length
         if t < length:
@@ -121,12 +122,12 @@ def phase_change_by_nodes(start: complex, end: complex, coefficients: Coefficien
     node = zero_free_disc_at(start, coefficients)
     while t < length:
         if (
-            not node.zero_free_radius > WINDING_SETTINGS.min_zero_free_radius_ratio * abs(node.w)
+            not node.zero_free_radius > WINDING_SETTINGS.min_zero_free_radius_over_w * abs(node.w)
             or node_count > WINDING_SETTINGS.max_edge_nodes
         ):
             return 0.0, -node_count
         # The next node may lie outside the zero-free disc of this node if its own disc covers the step.
-        distance = min(WINDING_SETTINGS.max_step_ratio * node.zero_free_radius, length - t)
+        distance = min(WINDING_SETTINGS.first_step_over_zero_free_radius * node.zero_free_radius, length - t)
         # The second trial lies within the zero-free radius, so there are at most two.
         while True:
             is_in_disc = distance < node.zero_free_radius
@@ -142,7 +143,11 @@ def phase_change_by_nodes(start: complex, end: complex, coefficients: Coefficien
         # The linear part of the change may exceed 2 pi; the values of D give the rest, less than pi/2.
         # The linear part of the larger disc, which contains the step, leaves less than pi/2.
         linear_change = (
-            (node.L if node.zero_free_radius >= next_node.zero_free_radius else next_node.L)
+            (
+                node.log_derivative
+                if node.zero_free_radius >= next_node.zero_free_radius
+                else next_node.log_derivative
+            )
             * (next_node.w - node.w)
         ).imag
         total += linear_change + cmath.phase(next_node.D / node.D * cmath.exp(complex(0.0, -linear_change)))
@@ -209,6 +214,6 @@ def upper_contour_corner(line: float, box: tuple[float, float]) -> complex:
     line. Also for the contours of arms."""
     max_real, max_imag = box
     return complex(
-        WINDING_SETTINGS.width_factor * max_real + WINDING_SETTINGS.additional_width,
-        max(max_imag, WINDING_SETTINGS.min_height_over_line_distance * abs(line)),
+        WINDING_SETTINGS.contour_width_factor * max_real + WINDING_SETTINGS.additional_contour_width,
+        max(max_imag, WINDING_SETTINGS.min_contour_height_over_line_distance * abs(line)),
     )

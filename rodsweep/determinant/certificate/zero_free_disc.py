@@ -33,13 +33,14 @@ NO_COEFFICIENT_CHANGE = DispersionCoefficientDerivatives(0.0, 0.0, 0.0, 0.0, 0.0
 class NodeDiscSettings(KernelConstants):
     """Settings for the disc about a node on which D is bounded."""
 
-    min_branch_point_distance_ratio: float = 3.0
+    min_branch_point_distance_over_radius: float = 3.0
     """Least ratio of the distance of a node from the nearest branch point to the radius of its disc."""
-    max_exponent_change: float = 0.4
+    max_relative_z_change: float = 0.4
     """Largest relative change of z+- over a disc, so that the exponents of D change by order one."""
-    min_root_modulus: float = 1e-3
+    min_z_modulus_that_limits_radius: float = 1e-3
     """If |z+-| is below this number, sqrt(z+-) does not limit the radius of the disc."""
-    field_ranges: ClassVar = {"min_branch_point_distance_ratio": (1.0, math.inf)}
+    field_ranges: ClassVar = {"min_branch_point_distance_over_radius": (1.0, math.inf)}
+    """Exclusive bounds (lower, upper) of fields, by name, that the proofs require; see `KernelConstants`."""
 
 
 NODE_DISC_SETTINGS = NodeDiscSettings()
@@ -50,8 +51,10 @@ class ZeroFreeDiscNode(NamedTuple):
 
     w: complex
     D: complex
-    L: complex
+    log_derivative: complex
     zero_free_radius: float
+    """Radius of a disc about w that is proved free of zeros of D, in 1/tau2; 0 if |D| is not above its
+    rounding error."""
 
 
 @compiled
@@ -61,9 +64,9 @@ def trial_radius(w: complex, coefficients: Coefficients, L: complex, S: float) -
     F, nu, c2, gamma3 = coefficients
     _, P1, P2, plus, minus = exponent_derivatives(w, coefficients)
     stiffness = abs((nu + F * c2) * nu + c2 * gamma3 * w)
-    rho = abs(w) / NODE_DISC_SETTINGS.min_branch_point_distance_ratio
+    rho = abs(w) / NODE_DISC_SETTINGS.min_branch_point_distance_over_radius
     if c2 * gamma3 > 0:
-        rho = min(rho, stiffness / (NODE_DISC_SETTINGS.min_branch_point_distance_ratio * c2 * gamma3))
+        rho = min(rho, stiffness / (NODE_DISC_SETTINGS.min_branch_point_distance_over_radius * c2 * gamma3))
     rho = min(rho, (S + 1) / max(abs(L), EXPONENT_SETTINGS.min_divisor))
     # A recessive exponential contributes little to D (large slack), so it may change more over the disc.
     for sign, z in ((1.0, plus), (-1.0, minus)):
@@ -72,11 +75,11 @@ def trial_radius(w: complex, coefficients: Coefficients, L: complex, S: float) -
         recessive_distance = S - root.real + 1
         rho = min(
             rho,
-            NODE_DISC_SETTINGS.max_exponent_change
+            NODE_DISC_SETTINGS.max_relative_z_change
             * max(abs(z), 2.0)
             / max(abs(slope), EXPONENT_SETTINGS.min_divisor),
         )
-        if abs(z) > NODE_DISC_SETTINGS.min_root_modulus:
+        if abs(z) > NODE_DISC_SETTINGS.min_z_modulus_that_limits_radius:
             rate = slope / (2 * root)
             rho = min(rho, recessive_distance / max(abs(rate - L), EXPONENT_SETTINGS.min_divisor))
             rho = min(rho, math.sqrt(2 * recessive_distance * abs(root) / (abs(P2) + abs(rate) ** 2)))

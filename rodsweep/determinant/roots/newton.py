@@ -13,18 +13,18 @@ from typing import NamedTuple
 from ...model.compiled.compilation import compiled
 from ...model.rod import Coefficients
 from ..exponents import EXPONENT_SETTINGS, MACHINE_EPSILON
-from ..parameter_path import coefficients_at, determinant_along_path
+from ..parameter_path import coefficients_at, determinant_value_on_path
 from ..value import scaled_determinant
 from .settings import ROOT_NEWTON_SETTINGS
 
 
 class LocatedEigenvalue(NamedTuple):
     """A crossing at w = i eta, or a double eigenvalue at w = x, on a path at p; all fields are nan after a
-    failure. eta_or_x: eta or x. error: error of eta_or_x. error_of_p: error of p."""
+    failure. eta_or_x: eta or x. error_of_eta_or_x: error of eta_or_x. error_of_p: error of p."""
 
     eta_or_x: float
     p: float
-    error: float
+    error_of_eta_or_x: float
     error_of_p: float
 
 
@@ -44,7 +44,7 @@ def crossing_by_newton(
     last = math.inf
     for _ in range(ROOT_NEWTON_SETTINGS.max_steps):
         coefficients = coefficients_at(p, origin, direction)
-        D, D_w, D_p, _, rounding_error = determinant_along_path(complex(0.0, eta), coefficients, direction)
+        D, D_w, D_p, _, rounding_error = determinant_value_on_path(complex(0.0, eta), coefficients, direction)
         # D is complex, the unknowns eta and p are real: d/d(eta) of D(i eta) is i D_w.
         a = 1j * D_w
         # The determinant of the real 2 x 2 system (Re, Im), written with complex products.
@@ -59,7 +59,7 @@ def crossing_by_newton(
         e_p = rounding * abs(a) / abs(cross)
         step = max(abs(eta_step) / scale[0], abs(p_step) / scale[1])
         # Negated comparisons are also true for NaN.
-        if not step < ROOT_NEWTON_SETTINGS.max_relative_step or not eta + eta_step > 0:
+        if not step < ROOT_NEWTON_SETTINGS.max_step_over_expected_value or not eta + eta_step > 0:
             return FAILED_EIGENVALUE
         eta += eta_step
         p += p_step
@@ -68,8 +68,8 @@ def crossing_by_newton(
             and abs(p_step) <= ROOT_NEWTON_SETTINGS.converged_step_in_rounding_errors * e_p
         ) or (
             # Small steps that stop halving are rounding errors above their estimate.
-            step > ROOT_NEWTON_SETTINGS.converging_step_ratio * last
-            and step * scale[1] < ROOT_NEWTON_SETTINGS.stagnant_step_over_p * abs(p)
+            step > ROOT_NEWTON_SETTINGS.min_stagnant_step_ratio * last
+            and step * scale[1] < ROOT_NEWTON_SETTINGS.max_stagnant_step_over_p * abs(p)
         ):
             return LocatedEigenvalue(eta, p, max(e_eta, abs(eta_step)), max(e_p, abs(p_step)))
         last = step
@@ -116,7 +116,7 @@ def double_eigenvalue_by_newton(
             return FAILED_EIGENVALUE
         if abs(p_step) <= ROOT_NEWTON_SETTINGS.converged_step_in_rounding_errors * e_p and (
             abs(x_step) <= ROOT_NEWTON_SETTINGS.converged_step_in_rounding_errors * e_x
-            or abs(x_step) > ROOT_NEWTON_SETTINGS.converging_step_ratio * last
+            or abs(x_step) > ROOT_NEWTON_SETTINGS.min_stagnant_step_ratio * last
         ):
             return LocatedEigenvalue(x, p, max(e_x, abs(x_step)), max(e_p, abs(p_step)))
         last = abs(x_step)
@@ -129,7 +129,7 @@ def _real_determinant(
 ) -> tuple[float, float, float, float, float]:
     """Returns (D, D_w, D_p, S, rounding error of D) at real w = x and p, where all five are real."""
     coefficients = coefficients_at(p, origin, direction)
-    D, D_w, D_p, S, rounding_error = determinant_along_path(complex(x, 0.0), coefficients, direction)
+    D, D_w, D_p, S, rounding_error = determinant_value_on_path(complex(x, 0.0), coefficients, direction)
     return D.real, D_w.real, D_p.real, S, rounding_error
 
 
@@ -149,12 +149,12 @@ def refine_eigenvalue(w: complex, coefficients: Coefficients, max_first_step: fl
         if real:
             step = complex(step.real, 0.0)
         # Newton's method converges quadratically; a step that hardly decreases is rounding error.
-        if not abs(step) < ROOT_NEWTON_SETTINGS.converging_step_ratio * last:
+        if not abs(step) < ROOT_NEWTON_SETTINGS.min_stagnant_step_ratio * last:
             break
         last = abs(step)
         w -= step
         # D is real on the real axis, where rounding leaves a tiny imaginary part.
-        if abs(w.imag) <= ROOT_NEWTON_SETTINGS.real_tolerance * abs(w):
+        if abs(w.imag) <= ROOT_NEWTON_SETTINGS.real_axis_tolerance * abs(w):
             w = complex(w.real, 0.0)
     return w
 
@@ -166,5 +166,5 @@ def eigenvalue_by_newton(
     """Returns (w, dw/dp, error of w) of the simple eigenvalue w of a uniform rod near the guess w. direction:
     d(F, nu, c2, gamma3)/dp."""
     w = refine_eigenvalue(w, coefficients)
-    value = determinant_along_path(w, coefficients, direction)
+    value = determinant_value_on_path(w, coefficients, direction)
     return w, -value.D_p / value.D_w, max(abs(value.D), value.rounding_error) / abs(value.D_w)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ...arrays import Array, Complex
 from ...model.compiled.compilation import compiled
 from ...model.rod import Coefficients
-from ..certificate.box import box_from_sqrt_bound
+from ..certificate.eigenvalue_box import box_from_sqrt_frequency_bound
 from ..exponents import EXPONENT_SETTINGS
 from ..rounding_at_root import rounding_error_at_root
 from ..value import (
@@ -35,18 +35,19 @@ class Roots(NamedTuple):
     arrays are (k,).
 
     mesh_indices: index of each root in the list of eigenvalues of the mesh. error: absolute error estimates.
-    displacement: |eigenvalue of the mesh - root| / max(|w|, length over which D changes). wave_number:
-    largest |q|, in 1/L. is_imaginary: whether the root is imaginary within its error. unmatched_count: number
-    of eigenvalues of the mesh that lie in the a-priori box right of all roots and do not approximate a root.
+    relative_mesh_displacement: |eigenvalue of the mesh - root| / max(|w|, length over which D changes).
+    wave_number: largest |q|, in 1/L. is_imaginary: whether the root is imaginary within its error.
+    unmatched_mesh_eigenvalue_count: number of eigenvalues of the mesh that lie in the a-priori box right of
+    all roots and do not approximate a root.
     """
 
     mesh_indices: NDArray[np.int64]
     w: Complex
     error: Array
-    displacement: Array
+    relative_mesh_displacement: Array
     wave_number: Array
     is_imaginary: NDArray[np.bool_]
-    unmatched_count: int
+    unmatched_mesh_eigenvalue_count: int
 
 
 @compiled
@@ -60,16 +61,16 @@ def root_error_and_scales(w: complex, coefficients: Coefficients) -> tuple[float
     and one that covers nearly all roundings at another.
     """
     error, length, wave = eigenvalue_error_and_scales(w, coefficients)
-    if error > ROOT_SETTINGS.ill_conditioned_ratio * abs(w):
+    if error > ROOT_SETTINGS.min_ill_conditioned_relative_error * abs(w):
         D, D1, S, _ = scaled_determinant(w, coefficients)
         rounding_error = rounding_error_at_root(w, coefficients, S)
         e = max(abs(D), ROOT_SETTINGS.rounding_bound_fraction_at_root * rounding_error)
         error = e / max(abs(D1), EXPONENT_SETTINGS.min_divisor)
-        if error > ROOT_SETTINGS.double_root_correction_ratio * abs(w):
+        if error > ROOT_SETTINGS.min_double_root_correction_over_w * abs(w):
             D_ww = abs(second_derivative(w, S, coefficients))
             # Close to a double root Newton's correction is useless: the roots of the parabola bound the
             # distance.
-            if abs(D1) ** 2 < ROOT_SETTINGS.min_squared_slope_ratio * e * D_ww:
+            if abs(D1) ** 2 < ROOT_SETTINGS.min_half_root_distance_in_corrections * e * D_ww:
                 root_distance = math.sqrt(2 * e / D_ww)
                 error = min(max(error, root_distance), abs(D1) / D_ww + root_distance)
     return error, length, wave
@@ -111,7 +112,7 @@ def _separate_close_pairs(w: Complex, error: Array, coefficients: Coefficients) 
             if j != i and half_distances[j] == math.inf and abs(w[j] - w[i]) < min_distance:
                 nearest_index = j
                 min_distance = abs(w[j] - w[i])
-        if nearest_index >= 0 and min_distance <= ROOT_SETTINGS.pair_distance_in_errors * (
+        if nearest_index >= 0 and min_distance <= ROOT_SETTINGS.max_pair_distance_in_errors * (
             error[i] + error[nearest_index]
         ):
             for _ in range(ROOT_SETTINGS.parabolas_per_pair):
@@ -153,7 +154,7 @@ def sort_indices_descending(w: Complex, order: NDArray) -> None:
 def refined_roots(raw: Complex, coefficients: Coefficients, sqrt_bound: float, max_q: float) -> Roots:
     """Roots of D, refined from the eigenvalues of a mesh in `raw`, (n,), that approximate a root of D.
 
-    sqrt_bound: square root of `rodsweep.determinant.certificate.box.frequency_bound`. max_q:
+    sqrt_bound: square root of `rodsweep.determinant.certificate.eigenvalue_box.frequency_bound`. max_q:
     largest wave number |q| that the mesh resolves. Infinite eigenvalues, which rounding makes finite, are
     dropped: they lie outside the a-priori box, have too large a |q|, or are far from every root.
     """
@@ -166,23 +167,21 @@ def refined_roots(raw: Complex, coefficients: Coefficients, sqrt_bound: float, m
     for i in range(len(raw)):
         if not (math.isfinite(raw[i].real) and math.isfinite(raw[i].imag)):
             continue
-        if abs(raw[i].imag) <= ROOT_NEWTON_SETTINGS.real_tolerance * abs(raw[i]):
+        if abs(raw[i].imag) <= ROOT_NEWTON_SETTINGS.real_axis_tolerance * abs(raw[i]):
             guess[i] = complex(raw[i].real, 0.0)
         error[i], length[i], wave[i] = root_error_and_scales(guess[i], coefficients)
         # No eigenvalue lies outside the box: eigenvalues of the mesh outside the box are artefacts.
-        real, imag = box_from_sqrt_bound(sqrt_bound, max(-guess[i].real, 0.0))
+        real, imag = box_from_sqrt_frequency_bound(sqrt_bound, max(-guess[i].real, 0.0))
         inside[i] = guess[i].real <= real and abs(guess[i].imag) <= imag
-        is_near[i] = (
-            inside[i] and wave[i] <= max_q and error[i] <= ROOT_SETTINGS.max_pair_correction_ratio * length[i]
-        )
+        max_error = ROOT_SETTINGS.max_pair_correction_over_w_scale * length[i]
+        is_near[i] = inside[i] and wave[i] <= max_q and error[i] <= max_error
     indices = np.flatnonzero(is_near)
     guess = guess[indices]
     error = error[indices]
     length = length[indices]
     wave = wave[indices]
-    w, is_refined = _refine_candidates(
-        guess, error, wave, error <= ROOT_SETTINGS.max_correction_ratio * length, coefficients
-    )
+    is_near_root = error <= ROOT_SETTINGS.max_newton_correction_over_w_scale * length
+    w, is_refined = _refine_candidates(guess, error, wave, is_near_root, coefficients)
     order = np.flatnonzero(is_refined)
     order = order[_descending_order(w[order])]
     displacement = np.abs(w[order] - guess[order]) / np.maximum(np.abs(w[order]), length[order])
@@ -192,8 +191,8 @@ def refined_roots(raw: Complex, coefficients: Coefficients, sqrt_bound: float, m
     wave = wave[order]
     _increase_errors_of_equal_roots(w, error, coefficients)
     axis = np.abs(w.real) <= np.maximum(
-        ROOT_SETTINGS.axis_tolerance_in_errors * error,
-        ROOT_SETTINGS.axis_tolerance * np.abs(w),
+        ROOT_SETTINGS.imaginary_axis_tolerance_in_errors * error,
+        ROOT_SETTINGS.imaginary_axis_tolerance * np.abs(w),
     )
     # An eigenvalue in the box that leads all roots is spurious, or the trace of a root that was missed.
     spurious_count = (inside & ~is_near & (raw.real > (w[0].real if len(w) else -math.inf))).sum()
@@ -237,6 +236,6 @@ def _increase_errors_of_equal_roots(w: Complex, error: Array, coefficients: Coef
             distance = abs(w[i] - w[j])
             if distance <= ROOT_SETTINGS.same_root_distance_in_errors * (error[i] + error[j]):
                 next_root = distance_to_next_root(w[i], coefficients)
-                if distance < ROOT_SETTINGS.same_root_fraction * next_root:
+                if distance < ROOT_SETTINGS.same_root_fraction_of_next_distance * next_root:
                     error[i] = max(error[i], next_root)
                     error[j] = max(error[j], next_root)

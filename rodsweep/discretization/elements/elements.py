@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ...arrays import Array
 from .basis import lagrange_interpolation_matrix
-from .node_spacing import position_slopes, spaced_coordinates, spaced_positions
+from .node_spacing import coordinates_at_positions, position_slopes, positions_at_coordinates
 from .quadrature import gauss_lobatto_rule
 
 
@@ -41,14 +41,14 @@ ELEMENT_SETTINGS = ElementSettings()
 class Elements:
     """Elements on the rod. Element e reaches from edges[e] to edges[e + 1]; edges[0] is 0 and edges[-1] is 1.
     order: largest order of an element. order_ratios: order of each element divided by `order`, before
-    `element_orders` rounds the order up; empty if all orders are equal. spacing_ratios: ratio s of
+    `element_orders` rounds the order up; empty if all orders are equal. node_spacing_ratios: ratio s of
     `node_spacing` of each element; empty if all are 1. In shapes, `nodes` is `node_count`,
     which does not count one end of the rod, and `elements` is the number of elements."""
 
     edges: tuple[float, ...]
     order: int
     order_ratios: tuple[float, ...] = field(default=(), kw_only=True)
-    spacing_ratios: tuple[float, ...] = field(default=(), kw_only=True)
+    node_spacing_ratios: tuple[float, ...] = field(default=(), kw_only=True)
 
     @property
     def element_count(self) -> int:
@@ -77,23 +77,25 @@ class Elements:
         return np.diff(self.edges)
 
     @cached_property
-    def spacing_of_elements(self) -> tuple[float, ...]:
+    def node_spacing_ratio_of_elements(self) -> tuple[float, ...]:
         """Ratio s of `node_spacing` of each element."""
-        return self.spacing_ratios or (1.0,) * self.element_count
+        return self.node_spacing_ratios or (1.0,) * self.element_count
 
     @cached_property
     def relative_node_positions(self) -> tuple[Array, ...]:
         """Positions of the nodes along each element, from 0 to 1, (p + 1,) each, p: order of the element."""
         return tuple(
-            spaced_positions((gauss_lobatto_rule(order)[0] + 1) / 2, s)
-            for order, s in zip(self.orders, self.spacing_of_elements, strict=True)
+            positions_at_coordinates((gauss_lobatto_rule(order)[0] + 1) / 2, s)
+            for order, s in zip(self.orders, self.node_spacing_ratio_of_elements, strict=True)
         )
 
     @cached_property
-    def quadrature_of_elements(self) -> tuple[Array, ...]:
+    def quadrature_weights_of_elements(self) -> tuple[Array, ...]:
         """Quadrature weights of the nodes of each element, (p + 1,) each, p: order of the element."""
         weights = []
-        for length, order, s in zip(self.lengths, self.orders, self.spacing_of_elements, strict=True):
+        for length, order, s in zip(
+            self.lengths, self.orders, self.node_spacing_ratio_of_elements, strict=True
+        ):
             x, w = gauss_lobatto_rule(order)
             weights.append(length / 2 * w * position_slopes((x + 1) / 2, s))
         return tuple(weights)
@@ -111,7 +113,7 @@ class Elements:
         return positions
 
     @cached_property
-    def element_nodes(self) -> NDArray[np.int64]:
+    def element_node_indices(self) -> NDArray[np.int64]:
         """Indices of the nodes of every element, in turn, (nodes + elements,). Neighbours share a node."""
         return np.concatenate([np.arange(nodes.start, nodes.stop) for nodes in self.node_ranges])
 
@@ -140,7 +142,7 @@ class Elements:
     def one_sided_evaluation_matrix(self, points: Array) -> Array:
         """Matrix (n, nodes + elements) from values at the nodes of every element to values at `points`, (n,),
         in [0, 1]. A node between two elements has one value for each of the two elements."""
-        matrix = np.zeros((len(points), self.element_nodes.size))
+        matrix = np.zeros((len(points), self.element_node_indices.size))
         for e, indices, coordinates in self.points_by_element(points):
             nodes = gauss_lobatto_rule(self.orders[e])[0]
             # Each earlier element has added one column, since the node between two elements has two values.
@@ -158,7 +160,7 @@ class Elements:
         for e in np.unique(element):
             indices = np.nonzero(element == e)[0]
             v = (points[indices] - self.edges[e]) / self.lengths[e]
-            yield int(e), indices, 2 * spaced_coordinates(v, self.spacing_of_elements[e]) - 1
+            yield int(e), indices, 2 * coordinates_at_positions(v, self.node_spacing_ratio_of_elements[e]) - 1
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_mesh_pairs)

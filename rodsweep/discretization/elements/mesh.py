@@ -30,14 +30,15 @@ SHAPE_QUADRATURE_SETTINGS = ShapeQuadratureSettings()
 
 
 class NodeMatrices(NamedTuple):
-    """Matrices over all nodes of a mesh: D, D^T and -D^T W (`weak_derivative`), (nodes + 1, nodes + 1), and
-    the weights W, (nodes + 1,). D: differentiation. W: lumped mass. All arrays are contiguous, for inner
-    loops over the nodes."""
+    """Matrices over all nodes of a mesh: D, D^T and -D^T W (`weak_derivative_matrix`), (nodes + 1, nodes +
+    1), and the weights W, (nodes + 1,). differentiation_matrix: differentiation. W: lumped mass. All arrays
+    are contiguous, for inner loops over the nodes."""
 
-    D: Array
-    D_transposed: Array
-    weak_derivative: Array
-    weights: Array
+    differentiation_matrix: Array
+    transposed_differentiation_matrix: Array
+    """Transposed differentiation matrix D^T, (nodes + 1, nodes + 1)."""
+    weak_derivative_matrix: Array
+    quadrature_weights: Array
 
 
 @dataclass(frozen=True)
@@ -46,16 +47,16 @@ class Mesh(Elements):
     equal edges, orders and spacing compare equal, also in different processes."""
 
     # The matrices follow from these, and an array comparison has no single truth value.
-    matrices: NodeMatrices = field(compare=False, repr=False)
+    node_matrices: NodeMatrices = field(compare=False, repr=False)
 
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
         """Pickles only edges, orders and spacing; messages to other ranks are pickled too."""
-        return mesh_with_edges, (self.edges, self.order, self.order_ratios, self.spacing_ratios)
+        return mesh_with_edges, (self.edges, self.order, self.order_ratios, self.node_spacing_ratios)
 
     @property
-    def quadrature(self) -> Array:
+    def quadrature_weights(self) -> Array:
         """Quadrature weights of all nodes, tip included, (nodes + 1,)."""
-        return self.matrices.weights
+        return self.node_matrices.quadrature_weights
 
 
 def uniform_mesh(element_count: int, order: int) -> Mesh:
@@ -73,13 +74,13 @@ def mesh_with_edges(
     """The mesh whose elements lie between neighbouring `edges`; cached. order: largest order of an element.
     order_ratios: order of each element divided by `order`; empty if all orders are equal. spacing_ratios: as
     in `Elements`."""
-    ratios = {"order_ratios": order_ratios, "spacing_ratios": spacing_ratios}
+    ratios = {"order_ratios": order_ratios, "node_spacing_ratios": spacing_ratios}
     elements = Elements(edges, order, **ratios)
     node_count = elements.node_count
     weighted_D = np.zeros((node_count + 1, node_count + 1))
     node_weights = np.zeros(node_count + 1)
     for node_range, p, weights in zip(
-        elements.node_ranges, elements.orders, elements.quadrature_of_elements, strict=True
+        elements.node_ranges, elements.orders, elements.quadrature_weights_of_elements, strict=True
     ):
         x, w = gauss_lobatto_rule(p)
         # Length and spacing of the element cancel.
@@ -108,7 +109,7 @@ def shape_from_strains(mesh: Mesh, strains: Array, clamp: Array) -> Array:
     start = np.broadcast_to(clamp.reshape(3, *(1,) * (strains.ndim - 1)), (3, *strains.shape[1:-1], 1))
     for e, (element, length) in enumerate(zip(mesh.node_ranges, mesh.lengths, strict=True)):
         values, angles, integrals, ends = shape_integration_matrices(
-            mesh.orders[e], gauss_point_count, mesh.spacing_of_elements[e]
+            mesh.orders[e], gauss_point_count, mesh.node_spacing_ratio_of_elements[e]
         )
         h1, h2, Pi = (strain[..., element.start + e : element.stop + e] for strain in strains)
         # The angle comes first, because it turns the strains in the integrals of x and y.
@@ -128,15 +129,16 @@ def shape_from_strains(mesh: Mesh, strains: Array, clamp: Array) -> Array:
 class ShapeIntegrationMatrices(NamedTuple):
     """Matrices that integrate strains to a shape on one element [0, 1] with p + 1 nodes and m Gauss points.
 
-    All matrices are multiplied from the right. values_at_gauss_points: interpolation from nodes to Gauss
-    points, (p + 1, m). angles_at_gauss_points: integrals of nodal polynomials from 0 to the Gauss points, (p
-    + 1, m). integrals_to_nodes: integrals from 0 to the nodes, of functions given at the Gauss points, (m, p
-    + 1). angles_at_nodes: integrals of nodal polynomials from 0 to the nodes, (p + 1, p + 1)."""
+    All matrices are multiplied from the right. interpolation_to_gauss_points: interpolation from nodes to
+    Gauss points, (p + 1, m). nodal_integrals_to_gauss_points: integrals of nodal polynomials from 0 to the
+    Gauss points, (p + 1, m). gauss_integrals_to_nodes: integrals from 0 to the nodes, of functions given at
+    the Gauss points, (m, p + 1). nodal_integrals_to_nodes: integrals of nodal polynomials from 0 to the
+    nodes, (p + 1, p + 1)."""
 
-    values_at_gauss_points: Array
-    angles_at_gauss_points: Array
-    integrals_to_nodes: Array
-    angles_at_nodes: Array
+    interpolation_to_gauss_points: Array
+    nodal_integrals_to_gauss_points: Array
+    gauss_integrals_to_nodes: Array
+    nodal_integrals_to_nodes: Array
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)

@@ -13,7 +13,7 @@ import numpy as np
 from ...arrays import Array
 
 
-def spaced_positions(t: Array, spacing_ratio: float) -> Array:
+def positions_at_coordinates(t: Array, spacing_ratio: float) -> Array:
     """Positions v along an element, in [0, 1], at the coordinates t, in [0, 1]; the shape is that of t."""
     if spacing_ratio == 1:
         return t
@@ -21,7 +21,7 @@ def spaced_positions(t: Array, spacing_ratio: float) -> Array:
     return v
 
 
-def spaced_coordinates(v: Array, spacing_ratio: float) -> Array:
+def coordinates_at_positions(v: Array, spacing_ratio: float) -> Array:
     """Coordinates t of an element, in [0, 1], at the positions v, in [0, 1]; the shape is that of v."""
     if spacing_ratio == 1:
         return v
@@ -37,6 +37,6 @@ def position_slopes(t: Array, spacing_ratio: float) -> Array:
     return slopes
 
 
-def halved_spacing_ratios(ratios: tuple[float, ...]) -> tuple[float, ...]:
+def node_spacing_ratios_of_halves(ratios: tuple[float, ...]) -> tuple[float, ...]:
     """`spacing_ratio` of all elements after every element is halved: the spacing is linear in v."""
     return tuple(half for s in ratios for half in ((1 + s) / 2, 2 * s / (1 + s)))

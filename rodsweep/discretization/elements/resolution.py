@@ -19,17 +19,19 @@ class ResolutionSettings:
     """Order of a single element for `base_digits` digits at |q| = 0."""
     order_slope: float = 0.49
     """Increase of the order for `base_digits` digits per unit of |q|."""
-    digit_intercept: float = 0.7
+    order_per_digit_intercept: float = 0.7
     """Increase of the order for each further digit, at |q| = 0."""
-    digit_slope: float = 0.02
-    """Increase of the order for each further digit, per unit of |q|, in addition to `digit_intercept`."""
-    digit_slope_max_wave_number: float = 35.0
+    order_per_digit_slope: float = 0.02
+    """Increase of the order for each further digit, per unit of |q|, in addition to
+    `order_per_digit_intercept`."""
+    order_per_digit_max_wave_number: float = 35.0
     """The increase of the order for each further digit is constant for |q| larger than this."""
-    wave_safety_factor: float = 1.4
+    amplified_wave_safety_factor: float = 1.4
     """Safety factor on the wave number of the most amplified wave in the estimate of the largest |q|."""
-    mode_offset: float = 0.3
-    """Mode n of a rod without load has |q| near (n - 1/2) pi; (n - mode_offset) pi is an upper estimate."""
-    start_accuracy: float = 1e-4
+    mode_number_offset: float = 0.3
+    """Mode n of a rod without load has |q| near (n - 1/2) pi; (n - mode_number_offset) pi is an upper
+    estimate."""
+    accuracy_before_refinement: float = 1e-4
     """Relative accuracy of a mesh if its eigenvalues are then refined to roots of D."""
     max_wave_number_per_node: float = 2.0
     """A mesh represents eigenvalues with wave number |q| <= `max_wave_number_per_node` * (elements * order),
@@ -42,7 +44,7 @@ class ResolutionSettings:
     max_unknowns: int = 10_000
     """Maximum number of unknowns of a mesh; a sparse factorisation then takes a few seconds. A rod that needs
     more unknowns fails."""
-    finer_unknowns_ratio: float = 4 / 3
+    finer_over_current_unknowns: float = 4 / 3
     """Number of unknowns of the next finer mesh, divided by the number of unknowns of the current mesh."""
 
 
@@ -54,6 +56,7 @@ class Resolution:
     """Mesh of a uniform rod: number of elements of equal length, and their order."""
 
     element_count: int
+    """Number of elements of equal length."""
     order: int
 
     @property
@@ -70,8 +73,8 @@ def expected_wave_number(mode_count: int, amplified_wave_number: float) -> float
     For the random rods of the module docstring the estimate is 0.95 to 1.37 times the true maximum.
     """
     return hypot(
-        RESOLUTION_SETTINGS.wave_safety_factor * amplified_wave_number,
-        (mode_count - RESOLUTION_SETTINGS.mode_offset) * pi,
+        RESOLUTION_SETTINGS.amplified_wave_safety_factor * amplified_wave_number,
+        (mode_count - RESOLUTION_SETTINGS.mode_number_offset) * pi,
     )
 
 
@@ -80,9 +83,10 @@ def mesh_accuracy(accuracy: float, needs_vectors: bool) -> float:
 
     needs_vectors: whether eigenvectors are needed. The error of an eigenvector on a mesh is the square root
     of the error of its eigenvalue. Without eigenvectors a mesh of the accuracy
-    `RESOLUTION_SETTINGS.start_accuracy` suffices, because the eigenvalues are refined to roots of D.
+    `RESOLUTION_SETTINGS.accuracy_before_refinement` suffices, because the eigenvalues are refined to roots of
+    D.
     """
-    return accuracy**2 if needs_vectors else RESOLUTION_SETTINGS.start_accuracy
+    return accuracy**2 if needs_vectors else RESOLUTION_SETTINGS.accuracy_before_refinement
 
 
 def required_order(wave_number: float, accuracy: float) -> float:
@@ -90,8 +94,8 @@ def required_order(wave_number: float, accuracy: float) -> float:
     accuracy `accuracy`."""
     settings = RESOLUTION_SETTINGS
     further_digits = max(-log10(accuracy), settings.base_digits) - settings.base_digits
-    order_per_digit = settings.digit_intercept + settings.digit_slope * min(
-        wave_number, settings.digit_slope_max_wave_number
+    order_per_digit = settings.order_per_digit_intercept + settings.order_per_digit_slope * min(
+        wave_number, settings.order_per_digit_max_wave_number
     )
     return settings.order_intercept + settings.order_slope * wave_number + further_digits * order_per_digit
 
@@ -132,9 +136,9 @@ def resolution_for(wave_number: float, accuracy: float, max_order: int | None = 
 def finer_resolution(resolution: Resolution) -> Resolution:
     """The next finer resolution, with a third more unknowns: a higher order up to the maximum order, then
     more elements."""
-    order = ceil(resolution.order * RESOLUTION_SETTINGS.finer_unknowns_ratio)
+    order = ceil(resolution.order * RESOLUTION_SETTINGS.finer_over_current_unknowns)
     if order <= RESOLUTION_SETTINGS.max_order:
         return Resolution(resolution.element_count, order)
-    element_count = ceil(resolution.element_count * RESOLUTION_SETTINGS.finer_unknowns_ratio)
-    node_count = RESOLUTION_SETTINGS.finer_unknowns_ratio * resolution.element_count * resolution.order
+    element_count = ceil(resolution.element_count * RESOLUTION_SETTINGS.finer_over_current_unknowns)
+    node_count = RESOLUTION_SETTINGS.finer_over_current_unknowns * resolution.element_count * resolution.order
     return Resolution(element_count, ceil(node_count / element_count))

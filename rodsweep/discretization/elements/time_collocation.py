@@ -38,7 +38,7 @@ class CollocationMethod(NamedTuple):
     differentiation_matrix: Array
 
     @property
-    def stages(self) -> int:
+    def stage_count(self) -> int:
         """Number of stages s."""
         return len(self.nodes)
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
-from ...model.compiled.compilation import compiled_for_vectors
+from ...model.compiled.compilation import compiled_with_reordered_sums
 from ...model.compiled.kernel_constants import KernelConstants
 
 
@@ -39,19 +39,20 @@ def fourier_coefficients(samples: Array) -> Complex:
     return c
 
 
-def hermite_coefficients(values: Array, slopes: Array) -> Complex:
+def hermite_fourier_coefficients(values: Array, slopes: Array) -> Complex:
     """Coefficients c, (m + 1, ...): Re sum_k c_k exp(2 pi i k t) interpolates values and slopes at t = k/m.
     values, slopes: (m, ...); slopes are derivatives by the time in periods. The slopes distinguish the
     harmonics k and m - k, so twice as many harmonics are resolved as from values alone."""
     columns = np.ascontiguousarray(values).reshape(len(values), -1)
     rates = np.ascontiguousarray(slopes).reshape(len(slopes), -1)
-    c: Complex = hermite_coefficients_of_columns(columns, rates, np.zeros(columns.shape[1]))
+    c: Complex = hermite_fourier_coefficients_of_columns(columns, rates, np.zeros(columns.shape[1]))
     return c.reshape(len(c), *values.shape[1:])
 
 
-@compiled_for_vectors
-def hermite_coefficients_of_columns(values: Array, slopes: Array, signs: Array) -> Complex:
-    """`hermite_coefficients`, (m + 1, columns), of columns given over half a period or a whole period.
+@compiled_with_reordered_sums
+def hermite_fourier_coefficients_of_columns(values: Array, slopes: Array, signs: Array) -> Complex:
+    """`hermite_fourier_coefficients`, (m + 1, columns), of columns given over half a period or a whole
+    period.
 
     values, slopes: (nodes, columns). signs: factor of each column after half a period, (columns,), or 0 for
     nodes over a whole period. c_k = 2/m ((1 - k/m) S_k + D_k/(2 pi i m)) with the sums S_k of the values and
@@ -97,7 +98,7 @@ def hermite_coefficients_of_columns(values: Array, slopes: Array, signs: Array) 
     return c
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def _cosine_sine_table(count: int) -> Array:
     """Cosine and sine of 2 pi k/count for k = 0 ... count - 1, (2, count)."""
     waves = np.empty((2, count))
@@ -114,7 +115,7 @@ def series_samples(c: Complex, count: int) -> Array:
     return samples.reshape(count, *c.shape[1:])
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def series_samples_of_columns(c: Complex, count: int) -> Array:
     """`series_samples` of columns, (count, columns), from coefficients c, (harmonics, columns). For an even
     count, sums of the first half of the period also give the second half: even harmonics are equal, odd
@@ -174,7 +175,7 @@ def time_derivative(samples: Array) -> Array:
     return np.fft.irfft(k.reshape(-1, *(1,) * (samples.ndim - 1)) * np.fft.rfft(samples, axis=0), n, axis=0)
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def series_maxima(c: Complex, samples: Array) -> Array:
     """Maxima, (m,), of m series Re sum_k c_k exp(2 pi i k t), by Newton's method from the largest samples. c:
     (harmonics, m). samples: equidistant over a period, (n, m)."""
@@ -196,13 +197,13 @@ def series_maxima(c: Complex, samples: Array) -> Array:
     return maxima
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def series_minima(c: Complex, samples: Array) -> Array:
     """Minima, (m,), of Re sum_k c_k exp(2 pi i k t), like `series_maxima`; c: (harmonics, m)."""
     return -series_maxima(-c, -samples)
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def _series_value_slope_curvature(c: Complex, t: float) -> tuple[float, float, float]:
     """Returns (value, slope, curvature) of Re sum_k c_k exp(2 pi i k t) at the time t; c: (harmonics,)."""
     angle = 2 * np.pi * t
@@ -236,7 +237,7 @@ def time_of_rise_through_mean(samples: Array) -> float:
     )
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def _bisect_rising_zero(c: Complex, low: float, high: float) -> float:
     """The zero of Re sum_k c_k exp(2 pi i k t) between low and high by bisection; c: (harmonics,)."""
     for _ in range(TRIGONOMETRIC_MAXIMUM_SETTINGS.max_bisections):

@@ -26,21 +26,21 @@ class _MeshMatrices(NamedTuple):
     """Matrices and weights of a mesh of elements of order p, from which `_pencil_of_coefficients` computes
     the pencil of an arm.
 
-    value_matrix, slope_matrix: matrices from nodes to Gauss points, (p, p + 1). slope_value_matrix: slope^T
-    weights value, (p + 1, p + 1). constant_entries: entries of the first two blocks, which are the same for
-    every arm, (n,). weights_over_half_length, weights_times_half_length: Gauss weights divided by, and times,
-    half the length of each element, (elements, p). node_masses: mass of the nodes, (elements, p + 1).
-    entry_positions: index in the pattern of each entry of all blocks, (m,). rows, columns: row and column of
-    each entry of the pattern, (nnz,)."""
+    interpolation_to_gauss_points, derivatives_at_gauss_points: matrices from nodes to Gauss points, (p, p +
+    1). derivative_value_integrals: slope^T weights value, (p + 1, p + 1). arm_independent_entries: entries of
+    the first two blocks, which are the same for every arm, (n,). weights_over_half_length,
+    weights_times_half_length: Gauss weights divided by, and times, half the length of each element,
+    (elements, p). nodal_masses: mass of the nodes, (elements, p + 1). pattern_indices: index in the pattern
+    of each entry of all blocks, (m,). rows, columns: row and column of each entry of the pattern, (nnz,)."""
 
-    value_matrix: Array
-    slope_matrix: Array
-    slope_value_matrix: Array
-    constant_entries: Array
+    interpolation_to_gauss_points: Array
+    derivatives_at_gauss_points: Array
+    derivative_value_integrals: Array
+    arm_independent_entries: Array
     weights_over_half_length: Array
     weights_times_half_length: Array
-    node_masses: Array
-    entry_positions: NDArray[np.int64]
+    nodal_masses: Array
+    pattern_indices: NDArray[np.int64]
     rows: NDArray[np.int32]
     columns: NDArray[np.int32]
 
@@ -74,18 +74,18 @@ class ArmPencil:
         self._y_indices: NDArray[np.int64] = (
             np.arange(mesh.element_count)[:, None] * mesh.order + np.arange(mesh.order + 1) - 1
         )
-        self.rows, self.columns, entry_positions = self._sparsity_pattern()
+        self.rows, self.columns, pattern_indices = self._sparsity_pattern()
         self._mesh_matrices = _MeshMatrices(
-            value_matrix=value,
-            slope_matrix=slope,
-            slope_value_matrix=slopes @ value,
-            constant_entries=np.concatenate(
+            interpolation_to_gauss_points=value,
+            derivatives_at_gauss_points=slope,
+            derivative_value_integrals=slopes @ value,
+            arm_independent_entries=np.concatenate(
                 [np.tile(x.ravel(), mesh.element_count) for x in (-slopes, slopes.T)]
             ),
             weights_over_half_length=wg * (2 / h[:, None]),
             weights_times_half_length=wg * h[:, None] / 2,
-            node_masses=w * h[:, None] / 2,
-            entry_positions=entry_positions,
+            nodal_masses=w * h[:, None] / 2,
+            pattern_indices=pattern_indices,
             rows=self.rows,
             columns=self.columns,
         )
@@ -117,7 +117,7 @@ class ArmPencil:
         theta = np.where(y < 0, -1, y + n)
         s = 2 * n + np.arange(n).reshape(self.mesh.element_count, self.order)
         pairs = [(y, s), (s, y), (theta, theta), (y, theta), (theta, s), (s, theta)]
-        keys = [_row_major_positions(rows, columns, size) for rows, columns in pairs]
+        keys = [_row_major_indices(rows, columns, size) for rows, columns in pairs]
         # The last key is the entry of the follower force at the tip: row y(1), column theta(1).
         keys += [(s * size + s).ravel(), np.array([(n - 1) * size + 2 * n - 1])]
         all_keys = np.concatenate(keys)
@@ -129,7 +129,7 @@ class ArmPencil:
         return rows.astype(np.int32), columns.astype(np.int32), positions
 
 
-def _row_major_positions(rows: NDArray[np.int64], columns: NDArray[np.int64], size: int) -> NDArray[np.int64]:
+def _row_major_indices(rows: NDArray[np.int64], columns: NDArray[np.int64], size: int) -> NDArray[np.int64]:
     """row * size + column of each entry of element blocks, flat; -1 if the row or column is the clamp. rows:
     (elements, n). columns: (elements, m). size: number of unknowns."""
     keys = rows[:, :, None] * size + columns[:, None, :]
@@ -150,7 +150,7 @@ def _pencil_of_coefficients(
     least = np.zeros(nodes + 1)
     for e in range(elements):
         for i in range(order + 1):
-            mass = matrices.node_masses[e, i]
+            mass = matrices.nodal_masses[e, i]
             push[e * order + i] += mass * coefficients[3, e, order + i]
             turn[e * order + i] += mass * coefficients[4, e, order + i]
             least[e * order + i] += mass * PENCIL_NORM_SETTINGS.min_angle_weight**2
@@ -175,24 +175,25 @@ def _pencil_of_coefficients(
 
 @compiled
 def _add_entries(F: float, coefficients: Array, matrices: _MeshMatrices, A: Array) -> None:
-    """Adds the entries of all element blocks, in the order of `entry_positions`, to A. F: follower force.
+    """Adds the entries of all element blocks, in the order of `pattern_indices`, to A. F: follower force.
     coefficients: coefficients of the arm, (6, elements, 2 order + 1). A: entries of the pattern, then one for
     the clamp, (nnz + 1,)."""
     elements, order = matrices.weights_times_half_length.shape
-    value = matrices.value_matrix
-    positions = matrices.entry_positions
-    position = _add_block(matrices.constant_entries, 0, positions, A)
+    value = matrices.interpolation_to_gauss_points
+    positions = matrices.pattern_indices
+    position = _add_block(matrices.arm_independent_entries, 0, positions, A)
     for e in range(elements):
         position = _add_block(
             _bending_block(
-                matrices.slope_matrix, matrices.weights_over_half_length[e] / coefficients[2, e, :order]
+                matrices.derivatives_at_gauss_points,
+                matrices.weights_over_half_length[e] / coefficients[2, e, :order],
             ),
             position,
             positions,
             A,
         )
     for _ in range(elements):
-        position = _add_block(F * matrices.slope_value_matrix, position, positions, A)
+        position = _add_block(F * matrices.derivative_value_integrals, position, positions, A)
     for e in range(elements):
         position = _add_block(
             value.T * (matrices.weights_times_half_length[e] * coefficients[5, e, :order]),
@@ -225,8 +226,8 @@ def _bending_block(slope: Array, factors: Array) -> Array:
 
 @compiled
 def _add_block(block: Array, position: int, positions: NDArray[np.int64], A: Array) -> int:
-    """Adds the entries of `block`, (...,), to A, (nnz + 1,). Returns the index in `entry_positions` of the
-    entry after the block. position: index in `entry_positions` of the first entry of the block."""
+    """Adds the entries of `block`, (...,), to A, (nnz + 1,). Returns the index in `pattern_indices` of the
+    entry after the block. position: index in `pattern_indices` of the first entry of the block."""
     for entry in block.flat:
         A[positions[position]] += entry
         position += 1

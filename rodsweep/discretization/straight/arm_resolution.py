@@ -7,7 +7,11 @@ from math import ceil, hypot, log, pi
 import numpy as np
 
 from ...arrays import Array, list_of
-from ...model.dispersion import local_growths_and_wave_numbers, sampled_arm, wave_numbers_of_growth_at_ends
+from ...model.dispersion import (
+    fastest_growing_wave_numbers_at_ends,
+    local_growths_and_wave_numbers,
+    sampled_arm,
+)
 from ...model.material.rod_material import RodMaterial
 from ...model.rod import Rod
 from ..elements.elements import ELEMENT_SETTINGS, Elements
@@ -23,11 +27,11 @@ from ..elements.resolution import (
 class ArmResolutionSettings:
     """Settings for the mesh of an arm that varies along its length."""
 
-    max_radius_ratio: float = 2.2
+    max_element_radius_ratio: float = 2.2
     """Maximum ratio of the radii at both ends of an element of a cone: order 12 gives eigenvalues to 1e-4."""
     profile_order_increase: int = 2
     """Increase of the order if coefficients vary within an element."""
-    end_length_ratio: float = 3.0
+    graded_element_length_ratio: float = 3.0
     """Ratio of the lengths of successive elements towards an end of the arm at which a wave grows."""
 
 
@@ -46,10 +50,10 @@ class ArmMesh(Elements):
 def arm_mesh(rod: Rod, mode_count: int, accuracy: float) -> ArmMesh:
     """The mesh expected to give `mode_count` leading eigenvalues of the arm `rod` to the relative
     `accuracy`."""
-    weights = sampled_arm(rod).weights
+    weights = sampled_arm(rod).interval_lengths
     _, amplified_q = local_growths_and_wave_numbers(rod)
-    unloaded_q = (mode_count - RESOLUTION_SETTINGS.mode_offset) * pi * _wave_number_over_mean(rod)
-    wave_numbers = np.hypot(RESOLUTION_SETTINGS.wave_safety_factor * amplified_q, unloaded_q)
+    unloaded_q = (mode_count - RESOLUTION_SETTINGS.mode_number_offset) * pi * _wave_number_over_mean(rod)
+    wave_numbers = np.hypot(RESOLUTION_SETTINGS.amplified_wave_safety_factor * amplified_q, unloaded_q)
     order_increase = (
         0 if rod.material.is_piecewise_constant(rod.taper) else ARM_RESOLUTION_SETTINGS.profile_order_increase
     )
@@ -69,19 +73,19 @@ def graded_towards_ends(rod: Rod, mesh: ArmMesh) -> ArmMesh:
     """The mesh with elements graded towards an end of the arm, if the mesh does not represent the most
     amplified local wave of this end; else `mesh` itself. The leading eigenfunctions of an arm with a thin
     end, where g < 0, are confined to a small fraction of the last element."""
-    wave_numbers = wave_numbers_of_growth_at_ends(rod)
+    wave_numbers = fastest_growing_wave_numbers_at_ends(rod)
     edges = np.array(mesh.edges)
-    first = _inner_edges(float(edges[1]), mesh.order, float(wave_numbers[0]))
-    last = _inner_edges(float(edges[-1] - edges[-2]), mesh.order, float(wave_numbers[1]))
+    first = _end_element_divisions(float(edges[1]), mesh.order, float(wave_numbers[0]))
+    last = _end_element_divisions(float(edges[-1] - edges[-2]), mesh.order, float(wave_numbers[1]))
     if not len(first) and not len(last):
         return mesh
     return ArmMesh((0.0, *first, *mesh.edges[1:-1], *(1 - last[::-1]), 1.0), mesh.order)
 
 
-def _inner_edges(length: float, order: int, wave_number: float) -> Array:
+def _end_element_divisions(length: float, order: int, wave_number: float) -> Array:
     """Distances from an end of the arm, increasing, at which the element of this end is divided, (n,): none
     if elements of the order `order` and the length `length` represent the wave number."""
-    ratio = ARM_RESOLUTION_SETTINGS.end_length_ratio
+    ratio = ARM_RESOLUTION_SETTINGS.graded_element_length_ratio
     wave_count = wave_number * length / (RESOLUTION_SETTINGS.max_wave_number_per_node * order)
     count = ceil(log(max(wave_count, 1.0), ratio))
     return length * ratio ** -np.arange(count, 0, -1.0)
@@ -93,7 +97,7 @@ def arm_elements(rod: Rod, wave_number: float, accuracy: float, max_order: int |
     wave_numbers = wave_number * _wave_number_over_mean(rod)
     return _elements_for_wave(
         rod,
-        wave_numbers * sampled_arm(rod).weights,
+        wave_numbers * sampled_arm(rod).interval_lengths,
         accuracy,
         max_order or RESOLUTION_SETTINGS.max_order,
         # Deformation varies the field's coefficients in pieces with constant stiffnesses too.
@@ -131,12 +135,13 @@ def _edges_and_counts(
     material: RodMaterial, taper: float, min_counts: tuple[int, ...]
 ) -> tuple[tuple[float, ...], tuple[int, ...]]:
     """Returns (edges, counts): edges of the elements of an arm, increasing, and the number of elements of
-    each interval between breaks: at least `min_counts`, and as many as `max_radius_ratio` requires."""
+    each interval between breaks: at least `min_counts`, and as many as `max_element_radius_ratio`
+    requires."""
     edges = [0.0]
     counts = []
     for start, stop, min_count in zip(material.breaks[:-1], material.breaks[1:], min_counts, strict=True):
         radius_ratio = _relative_radius_at(taper, stop) / _relative_radius_at(taper, start)
-        count = ceil(abs(log(radius_ratio)) / log(ARM_RESOLUTION_SETTINGS.max_radius_ratio))
+        count = ceil(abs(log(radius_ratio)) / log(ARM_RESOLUTION_SETTINGS.max_element_radius_ratio))
         counts.append(max(1, count, min_count))
         edges += _graded_edges(taper, start, stop, counts[-1])
     return tuple(edges), tuple(counts)
@@ -145,13 +150,13 @@ def _edges_and_counts(
 def finer_arm_mesh(rod: Rod, mesh: ArmMesh) -> ArmMesh:
     """The next finer mesh of an arm: the order is multiplied by 4/3 or, if the result exceeds the maximum
     order, the number of elements by 2 and the order by 2/3."""
-    order = ceil(mesh.order * RESOLUTION_SETTINGS.finer_unknowns_ratio)
+    order = ceil(mesh.order * RESOLUTION_SETTINGS.finer_over_current_unknowns)
     if order <= RESOLUTION_SETTINGS.max_order:
         return ArmMesh(mesh.edges, order)
     edges = [0.0]
     for start, stop in zip(mesh.edges[:-1], mesh.edges[1:], strict=True):
         edges += _graded_edges(rod.taper, start, stop, 2)
-    return ArmMesh(tuple(edges), ceil(RESOLUTION_SETTINGS.finer_unknowns_ratio / 2 * mesh.order))
+    return ArmMesh(tuple(edges), ceil(RESOLUTION_SETTINGS.finer_over_current_unknowns / 2 * mesh.order))
 
 
 def _relative_radius_at(taper: float, u: float) -> float:

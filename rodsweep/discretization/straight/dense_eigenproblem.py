@@ -12,7 +12,7 @@ from ...arrays import Array, Complex
 from ...model.rod import Rod
 from ..elements.elements import ELEMENT_SETTINGS, Elements
 from .arm_pencil import ArmPencil
-from .pencil import Pencil, field_derivatives_at, fields_of_vectors, shear_force
+from .pencil import Pencil, displacements_of_eigenvectors, field_derivatives_at, shear_force
 
 AnyPencil = Pencil | ArmPencil
 """The pencil of a uniform rod of linear material, or of an arm."""
@@ -26,6 +26,7 @@ class DenseEigenproblem:
 
     rod: Rod
     mesh: Elements
+    """The elements on which the eigenproblem is discretised."""
     A: Array
     B: Array
     displacement_factors: Array
@@ -33,7 +34,7 @@ class DenseEigenproblem:
     def displacements(self, vectors: Complex) -> tuple[NDArray, NDArray]:
         """Returns (y, theta) of k eigenvectors `vectors`, (unknowns, k), at all nodes, clamp included,
         (nodes + 1, k) each."""
-        return fields_of_vectors(vectors, self.displacement_factors)
+        return displacements_of_eigenvectors(vectors, self.displacement_factors)
 
     def strains(self, vectors: Complex, points: Array) -> Complex:
         """Strains (h2, Pi) = (Y' - nu Theta, Theta') of k eigenvectors, (unknowns, k), at points, (points,):
@@ -43,7 +44,7 @@ class DenseEigenproblem:
         shear = c2[:, None] * shear_force(self.mesh, vectors, points)
         return np.stack([shear.T, field_derivatives_at(self.mesh, self.displacements(vectors)[1], points).T])
 
-    def with_tip_terms(self, p: float, r: float) -> Array:
+    def A_with_tip_terms(self, p: float, r: float) -> Array:
         """A plus the matrix of the tip term p (a theta - b y) - r a y at u = 1, (unknowns, unknowns). p, r:
         results of `hermitian_tip_coefficients`. a, b: test functions of y and theta."""
         A = self.A.copy()

@@ -22,19 +22,19 @@ class DerivativesByForce:
     (nodes + 1,), and of `LawDerivativesAtRest.tangent`, (3, nodes + 1)."""
 
     nu: Array
-    tangent: Array
+    law_tangent: Array
 
 
 @dataclass(frozen=True)
 class LawDerivativesAtRest:
     """Derivatives of the law s(S) at S = 0, at all nodes of a mesh.
 
-    is_nonlinear: False for the linear law, s(S) = S. tangent: diagonal of ds/dS, (3, nodes + 1).
+    is_nonlinear: False for the linear law, s(S) = S. law_tangent: diagonal of ds/dS, (3, nodes + 1).
     derivatives_by_force: derivatives with respect to F. N11, N33, M13: second derivatives of N and M with
     respect to S1 and S3, (nodes + 1,). N111, N133, M113, M333: third derivatives, (nodes + 1,)."""
 
     is_nonlinear: bool
-    tangent: Array
+    law_tangent: Array
     derivatives_by_force: DerivativesByForce
     N11: Array
     N33: Array
@@ -67,7 +67,7 @@ def law_derivatives_at_rest(rod: Rod, nodal: NodalRod) -> LawDerivativesAtRest:
     """Derivatives of a rod's constitutive law at rest, at the nodes of a mesh. nodal: the rod at the
     nodes."""
     law: Law = rod.material.constitutive_law
-    nu = nodal.rest_strain[0]
+    nu = nodal.straight_state_strain[0]
     c1, _, c3 = nodal.compliance
     stiffness = law.stiffness(nu)
     slope = law.stiffness_slope(nu)
@@ -82,7 +82,7 @@ def law_derivatives_at_rest(rod: Rod, nodal: NodalRod) -> LawDerivativesAtRest:
     )
     derivatives = LawDerivativesAtRest(
         is_nonlinear=law is not LINEAR_CONSTITUTIVE_LAW,
-        tangent=np.array([stiffness, ones, bending]),
+        law_tangent=np.array([stiffness, ones, bending]),
         derivatives_by_force=derivatives_by_force,
         N11=slope * c1,
         N33=bending_slope * c3,
@@ -92,7 +92,7 @@ def law_derivatives_at_rest(rod: Rod, nodal: NodalRod) -> LawDerivativesAtRest:
         M113=bending_curvature * c1**2,
         M333=0 * ones,
     )
-    if derivatives.is_nonlinear and len(nodal.jumps):
+    if derivatives.is_nonlinear and len(nodal.jump_nodes):
         _write_derivatives_at_jumps(derivatives, law, nodal)
     return derivatives
 
@@ -100,23 +100,23 @@ def law_derivatives_at_rest(rod: Rod, nodal: NodalRod) -> LawDerivativesAtRest:
 def _write_derivatives_at_jumps(derivatives: LawDerivativesAtRest, law: Law, nodal: NodalRod) -> None:
     """Writes the derivatives of the law at the nodes where the material jumps into `derivatives`. nodal: the
     rod at the nodes."""
-    nodes = nodal.jumps
-    sides = nodal.jump_sides
+    nodes = nodal.jump_nodes
+    sides = nodal.jump_side_coefficients
     nu = sides[..., 0]
     c1 = sides[..., 1]
     means = sides[..., 5]
     fractions = np.moveaxis(sides[..., 3:5], -1, 0)
     T = np.array([law.stiffness(nu), law.bending_factor(nu)])
     slopes = np.array([law.stiffness_slope(nu), law.bending_factor_slope(nu)])
-    first, second, third = derivatives_by_mean_unknowns(law, sides)
+    first, second, third = law_derivatives_by_mean_stresses(law, sides)
     nu_derivative = -c1 / T[0]
     tangent = 1 / (fractions / T).sum(axis=-1)
     for component, (value, force_derivative) in enumerate(
         zip(tangent, tangent**2 * (fractions * slopes * nu_derivative / T**2).sum(axis=-1), strict=True)
     ):
         # Components 0 and 2 of the stress; the shear component 1 is linear in every law.
-        derivatives.tangent[2 * component, nodes] = value
-        derivatives.derivatives_by_force.tangent[2 * component, nodes] = force_derivative
+        derivatives.law_tangent[2 * component, nodes] = value
+        derivatives.derivatives_by_force.law_tangent[2 * component, nodes] = force_derivative
     derivatives.derivatives_by_force.nu[nodes] = (means * nu_derivative).sum(axis=-1)
     derivatives.N11[nodes] = second[:, 0, 0, 0]
     derivatives.N33[nodes] = second[:, 0, 1, 1]
@@ -132,7 +132,7 @@ DerivativeTensors = tuple[Array, Array, Array]
 (..., 2, 2, 2, 2). The first of the listed indices is the function; all further indices are variables."""
 
 
-def derivatives_by_mean_unknowns(law: Law, sides: Array) -> DerivativeTensors:
+def law_derivatives_by_mean_stresses(law: Law, sides: Array) -> DerivativeTensors:
     """Derivatives of N and M at rest with respect to the weighted mean unknowns q1 and q3, at k jumps. sides:
     material on both sides of each jump, (k, 2, 7), with the columns of `rodsweep.model.material.jump`.
 

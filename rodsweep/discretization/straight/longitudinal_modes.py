@@ -40,7 +40,7 @@ class LongitudinalModeSettings:
     """Maximum order of an element; the error at this order is returned even if it is large."""
     converged_difference: float = 1e-13
     """The order is no longer increased if the eigenvalues of two orders differ relatively by at most this."""
-    rounding: float = 5e-14
+    relative_rounding_error: float = 5e-14
     """Relative rounding error of an eigenvalue; the error estimate is a difference of orders plus this."""
     extra_point_count: int = 6
     """Number of quadrature points per element for displacements, minus the number for strains."""
@@ -66,7 +66,7 @@ def longitudinal_modes(rod: Rod, mode_count: int) -> tuple[Array, Array]:
         finer_eigenvalues = _leading_eigenvalues(rod, mesh, order, mode_count)
         error = np.abs(finer_eigenvalues / eigenvalues - 1)
         if error.max() <= settings.converged_difference or order >= settings.max_order:
-            return finer_eigenvalues, error + settings.rounding
+            return finer_eigenvalues, error + settings.relative_rounding_error
         eigenvalues = finer_eigenvalues
 
 
@@ -87,7 +87,7 @@ def _displacement_matrix(rod: Rod, edges: Array, order: int) -> Array:
     half_lengths = np.diff(edges)[:, None] / 2
     midpoints = (edges[1:] + edges[:-1])[:, None] / 2
     sections_at_strains, sections_at_points = (
-        rod.sections((midpoints + half_lengths * x).ravel()) for x in (strain_points, points)
+        rod.cross_sections_at((midpoints + half_lengths * x).ravel()) for x in (strain_points, points)
     )
     tangent = (
         rod.material.constitutive_law.stiffness(sections_at_strains.nu) / sections_at_strains.compliance[0]

@@ -31,7 +31,7 @@ from ..rod_on_mesh import RodOnMesh, broadcast_to_field
 from ..state_layout import SE2_DIMENSION
 from .law_derivatives import LawDerivativesAtRest, law_derivatives_at_rest
 
-MIRROR_SIGNS = np.array([1.0, -1.0, -1.0])
+REFLECTION_SIGNS = np.array([1.0, -1.0, -1.0])
 """Signs of the components of a stress or a velocity under reflection in the axis of the straight rod."""
 
 
@@ -45,7 +45,7 @@ class MixedForm(RodOnMesh):
     """
 
     @property
-    def unknown_velocities(self) -> tuple[int, ...]:
+    def unknown_velocity_components(self) -> tuple[int, ...]:
         return tuple(range(SE2_DIMENSION))
 
     @cached_property
@@ -56,26 +56,26 @@ class MixedForm(RodOnMesh):
     @cached_property
     def reflection_signs(self) -> Array:
         """Diagonal of the reflection R, +1 or -1, (unknowns,). If X solves the equations, so does R X."""
-        signs = np.repeat(MIRROR_SIGNS[:, None], self.mesh.node_count + 1, axis=1)
+        signs = np.repeat(REFLECTION_SIGNS[:, None], self.mesh.node_count + 1, axis=1)
         return self.layout.state(signs, signs)
 
     @cached_property
     def M(self) -> Array:
         """Diagonal of the matrix M, (unknowns,): W C for stresses, 0 for velocities."""
-        weighted = self.nodal_rod.compliance * self.mesh.quadrature
+        weighted = self.nodal_rod.compliance * self.mesh.quadrature_weights
         return self.layout.state(weighted, np.zeros(weighted.shape))
 
     @cached_property
-    def terms_without_derivative(self) -> tuple[Array, Array]:
+    def A_terms_without_derivative(self) -> tuple[Array, Array]:
         """Returns (W ad_E, W (ad*_E T + ad*_{C .} Sigma)), the terms of A without D and drag, by equation and
         component at each node but the tip, (3, 3, nodes) each: the terms of V in the equations of S, and of S
         in the equations of V; T: tangent of the law. The tip contributes nothing: s = 0, and E enters only
         the equation of S(1), which is not solved."""
         nodal = self.nodal_rod
-        W = self.mesh.quadrature[:-1]
+        W = self.mesh.quadrature_weights[:-1]
         identity = np.eye(SE2_DIMENSION)[:, :, None]
-        E = nodal.rest_strain[:, None, :-1]
-        stress_part = identity * self.law_derivatives.tangent[None, :, :-1]
+        E = nodal.straight_state_strain[:, None, :-1]
+        stress_part = identity * self.law_derivatives.law_tangent[None, :, :-1]
         strain_part = identity * nodal.compliance[None, :, :-1]
         forces = coad(E, stress_part) + coad(strain_part, nodal.tip_stress[:, None, None])
         return W * ad(E, identity), W * forces
@@ -83,12 +83,12 @@ class MixedForm(RodOnMesh):
     def times_force_derivative_of_A(self, X: Values) -> Values:
         """Product (dA/dF) X for states X, (..., unknowns): dA/dF is the derivative of A by the force."""
         S, V = self.stresses_and_velocities(X)
-        W = self.mesh.quadrature
+        W = self.mesh.quadrature_weights
         derivatives_by_force = self.law_derivatives.derivatives_by_force
         E = axial_field(derivatives_by_force.nu)
-        dE = broadcast_to_field(derivatives_by_force.tangent, S) * S
+        dE = broadcast_to_field(derivatives_by_force.law_tangent, S) * S
         Sigma = axial_field(-np.ones(len(W)))
-        rest_strain = broadcast_to_field(self.nodal_rod.rest_strain, S)
+        rest_strain = broadcast_to_field(self.nodal_rod.straight_state_strain, S)
         # F enters through the strain at rest, the tangent at rest, and Sigma1 = -F.
         forces = coad(broadcast_to_field(E, S), self._linearised_stress(S)) + coad(rest_strain, dE)
         forces = forces + coad(self._compliance_times_stress(S), broadcast_to_field(Sigma, S))
@@ -97,13 +97,16 @@ class MixedForm(RodOnMesh):
         )
 
     @cached_property
-    def tip_y_row(self) -> Array:
+    def tip_y_functional(self) -> Array:
         """Vector, (unknowns,), whose product with X is the deflection y of the tip in L, to first order. y =
         int c2 S2 + c3 S3(u) (int_u^1 nu) du."""
-        W = self.mesh.quadrature[:-1]
+        W = self.mesh.quadrature_weights[:-1]
         c = self.nodal_rod.compliance[:, :-1]
         return self.layout.state_with_stresses(
-            {"n2": c[1] * W, "m3": c[2] * integral_to_tip(self.mesh, self.nodal_rod.rest_strain[0])[:-1] * W}
+            {
+                "n2": c[1] * W,
+                "m3": c[2] * integral_to_tip(self.mesh, self.nodal_rod.straight_state_strain[0])[:-1] * W,
+            }
         )
 
     def stresses_and_velocities(self, X: Values) -> tuple[Values, Values]:
@@ -111,31 +114,31 @@ class MixedForm(RodOnMesh):
         each."""
         return self.stresses(X), self.layout.velocities(X)
 
-    def bilinear(self, X: Values, Y: Values) -> Values:
+    def bilinear_form(self, X: Values, Y: Values) -> Values:
         """The symmetric bilinear form B(X, Y) of the quadratic terms; X, Y and result: (..., unknowns)."""
         S, U = self.stresses_and_velocities(X)
         T, V = self.stresses_and_velocities(Y)
         CS = self._compliance_times_stress(S)
         CT = self._compliance_times_stress(T)
-        W = self.mesh.quadrature
+        W = self.mesh.quadrature_weights
         forces: Values = W * (coad(CS, self._linearised_stress(T)) + coad(CT, self._linearised_stress(S)))
         if self.law_derivatives.is_nonlinear:
             second_derivative = self.law_derivatives.second_derivative_form(S, T)
             forces = (
                 forces
-                + W * coad(broadcast_to_field(self.nodal_rod.rest_strain, S), second_derivative)
+                + W * coad(broadcast_to_field(self.nodal_rod.straight_state_strain, S), second_derivative)
                 + self._weighted_derivative(second_derivative)
             )
         return self.layout.state(W * (ad(CS, V) + ad(CT, U)), forces)
 
-    def trilinear(self, X: Values, Y: Values, Z: Values) -> Values:
+    def trilinear_form(self, X: Values, Y: Values, Z: Values) -> Values:
         """The symmetric trilinear form C(X, Y, Z) of the cubic terms, (..., unknowns); 0 for a linear law."""
         S, T, R = (self.stresses(state) for state in (X, Y, Z))
-        W = self.mesh.quadrature
+        W = self.mesh.quadrature_weights
         law = self.law_derivatives
         third_derivative = law.third_derivative_form(S, T, R)
         forces = W * coad(
-            broadcast_to_field(self.nodal_rod.rest_strain, S), third_derivative
+            broadcast_to_field(self.nodal_rod.straight_state_strain, S), third_derivative
         ) + self._weighted_derivative(third_derivative)
         for first, second, third_factor in ((S, T, R), (T, R, S), (R, S, T)):
             forces = forces + W * coad(
@@ -149,11 +152,11 @@ class MixedForm(RodOnMesh):
 
     def _linearised_stress(self, S: Values) -> Values:
         """The law s(S) to first order in S, at all nodes, (3, ..., nodes + 1)."""
-        return broadcast_to_field(self.law_derivatives.tangent, S) * S
+        return broadcast_to_field(self.law_derivatives.law_tangent, S) * S
 
     def _weighted_derivative(self, field: Values) -> Values:
         """W D times a field at all nodes, both (3, ..., nodes + 1)."""
-        return field @ -self.mesh.matrices.weak_derivative
+        return field @ -self.mesh.node_matrices.weak_derivative_matrix
 
 
 def axial_field(values: Array) -> Array:
@@ -167,6 +170,6 @@ def integral_to_tip(mesh: Mesh, values: Array) -> Array:
     """Integral of a field from each node to the tip, (nodes + 1,). values: at all nodes, (nodes + 1,)."""
     total = np.zeros(mesh.node_count + 1)
     for nodes, order, length in zip(mesh.node_ranges, mesh.orders, mesh.lengths, strict=True):
-        ends = shape_integration_matrices(order).angles_at_nodes
+        ends = shape_integration_matrices(order).nodal_integrals_to_nodes
         total[nodes] = total[nodes.start] + length * (values[nodes] @ ends)
     return total[-1] - total

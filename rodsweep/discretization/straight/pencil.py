@@ -64,15 +64,15 @@ class PencilMatrices(NamedTuple):
 class Pencil(Elements):
     """The pencil A x = w B x of uniform rods on equal elements, as six constant matrices.
 
-    The matrix of one rod is A = sum_i term_coefficients(rod)[i] term_entries[i]. term_entries: entries of the
-    constant matrices, (6, nnz). rows, columns: row and column of each entry, (nnz,), sorted by row, then
-    column, with the full diagonal. nodal_masses: lumped mass of the nodes, (nodes,). B is diagonal: 1 for y,
-    gamma3 divided by the squared angle weight for theta, 0 for s. The unknowns are y, theta and s,
-    `node_count` of each, without the clamp."""
+    The matrix of one rod is A = sum_i constant_matrix_factors(rod)[i] constant_matrix_entries[i].
+    constant_matrix_entries: entries of the constant matrices, (6, nnz). rows, columns: row and column of each
+    entry, (nnz,), sorted by row, then column, with the full diagonal. nodal_masses: lumped mass of the nodes,
+    (nodes,). B is diagonal: 1 for y, gamma3 divided by the squared angle weight for theta, 0 for s. The
+    unknowns are y, theta and s, `node_count` of each, without the clamp."""
 
     rows: NDArray[np.int32]
     columns: NDArray[np.int32]
-    term_entries: Array
+    constant_matrix_entries: Array
     nodal_masses: Array
 
     @property
@@ -80,19 +80,19 @@ class Pencil(Elements):
         """Number of rows of the matrices."""
         return 3 * self.node_count
 
-    def term_coefficients(self, rod: Rod) -> Array:
+    def constant_matrix_factors(self, rod: Rod) -> Array:
         """Factors by which the six constant matrices are multiplied for the rod `rod`, (6,)."""
         t = angle_weight(rod.rotational_drag)
         return np.array([1.0, 1 / t**2, rod.F / t, rod.g / t, rod.nu / t, rod.c2])
 
     def stiffness_entries(self, rod: Rod) -> Array:
         """Entries of the matrix A of the rod `rod`, (nnz,)."""
-        return self.term_coefficients(rod) @ self.term_entries
+        return self.constant_matrix_factors(rod) @ self.constant_matrix_entries
 
-    def dense_terms(self) -> Array:
+    def dense_constant_matrices(self) -> Array:
         """The six constant matrices as dense flat matrices by columns, as LAPACK expects, (6, unknowns^2)."""
         dense = np.zeros((6, self.unknown_count**2))
-        dense[:, self.columns.astype(int) * self.unknown_count + self.rows] = self.term_entries
+        dense[:, self.columns.astype(int) * self.unknown_count + self.rows] = self.constant_matrix_entries
         return dense
 
     def matrices(self, rod: Rod) -> PencilMatrices:
@@ -122,7 +122,7 @@ def finite_eigenvalue_count(rod: Rod, node_count: int) -> int:
     return node_count if rod.c2 == 0 or rod.rotational_drag == 0 else 2 * node_count
 
 
-def fields_of_vectors(vectors: Complex, displacement_factors: Array) -> tuple[NDArray, NDArray]:
+def displacements_of_eigenvectors(vectors: Complex, displacement_factors: Array) -> tuple[NDArray, NDArray]:
     """Returns (y, theta) of k eigenvectors `vectors`, (unknowns, k), at all nodes, clamp included, (nodes +
     1, k). displacement_factors: factors from the unknowns to y and theta at the nodes, clamp excluded, (2,
     nodes)."""
@@ -139,7 +139,7 @@ def angle_weight(gamma3: float) -> float:
     return max(sqrt(gamma3), PENCIL_NORM_SETTINGS.min_angle_weight)
 
 
-def factors_to_unit_tip(y: Complex, theta: Complex) -> Complex:
+def factors_to_unit_tip_displacement(y: Complex, theta: Complex) -> Complex:
     """Factors, (k,), that normalise k modes to y(1) = 1; NaN for a mode whose y(1) is 0 to rounding. y,
     theta: the modes at all nodes, (nodes + 1, k)."""
     largest_modulus = np.maximum(np.abs(y).max(axis=0), np.abs(theta).max(axis=0))

@@ -27,28 +27,29 @@ TRANSVERSE_COMPONENTS = (1, 2)
 the rod's axis."""
 
 
-class _Pattern(NamedTuple):
-    """Sparsity pattern of A for some components on a mesh; it contains the full diagonal. i, j: node indices
-    of the nonzero entries of W D without the column of the tip, (m,). positions: index in the pattern of each
-    value that `StraightMatrices.A` concatenates. indices, indptr: rows and column starts in scipy's order.
-    diagonal: indices in the pattern of the diagonal entries, (n,)."""
+class _SparsityPattern(NamedTuple):
+    """Sparsity pattern of A for some components on a mesh; it contains the full diagonal. node_rows,
+    node_columns: node indices of the nonzero entries of W D without the column of the tip, (m,).
+    pattern_indices: index in the pattern of each value that `StraightMatrices.A` concatenates. indices,
+    indptr: rows and column starts in scipy's order. diagonal_indices: indices in the pattern of the diagonal
+    entries, (n,)."""
 
-    i: NDArray[np.int_]
-    j: NDArray[np.int_]
-    positions: NDArray[np.int_]
+    node_rows: NDArray[np.int_]
+    node_columns: NDArray[np.int_]
+    pattern_indices: NDArray[np.int_]
     indices: NDArray[np.int32]
     indptr: NDArray[np.int32]
-    diagonal: NDArray[np.int_]
+    diagonal_indices: NDArray[np.int_]
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
-def _pattern(mesh: Mesh, component_count: int) -> _Pattern:
+def _sparsity_pattern(mesh: Mesh, component_count: int) -> _SparsityPattern:
     """The pattern on a mesh for a number of components of stresses and velocities."""
     N = mesh.node_count
     s = np.arange(component_count * N).reshape(-1, N)
     v = s.size + np.arange(component_count * (N + 1)).reshape(-1, N + 1)
     size = s.size + v.size
-    i, j = np.nonzero(mesh.matrices.weak_derivative.T[:, :N])
+    i, j = np.nonzero(mesh.node_matrices.weak_derivative_matrix.T[:, :N])
     entries = (
         (s[:, j], v[:, i]),
         (v[:, i], s[:, j]),
@@ -62,7 +63,7 @@ def _pattern(mesh: Mesh, component_count: int) -> _Pattern:
     columns, indices = np.divmod(pattern, size)
     indptr = np.searchsorted(columns, np.arange(size + 1)).astype(np.int32)
     diagonal = np.flatnonzero(columns == indices)
-    return _Pattern(i, j, positions, indices.astype(np.int32), indptr, diagonal)
+    return _SparsityPattern(i, j, positions, indices.astype(np.int32), indptr, diagonal)
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,27 +83,29 @@ class StraightMatrices:
         return np.flatnonzero(self.form.layout.state(mask, mask))
 
     @property
-    def _pattern(self) -> _Pattern:
-        return _pattern(self.form.mesh, len(self.components))
+    def _sparsity_pattern(self) -> _SparsityPattern:
+        return _sparsity_pattern(self.form.mesh, len(self.components))
 
     @cached_property
     def A(self) -> csc_array:
         """Rows and columns of the matrix A for the n unknowns of `components`, (n, n)."""
         form = self.form
         own = list(self.components)
-        pattern = self._pattern
-        WD = -form.mesh.matrices.weak_derivative.T[pattern.i, pattern.j]
-        strain_rates, forces = (terms[np.ix_(own, own)] for terms in form.terms_without_derivative)
+        pattern = self._sparsity_pattern
+        WD = -form.mesh.node_matrices.weak_derivative_matrix.T[pattern.node_rows, pattern.node_columns]
+        strain_rates, forces = (terms[np.ix_(own, own)] for terms in form.A_terms_without_derivative)
         values = (
             np.tile(-WD, len(own)),
-            WD * form.law_derivatives.tangent[own][:, pattern.j],
-            -(form.nodal_rod.drag * form.mesh.quadrature)[own],
+            WD * form.law_derivatives.law_tangent[own][:, pattern.node_columns],
+            -(form.nodal_rod.drag * form.mesh.quadrature_weights)[own],
             np.zeros(len(own) * form.mesh.node_count),
             strain_rates,
             forces,
         )
-        entries = np.bincount(pattern.positions, np.concatenate([part.ravel() for part in values]))
-        return csc_array((entries, pattern.indices, pattern.indptr), shape=2 * (len(pattern.diagonal),))
+        entries = np.bincount(pattern.pattern_indices, np.concatenate([part.ravel() for part in values]))
+        return csc_array(
+            (entries, pattern.indices, pattern.indptr), shape=2 * (len(pattern.diagonal_indices),)
+        )
 
     @cached_property
     def M(self) -> Array:
@@ -124,9 +127,9 @@ class StraightMatrices:
 
     def lu_factors(self, shift: complex) -> "StraightFactors":
         """LU factorisation of A - shift M."""
-        pattern = self._pattern
+        pattern = self._sparsity_pattern
         values = self.A.data.astype(complex)
-        values[pattern.diagonal] -= shift * self.M
+        values[pattern.diagonal_indices] -= shift * self.M
         K = csc_array((values, pattern.indices, pattern.indptr), shape=self.A.shape)
         return StraightFactors(self, splu(K))
 

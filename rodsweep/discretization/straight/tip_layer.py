@@ -22,20 +22,20 @@ from ..elements.quadrature import gauss_legendre_rule, gauss_lobatto_rule
 class TipLayerSettings:
     """Settings for the elements that resolve the tip layer."""
 
-    max_element_to_layer_ratio: float = 4.0
+    max_tip_element_over_layer_thickness: float = 4.0
     """Maximum length of the element at the tip, divided by the layer's thickness. Other elements may be
     longer."""
-    max_equal_elements: int = 64
+    max_equal_element_count: int = 64
     """Maximum number of equal elements. For a thinner layer the elements near the tip are halved."""
-    samples_per_piece: int = 33
+    samples_per_interval: int = 33
     """Number of samples in each interval between breaks of an arm, to estimate the layer's thickness."""
 
 
 TIP_LAYER_SETTINGS = TipLayerSettings()
 TIP_LAYER_ORDER = 16
 """Order of the elements of the tip layer. This order resolves exp(kappa u) over a length of
-`TIP_LAYER_SETTINGS.max_element_to_layer_ratio`/kappa to rounding, because T is returned without an error
-estimate. Order 8 would cause an error of 4e-11 in a numerical abscissa."""
+`TIP_LAYER_SETTINGS.max_tip_element_over_layer_thickness`/kappa to rounding, because T is returned without an
+error estimate. Order 8 would cause an error of 4e-11 in a numerical abscissa."""
 
 
 def tip_angle_moment_ratio(rod: Rod) -> float:
@@ -84,22 +84,27 @@ def _element_edges(rod: Rod) -> Array:
     breaks = rod.material.breaks
     intervals = zip(breaks, breaks[1:], strict=False)
     midpoints = np.concatenate(
-        [np.linspace(a, b, TIP_LAYER_SETTINGS.samples_per_piece + 2)[1:-1] for a, b in intervals]
+        [np.linspace(a, b, TIP_LAYER_SETTINGS.samples_per_interval + 2)[1:-1] for a, b in intervals]
     )
     coefficients = rod.local_coefficients(midpoints)
     inverse_thickness = sqrt(
         float(np.abs(coefficients.g * coefficients.nu / coefficients.c2 * coefficients.c3).max())
     )
     element_count = min(
-        max(1, ceil(inverse_thickness / TIP_LAYER_SETTINGS.max_element_to_layer_ratio)),
-        TIP_LAYER_SETTINGS.max_equal_elements,
+        max(1, ceil(inverse_thickness / TIP_LAYER_SETTINGS.max_tip_element_over_layer_thickness)),
+        TIP_LAYER_SETTINGS.max_equal_element_count,
     )
     equal_edges = np.linspace(0.0, 1.0, element_count + 1)
     halving_count = max(
         0,
         ceil(
             np.log2(
-                max(inverse_thickness / TIP_LAYER_SETTINGS.max_element_to_layer_ratio / element_count, 1.0)
+                max(
+                    inverse_thickness
+                    / TIP_LAYER_SETTINGS.max_tip_element_over_layer_thickness
+                    / element_count,
+                    1.0,
+                )
             )
         ),
     )

@@ -38,7 +38,7 @@ from ...model.material.jump import stress_at_jump, stress_parameter_derivative_a
 from ...model.material.stress_strain import (
     LINEAR_LAW_NUMBER,
     LocalSection,
-    stress_beyond_rest,
+    stress_minus_rest_stress,
     stress_parameter_derivative,
 )
 from ..elements.mesh import NodeMatrices
@@ -51,11 +51,11 @@ def write_strains_and_stresses(g: LieAlgebra, x: Array, E: Array, S: Array, c: N
     """Writes strains and stresses of a state x, (unknowns,), at all nodes into E and S, (d, nodes + 1)."""
     size = E.shape[1]
     for i in range(size):
-        s = [x[stress_index(a, i, size - 1)] if i < size - 1 else 0.0 for a in g.components]
-        for a in g.components:
-            E[a, i] = c.rest_strain[a, i] + c.compliance[a, i] * s[a]
+        s = [x[stress_index(a, i, size - 1)] if i < size - 1 else 0.0 for a in g.component_indices]
+        for a in g.component_indices:
+            E[a, i] = c.straight_state_strain[a, i] + c.compliance[a, i] * s[a]
             S[a, i] = s[a]
-    if c.law != LINEAR_LAW_NUMBER:
+    if c.law_number != LINEAR_LAW_NUMBER:
         replace_by_law_stresses(S, c)
 
 
@@ -64,12 +64,12 @@ def replace_by_law_stresses(S: Array, c: NodalRod) -> None:
     """Replaces the unknown stresses S at all nodes, (3, nodes + 1), by s(S), for a rod in the plane."""
     k = 0
     for i in range(S.shape[1]):
-        if k < len(c.jumps) and c.jumps[k] == i:
-            S[0, i], S[2, i] = stress_at_jump(c.law, c.jump_sides[k], S[0, i], S[2, i])
+        if k < len(c.jump_nodes) and c.jump_nodes[k] == i:
+            S[0, i], S[2, i] = stress_at_jump(c.law_number, c.jump_side_coefficients[k], S[0, i], S[2, i])
             k += 1
         else:
-            material = LocalSection(c.rest_strain[0, i], c.compliance[0, i], c.compliance[2, i])
-            S[0, i], S[2, i] = stress_beyond_rest(c.law, material, S[0, i], S[2, i])
+            material = LocalSection(c.straight_state_strain[0, i], c.compliance[0, i], c.compliance[2, i])
+            S[0, i], S[2, i] = stress_minus_rest_stress(c.law_number, material, S[0, i], S[2, i])
 
 
 @UnrolledOverAlgebra
@@ -78,23 +78,23 @@ def write_force_densities(
 ) -> None:
     """Writes the forces per length D*_E Sigma at all nodes into out, (d, nodes + 1). E, S: strains and
     stresses from `write_strains_and_stresses`, (d, nodes + 1) each."""
-    size = len(m.weights)
+    size = len(m.quadrature_weights)
     out[:, :] = 0.0
     # The stress at the tip is 0 and has no column.
     for j in range(size - 1):
-        s = [S[a, j] for a in g.components]
+        s = [S[a, j] for a in g.component_indices]
         for i in range(size):
             # Loops over components are innermost because they are unrolled; D is read along rows.
-            slope = m.D_transposed[j, i]
-            for a in g.components:
+            slope = m.transposed_differentiation_matrix[j, i]
+            for a in g.component_indices:
                 out[a, i] += slope * s[a]
     for i in range(size):
-        force = [out[a, i] for a in g.components]
+        force = [out[a, i] for a in g.component_indices]
         for a, b, o, sign in g.structure_constants:
             # Minus: ad*_E is minus the transpose of (ad_E V)_a = sum s_abo E_b V_o. The tip stress is
             # constant along the rod, so it enters only here.
             force[o] -= sign * E[b, i] * (c.tip_stress[a] + S[a, i])
-        for a in g.components:
+        for a in g.component_indices:
             out[a, i] = force[a]
 
 
@@ -102,25 +102,25 @@ def write_force_densities(
 def write_strain_rates(g: LieAlgebra, E: Array, V: Array, G: Array, m: NodeMatrices) -> None:
     """Writes the strain rates W (V' + ad_E V) at all nodes, in weak form, into G. E: strains. V: velocities.
     E, V, G: (d, nodes + 1)."""
-    size = len(m.weights)
+    size = len(m.quadrature_weights)
     for i in range(size):
-        rate = [0.0 for _ in g.components]
+        rate = [0.0 for _ in g.component_indices]
         for a, b, o, sign in g.structure_constants:
             rate[a] += sign * E[b, i] * V[o, i]
-        for a in g.components:
-            G[a, i] = m.weights[i] * rate[a]
+        for a in g.component_indices:
+            G[a, i] = m.quadrature_weights[i] * rate[a]
     add_weak_derivative(g, V, G, m)
 
 
 @UnrolledOverAlgebra
 def add_weak_derivative(g: LieAlgebra, V: Array, G: Array, m: NodeMatrices) -> None:
     """Adds -D^T W V to G, both (d, nodes + 1)."""
-    size = len(m.weights)
+    size = len(m.quadrature_weights)
     for j in range(size):
-        v = [m.weights[j] * V[a, j] for a in g.components]
+        v = [m.quadrature_weights[j] * V[a, j] for a in g.component_indices]
         for i in range(size):
-            slope = m.D[j, i]
-            for a in g.components:
+            slope = m.differentiation_matrix[j, i]
+            for a in g.component_indices:
                 G[a, i] -= slope * v[a]
 
 
@@ -128,18 +128,18 @@ def add_weak_derivative(g: LieAlgebra, V: Array, G: Array, m: NodeMatrices) -> N
 def write_balance(g: LieAlgebra, x: Array, V: Array, G: Array, c: NodalRod, m: NodeMatrices) -> None:
     """Writes the velocities V and the strain rates G = W C dS/dt of a state x, (unknowns,), at all nodes into
     V and G, (d, nodes + 1) each. Unknown components of V are copied from x."""
-    size = len(m.weights)
+    size = len(m.quadrature_weights)
     E = np.empty((g.dimension, size))
     S = np.empty((g.dimension, size))
     write_strains_and_stresses(g, x, E, S, c)
     write_force_densities(g, E, S, V, c, m)
     for i in range(size):
-        for a in g.components:
+        for a in g.component_indices:
             V[a, i] *= c.mobility[a, i]
-    for k in range(len(c.unknown_velocities)):
+    for k in range(len(c.unknown_velocity_components)):
         for i in range(size):
             # The loop above has set these components to 0, because their mobility is 0.
-            V[c.unknown_velocities[k], i] = x[velocity_index(k, i, g.dimension, size - 1)]
+            V[c.unknown_velocity_components[k], i] = x[velocity_index(k, i, g.dimension, size - 1)]
     write_strain_rates(g, E, V, G, m)
 
 
@@ -147,17 +147,17 @@ def write_balance(g: LieAlgebra, x: Array, V: Array, G: Array, c: NodalRod, m: N
 def write_velocity_residuals(g: LieAlgebra, x: Array, out: Array, c: NodalRod, m: NodeMatrices) -> None:
     """Writes the residuals W (D*_E Sigma - Gamma V) of the unknown components of V into out, (unknowns,). x:
     state, (unknowns,). Entries of out for stresses are not changed."""
-    size = len(m.weights)
+    size = len(m.quadrature_weights)
     E = np.empty((g.dimension, size))
     S = np.empty((g.dimension, size))
     force = np.empty((g.dimension, size))
     write_strains_and_stresses(g, x, E, S, c)
     write_force_densities(g, E, S, force, c, m)
-    for k in range(len(c.unknown_velocities)):
-        a = c.unknown_velocities[k]
+    for k in range(len(c.unknown_velocity_components)):
+        a = c.unknown_velocity_components[k]
         for i in range(size):
             index = velocity_index(k, i, g.dimension, size - 1)
-            out[index] = m.weights[i] * (force[a, i] - c.drag[a, i] * x[index])
+            out[index] = m.quadrature_weights[i] * (force[a, i] - c.drag[a, i] * x[index])
 
 
 @compiled
@@ -169,17 +169,17 @@ def write_law_derivative(x: Array, dS: Array, change: NodalRodDerivative, c: Nod
     for i in range(n + 1):
         # At the tip S = 0.
         q1, q3 = (x[stress_index(0, i, n)], x[stress_index(2, i, n)]) if i < n else (0.0, 0.0)
-        if k < len(c.jumps) and c.jumps[k] == i:
+        if k < len(c.jump_nodes) and c.jump_nodes[k] == i:
             dS[0, i], dS[2, i] = stress_parameter_derivative_at_jump(
-                c.law, c.jump_sides[k], change.jump_sides[k], q1, q3
+                c.law_number, c.jump_side_coefficients[k], change.jump_side_coefficients[k], q1, q3
             )
             k += 1
             continue
-        material = LocalSection(c.rest_strain[0, i], c.compliance[0, i], c.compliance[2, i])
+        material = LocalSection(c.straight_state_strain[0, i], c.compliance[0, i], c.compliance[2, i])
         material_derivative = LocalSection(
-            change.rest_strain[0, i], change.compliance[0, i], change.compliance[2, i]
+            change.straight_state_strain[0, i], change.compliance[0, i], change.compliance[2, i]
         )
-        dS[0, i], dS[2, i] = stress_parameter_derivative(c.law, material, material_derivative, q1, q3)
+        dS[0, i], dS[2, i] = stress_parameter_derivative(c.law_number, material, material_derivative, q1, q3)
 
 
 @UnrolledOverAlgebra
@@ -193,31 +193,33 @@ def write_balance_parameter_derivative(  # noqa: PLR0913, PLR0917 - a tuple of a
     out[2]: derivative of G. V: velocity at x, (d, nodes + 1). change: derivative of the rod `c` with respect
     to the parameter. Unknown components of V are fixed.
     """
-    size = len(m.weights)
+    size = len(m.quadrature_weights)
     E = np.empty((g.dimension, size))
     S = np.empty((g.dimension, size))
     dS = np.zeros((g.dimension, size))
     write_strains_and_stresses(g, x, E, S, c)
-    if c.law != LINEAR_LAW_NUMBER:
+    if c.law_number != LINEAR_LAW_NUMBER:
         write_law_derivative(x, dS, change, c)
     for i in range(size):
-        s = [x[stress_index(a, i, size - 1)] if i < size - 1 else 0.0 for a in g.components]
-        dE = [change.rest_strain[a, i] + change.compliance[a, i] * s[a] for a in g.components]
+        s = [x[stress_index(a, i, size - 1)] if i < size - 1 else 0.0 for a in g.component_indices]
+        dE = [
+            change.straight_state_strain[a, i] + change.compliance[a, i] * s[a] for a in g.component_indices
+        ]
         # The derivative of Gamma V = D* Sigma at a fixed state: Gamma dV = d(force) - dGamma V.
-        force = [-change.drag[a, i] * V[a, i] for a in g.components]
-        if c.law != LINEAR_LAW_NUMBER:
+        force = [-change.drag[a, i] * V[a, i] for a in g.component_indices]
+        if c.law_number != LINEAR_LAW_NUMBER:
             for j in range(size):
-                for a in g.components:
-                    force[a] += m.D[i, j] * dS[a, j]
+                for a in g.component_indices:
+                    force[a] += m.differentiation_matrix[i, j] * dS[a, j]
         for a, b, o, sign in g.structure_constants:
             stress_derivative = change.tip_stress[a] + dS[a, i]
             force[o] -= sign * (dE[b] * (c.tip_stress[a] + S[a, i]) + E[b, i] * stress_derivative)
-        dV = [c.mobility[a, i] * force[a] for a in g.components]
-        rate = [0.0 for _ in g.components]
+        dV = [c.mobility[a, i] * force[a] for a in g.component_indices]
+        rate = [0.0 for _ in g.component_indices]
         for a, b, o, sign in g.structure_constants:
             rate[a] += sign * (dE[b] * V[o, i] + E[b, i] * dV[o])
-        for a in g.components:
+        for a in g.component_indices:
             out[0, a, i] = force[a]
             out[1, a, i] = dV[a]
-            out[2, a, i] = m.weights[i] * rate[a]
+            out[2, a, i] = m.quadrature_weights[i] * rate[a]
     add_weak_derivative(g, out[1], out[2], m)

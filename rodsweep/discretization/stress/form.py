@@ -36,9 +36,9 @@ class VelocityEliminationSettings:
 
 VELOCITY_ELIMINATION_SETTINGS = VelocityEliminationSettings()
 
-AXIAL_COMPONENTS = (0,)
+AXIAL_VELOCITY_COMPONENTS = (0,)
 """Index of the axial velocity v1 among the components of V, as a tuple."""
-OMEGA_COMPONENTS = (2,)
+ANGULAR_VELOCITY_COMPONENTS = (2,)
 """Index of the angular velocity Omega among the components of V, as a tuple."""
 
 
@@ -62,13 +62,13 @@ class StressForm(RodOnMesh):
     drags can be compared."""
 
     @property
-    def unknown_velocities(self) -> tuple[int, ...]:
+    def unknown_velocity_components(self) -> tuple[int, ...]:
         is_axial_velocity_unknown = (
             self.rod.least_axial_drag < VELOCITY_ELIMINATION_SETTINGS.min_eliminated_axial_drag
         )
         is_omega_unknown = self.is_omega_always_unknown or has_small_rotational_drag(self.rod)
-        axial = AXIAL_COMPONENTS if is_axial_velocity_unknown else ()
-        return (*axial, *(OMEGA_COMPONENTS if is_omega_unknown else ()))
+        axial = AXIAL_VELOCITY_COMPONENTS if is_axial_velocity_unknown else ()
+        return (*axial, *(ANGULAR_VELOCITY_COMPONENTS if is_omega_unknown else ()))
 
     def states_on_mesh(self, target: Mesh, x: Array) -> Array:
         """States x, (..., unknowns), interpolated to the mesh `target`, (..., unknowns on target)."""
@@ -90,12 +90,12 @@ class StressForm(RodOnMesh):
         `target`, (3, ..., nodes of target + 1), and the velocities of the states x, (..., unknowns)."""
         # Velocities are continuous where stresses jump, so their interpolation needs no correction.
         V = np.zeros((SE2_DIMENSION, *x.shape[:-1], target.node_count + 1))
-        V[list(self.unknown_velocities)] = (
+        V[list(self.unknown_velocity_components)] = (
             self.layout.velocities(x) @ interpolation_matrix(self.mesh, target).T
         )
-        return plane_layout(target.node_count, self.unknown_velocities).state(S, V)
+        return plane_layout(target.node_count, self.unknown_velocity_components).state(S, V)
 
-    def parameter_derivative(self, parameter_name: str) -> NodalRodDerivative:
+    def nodal_rod_parameter_derivative(self, parameter_name: str) -> NodalRodDerivative:
         """Derivative of `nodal_rod` with respect to the coordinate of the parameter `parameter_name`: 1/k for
         a stiffness k, else the parameter itself."""
         coefficient_derivatives = balance_coefficient_derivatives_at_nodes(
@@ -112,7 +112,7 @@ class StressForm(RodOnMesh):
 
     def mass_diagonal_of(self, rod: NodalRod | NodalRodDerivative) -> Array:
         """`mass_diagonal` with the compliances of `rod`, (unknowns,). rod: another rod, or a derivative."""
-        weighted = rod.compliance * self.mesh.quadrature
+        weighted = rod.compliance * self.mesh.quadrature_weights
         return self.layout.state(weighted, np.zeros(weighted.shape))
 
     def energy_norm(self, x: Array) -> Array:

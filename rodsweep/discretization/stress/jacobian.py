@@ -37,12 +37,12 @@ def write_jacobian(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count re
     except the tip, then the balance of each unknown component of V. tip: output, derivative of the reaction
     at the tip, (d, unknowns).
     """
-    size = len(m.weights)
+    size = len(m.quadrature_weights)
     E = np.empty((g.dimension, size))
     S = np.empty((g.dimension, size))
     write_strains_and_stresses(g, x, E, S, c)
     _write_linear_law_jacobian(g, (E, S, V), J, tip, c.compliance, c, m)
-    if c.law != LINEAR_LAW_NUMBER:
+    if c.law_number != LINEAR_LAW_NUMBER:
         P = np.empty(J.shape)
         tip_P = np.empty(tip.shape)
         # With compliances of 0 the strain is fixed, so the derivative is P.
@@ -60,12 +60,12 @@ def _add_law_tangent(x: Array, J: Array, P: Array, c: NodalRod) -> None:
     for i in range(n):
         p1 = stress_index(0, i, n)
         p3 = stress_index(2, i, n)
-        if k < len(c.jumps) and c.jumps[k] == i:
-            T = tangent_at_jump(c.law, c.jump_sides[k], x[p1], x[p3])
+        if k < len(c.jump_nodes) and c.jump_nodes[k] == i:
+            T = tangent_at_jump(c.law_number, c.jump_side_coefficients[k], x[p1], x[p3])
             k += 1
         else:
-            material = LocalSection(c.rest_strain[0, i], c.compliance[0, i], c.compliance[2, i])
-            T = stress_tangent(c.law, material, x[p1], x[p3])
+            material = LocalSection(c.straight_state_strain[0, i], c.compliance[0, i], c.compliance[2, i])
+            T = stress_tangent(c.law_number, material, x[p1], x[p3])
         for row in range(len(J)):
             by_pull = P[row, p1]
             by_moment = P[row, p3]
@@ -87,10 +87,10 @@ def _write_linear_law_jacobian(  # noqa: PLR0913, PLR0917 - as above
     """Writes the derivative of the equations with respect to S, for a linear law, into J and tip. fields: E,
     s(S) and V at all nodes, (d, nodes + 1) each. compliance: dE/dS, (d, nodes + 1); arrays of 0 give the part
     P. J: (unknowns, unknowns). tip: (d, unknowns)."""
-    slopes = np.empty((g.dimension, g.dimension, len(m.weights)))
+    slopes = np.empty((g.dimension, g.dimension, len(m.quadrature_weights)))
     _write_velocity_derivatives(g, fields, slopes, compliance, c)
     _write_rate_derivatives(g, fields, slopes, J, tip, compliance, c, m)
-    for k in range(len(c.unknown_velocities)):
+    for k in range(len(c.unknown_velocity_components)):
         _write_unknown_velocity_columns(g, k, fields[0], J, tip, c, m)
         _write_unknown_velocity_rows(g, k, fields, J, compliance, c, m)
 
@@ -107,13 +107,13 @@ def _write_velocity_derivatives(
     """
     E, S, _ = fields
     for i in range(slopes.shape[2]):
-        B = [[0.0 for _ in g.components] for _ in g.components]
+        B = [[0.0 for _ in g.component_indices] for _ in g.component_indices]
         for a, b, o, sign in g.structure_constants:
             B[o][a] -= sign * E[b, i]
             # Product rule: E = E0 + C S depends on S as well.
             B[o][b] -= sign * compliance[b, i] * (c.tip_stress[a] + S[a, i])
-        for o in g.components:
-            for b in g.components:
+        for o in g.component_indices:
+            for b in g.component_indices:
                 if g.coad_derivative_pattern[o][b]:
                     slopes[o, b, i] = c.mobility[o, i] * B[o][b]
 
@@ -132,21 +132,21 @@ def _write_rate_derivatives(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what
     """Writes the derivative of G with respect to S into J, (unknowns, unknowns), and tip, (d, unknowns).
     fields: E, s(S) and V at all nodes, (d, nodes + 1) each. compliance: dE/dS, (d, nodes + 1). slopes: result
     of `_write_velocity_derivatives`."""
-    n = len(m.weights) - 1
+    n = len(m.quadrature_weights) - 1
     E, _, V = fields
     for i in range(n + 1):
-        A = [[0.0 for _ in g.components] for _ in g.components]  # weighted
+        A = [[0.0 for _ in g.component_indices] for _ in g.component_indices]  # weighted
         for a, b, o, sign in g.structure_constants:
-            A[a][o] += sign * m.weights[i] * E[b, i]
-        rate_block = [[A[a][o] * c.mobility[o, i] for o in g.components] for a in g.components]
-        rows = [J[stress_index(a, i, n)] if i < n else tip[a] for a in g.components]
-        for a in g.components:
+            A[a][o] += sign * m.quadrature_weights[i] * E[b, i]
+        rate_block = [[A[a][o] * c.mobility[o, i] for o in g.component_indices] for a in g.component_indices]
+        rows = [J[stress_index(a, i, n)] if i < n else tip[a] for a in g.component_indices]
+        for a in g.component_indices:
             for j in range(n):
                 # -D^T W Gamma^-1 D does not depend on the state and is computed once per rod.
                 rows[a][stress_index(a, j, n)] = c.mobility_laplacian[a, i, j]
         for j in range(n):
-            weak_entry = m.weak_derivative[i, j]
-            slope = m.D[i, j]
+            weak_entry = m.weak_derivative_matrix[i, j]
+            slope = m.differentiation_matrix[i, j]
             for a, b in g.ordered_distinct_pairs:
                 coupling = weak_entry * slopes[a, b, j] if g.coad_derivative_pattern[a][b] else 0.0
                 rows[a][stress_index(b, j, n)] = coupling + (
@@ -154,16 +154,16 @@ def _write_rate_derivatives(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what
                 )
         # The stress of the tip is prescribed and has no column.
         if i < n:
-            diagonal_block = [[0.0 for _ in g.components] for _ in g.components]
+            diagonal_block = [[0.0 for _ in g.component_indices] for _ in g.component_indices]
             for a, b, o, sign in g.structure_constants:
-                diagonal_block[a][b] += sign * m.weights[i] * compliance[b, i] * V[o, i]
+                diagonal_block[a][b] += sign * m.quadrature_weights[i] * compliance[b, i] * V[o, i]
             for a, o in g.ordered_distinct_pairs:
-                for b in g.components:
+                for b in g.component_indices:
                     # Unrolling leaves out pairs that are 0 for every strain.
                     if g.ad_pattern[a][o] and g.coad_derivative_pattern[o][b]:
                         diagonal_block[a][b] += A[a][o] * slopes[o, b, i]
-            for a in g.components:
-                for b in g.components:
+            for a in g.component_indices:
+                for b in g.component_indices:
                     rows[a][stress_index(b, i, n)] += diagonal_block[a][b]
 
 
@@ -173,18 +173,18 @@ def _write_unknown_velocity_columns(  # noqa: PLR0913, PLR0917 - as above
 ) -> None:
     """Writes the derivative of the strain rates G with respect to the k-th unknown velocity component into J
     and tip. E: strains, (d, nodes + 1). J: (unknowns, unknowns). tip: (d, unknowns)."""
-    size = len(m.weights)
-    n = len(m.weights) - 1
-    component = c.unknown_velocities[k]
+    size = len(m.quadrature_weights)
+    n = len(m.quadrature_weights) - 1
+    component = c.unknown_velocity_components[k]
     first = velocity_index(k, 0, g.dimension, n)
     for i in range(size):
-        rows = [J[stress_index(a, i, n)] if i < n else tip[a] for a in g.components]
-        for a in g.components:
+        rows = [J[stress_index(a, i, n)] if i < n else tip[a] for a in g.component_indices]
+        for a in g.component_indices:
             for j in range(size):
-                rows[a][first + j] = m.weak_derivative[i, j] if component == a else 0.0
+                rows[a][first + j] = m.weak_derivative_matrix[i, j] if component == a else 0.0
         for a, b, o, sign in g.structure_constants:
             if o == component:
-                rows[a][first + i] += sign * m.weights[i] * E[b, i]
+                rows[a][first + i] += sign * m.quadrature_weights[i] * E[b, i]
 
 
 @UnrolledOverAlgebra
@@ -199,17 +199,17 @@ def _write_unknown_velocity_rows(  # noqa: PLR0913, PLR0917 - as above
 ) -> None:
     """Writes the rows of the balance of the k-th unknown velocity component into J, (unknowns, unknowns).
     fields: E, s(S) and V at all nodes, (d, nodes + 1) each. compliance: dE/dS, (d, nodes + 1)."""
-    size = len(m.weights)
-    n = len(m.weights) - 1
-    component = c.unknown_velocities[k]
+    size = len(m.quadrature_weights)
+    n = len(m.quadrature_weights) - 1
+    component = c.unknown_velocity_components[k]
     E, S, _ = fields
     first = velocity_index(k, 0, g.dimension, n)
     for i in range(size):
         row = J[first + i]
-        w = m.weights[i]
+        w = m.quadrature_weights[i]
         row[:] = 0.0
         for j in range(n):
-            row[stress_index(component, j, n)] = w * m.D[i, j]
+            row[stress_index(component, j, n)] = w * m.differentiation_matrix[i, j]
         row[first + i] = -w * c.drag[component, i]
         if i < n:
             for a, b, o, sign in g.structure_constants:

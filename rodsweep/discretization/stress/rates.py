@@ -6,14 +6,14 @@ energy density."""
 import numpy as np
 
 from ...arrays import Array
-from ...model.compiled.compilation import compiled_for_vectors
+from ...model.compiled.compilation import compiled_with_reordered_sums
 from ..elements.mesh import NodeMatrices
 from ..nodal_rod import NodalRod
 from ..plane_equations import write_balance, write_jacobian
 from ..state_layout import stress_index
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def write_rate(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
     """Writes dz/dt, with time in tau2, of the state z into out; z, out: (unknowns,). roots: positive square
     roots of the compliances C at the nodes, (d, nodes + 1)."""
@@ -26,10 +26,10 @@ def write_rate(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices)
     for a in range(d):
         for i in range(size - 1):
             # W C dS/dt = G with z = C^(1/2) S, so dz/dt = G/(W C^(1/2)).
-            out[stress_index(a, i, size - 1)] = G[a, i] / (m.weights[i] * roots[a, i])
+            out[stress_index(a, i, size - 1)] = G[a, i] / (m.quadrature_weights[i] * roots[a, i])
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def _write_stresses_of_state(z: Array, x: Array, roots: Array) -> None:
     """Writes the stresses S = C^(-1/2) z into x; x, z: (unknowns,). roots: square roots of the
     compliances at the nodes, (d, nodes + 1)."""
@@ -41,7 +41,7 @@ def _write_stresses_of_state(z: Array, x: Array, roots: Array) -> None:
             x[index] = z[index] / roots[a, i]
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def write_rate_jacobian(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
     """Writes the Jacobian d(dz/dt)/dz at the state z, (unknowns,), into out, (unknowns, unknowns). out is
     column-major: out[column, row]. roots: square roots of the compliances at the nodes, (d, nodes + 1)."""
@@ -61,13 +61,13 @@ def write_rate_jacobian(z: Array, out: Array, roots: Array, c: NodalRod, m: Node
         for i in range(size - 1):
             index = stress_index(a, i, size - 1)
             inverse[index] = 1 / roots[a, i]
-            scale[index] = inverse[index] / m.weights[i]
+            scale[index] = inverse[index] / m.quadrature_weights[i]
     for p in range(unknowns):
         for q in range(unknowns):
             out[q, p] = scale[p] * inverse[q] * J[p, q]
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def write_rates(states: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
     """Writes dz/dt of n states z into out; states, out: (n, unknowns). roots: square roots of the
     compliances at the nodes, (d, nodes + 1)."""
@@ -75,7 +75,7 @@ def write_rates(states: Array, out: Array, roots: Array, c: NodalRod, m: NodeMat
         write_rate(states[i], out[i], roots, c, m)
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def write_rate_jacobians(states: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
     """Writes the Jacobians of `write_rate_jacobian` at n states z, (n, unknowns), into out, (n, unknowns,
     unknowns). roots: square roots of the compliances at the nodes, (d, nodes + 1)."""

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import Array
-from ...model.compiled.compilation import compiled_for_vectors
+from ...model.compiled.compilation import compiled_with_reordered_sums
 from ..elements.elements import ELEMENT_SETTINGS, Elements
 from ..elements.mesh import SHAPE_QUADRATURE_SETTINGS, shape_integration_matrices
 from ..nodal_rod import IntegerArray
@@ -20,20 +20,20 @@ class TipMatrices(NamedTuple):
     """Matrices that integrate strains to the position of the tip, each element as [0, 1]. m: number of nodes
     of all elements, one element after the other; g: number of Gauss points of every element.
 
-    values_at_gauss_points: interpolation from the nodes of an element to its Gauss points, (m, g).
-    angles_at_gauss_points: integrals of nodal polynomials from 0 to the Gauss points, (m, g). gauss_weights:
-    Gauss weights of each element, (elements, g). nodal_polynomial_integrals: integrals of nodal polynomials
-    over the element, (m,). element_lengths: lengths of all elements, (elements,). element_nodes: index of the
-    node of the mesh at each node of every element, (m,). element_starts: index in m of the first node of each
-    element, then m, (elements + 1,)."""
+    interpolation_to_gauss_points: interpolation from the nodes of an element to its Gauss points, (m, g).
+    nodal_integrals_to_gauss_points: integrals of nodal polynomials from 0 to the Gauss points, (m, g).
+    gauss_weights: Gauss weights of each element, (elements, g). nodal_polynomial_integrals: integrals of
+    nodal polynomials over the element, (m,). element_lengths: lengths of all elements, (elements,).
+    element_node_indices: index of the node of the mesh at each node of every element, (m,).
+    element_start_indices: index in m of the first node of each element, then m, (elements + 1,)."""
 
-    values_at_gauss_points: Array
-    angles_at_gauss_points: Array
+    interpolation_to_gauss_points: Array
+    nodal_integrals_to_gauss_points: Array
     gauss_weights: Array
     nodal_polynomial_integrals: Array
     element_lengths: Array
-    element_nodes: IntegerArray
-    element_starts: IntegerArray
+    element_node_indices: IntegerArray
+    element_start_indices: IntegerArray
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
@@ -42,21 +42,21 @@ def tip_matrices(mesh: Elements) -> TipMatrices:
     points = mesh.order + SHAPE_QUADRATURE_SETTINGS.extra_point_count
     matrices = [
         shape_integration_matrices(order, points, s)
-        for order, s in zip(mesh.orders, mesh.spacing_of_elements, strict=True)
+        for order, s in zip(mesh.orders, mesh.node_spacing_ratio_of_elements, strict=True)
     ]
     return TipMatrices(
-        values_at_gauss_points=np.concatenate([m.values_at_gauss_points for m in matrices]),
-        angles_at_gauss_points=np.concatenate([m.angles_at_gauss_points for m in matrices]),
+        interpolation_to_gauss_points=np.concatenate([m.interpolation_to_gauss_points for m in matrices]),
+        nodal_integrals_to_gauss_points=np.concatenate([m.nodal_integrals_to_gauss_points for m in matrices]),
         # Integrals from 0 to the last node span the whole element: they are the Gauss weights.
-        gauss_weights=np.array([m.integrals_to_nodes[:, -1] for m in matrices]),
-        nodal_polynomial_integrals=np.concatenate([m.angles_at_nodes[:, -1] for m in matrices]),
+        gauss_weights=np.array([m.gauss_integrals_to_nodes[:, -1] for m in matrices]),
+        nodal_polynomial_integrals=np.concatenate([m.nodal_integrals_to_nodes[:, -1] for m in matrices]),
         element_lengths=np.ascontiguousarray(mesh.lengths),
-        element_nodes=mesh.element_nodes,
-        element_starts=np.append(0, np.cumsum([order + 1 for order in mesh.orders])),
+        element_node_indices=mesh.element_node_indices,
+        element_start_indices=np.append(0, np.cumsum([order + 1 for order in mesh.orders])),
     )
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def write_tip_motion(strains: Array, rates: Array, m: TipMatrices, tip: Array, velocity: Array) -> None:
     """Writes (x, y, theta) of the tip, in L and rad, into tip, and the time derivative of (x, y, theta) into
     velocity. strains: (h1, h2, Pi) at the nodes of every element, (3, states, m). rates: time derivatives of
@@ -86,7 +86,7 @@ def write_tip_motion(strains: Array, rates: Array, m: TipMatrices, tip: Array, v
                 # angular velocity dtheta/dt.
                 dx += w * (cos * fields[3, g] - sin * fields[4, g]) - v * fields[5, g]
                 dy += w * (sin * fields[3, g] + cos * fields[4, g]) + u * fields[5, g]
-            for j in range(m.element_starts[e], m.element_starts[e + 1]):
+            for j in range(m.element_start_indices[e], m.element_start_indices[e + 1]):
                 theta += length * m.nodal_polynomial_integrals[j] * strains[2, k, j]
                 angle_rate += length * m.nodal_polynomial_integrals[j] * rates[2, k, j]
         tip[k, 0] = x
@@ -97,7 +97,7 @@ def write_tip_motion(strains: Array, rates: Array, m: TipMatrices, tip: Array, v
         velocity[k, 2] = angle_rate
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def _write_fields_at_gauss_points(
     strains: Array, m: TipMatrices, e: int, start_angle: float, fields: Array
 ) -> None:
@@ -106,11 +106,11 @@ def _write_fields_at_gauss_points(
     fields[:2] = 0.0
     fields[2] = start_angle
     length = m.element_lengths[e]
-    for j in range(m.element_starts[e], m.element_starts[e + 1]):
+    for j in range(m.element_start_indices[e], m.element_start_indices[e + 1]):
         h1 = strains[0, j]
         h2 = strains[1, j]
         Pi = strains[2, j]
         for g in range(m.gauss_weights.shape[1]):
-            fields[0, g] += h1 * m.values_at_gauss_points[j, g]
-            fields[1, g] += h2 * m.values_at_gauss_points[j, g]
-            fields[2, g] += length * Pi * m.angles_at_gauss_points[j, g]
+            fields[0, g] += h1 * m.interpolation_to_gauss_points[j, g]
+            fields[1, g] += h2 * m.interpolation_to_gauss_points[j, g]
+            fields[2, g] += length * Pi * m.nodal_integrals_to_gauss_points[j, g]

@@ -17,14 +17,14 @@ FOLD_COLOUR, TORUS_COLOUR = "#8a63d2", "#2a9d5c"
 """Colours of curves of folds and of torus points of cycles."""
 TICK_COUNT = 5
 """Desired number of tick labels along the lower axis."""
-MAX_PLAIN_POWER = 7
+MIN_TICK_POWER_WITH_EXPONENT = 7
 """Tick labels below 10 to this power are written without an exponent."""
-NO_TITLE = "\u00a0"
+BLANK_TITLE = "\u00a0"
 """Blank line of a title (a no-break space). Bokeh never shows the title of a figure first drawn with an empty
 title."""
 MAX_TITLE_CHARACTERS = 46
 """Largest number of characters per line of a title; a longer line would be cut in the narrowest figure."""
-AXIS_ALPHA_NAMES = (
+AXIS_OPACITY_PROPERTIES = (
     "axis_line_alpha",
     "axis_label_text_alpha",
     "major_label_text_alpha",
@@ -36,11 +36,11 @@ FIGURE_HEIGHT = 300
 """Height of a picture in pixels."""
 
 
-Limits = tuple[float, float]
+AxisLimits = tuple[float, float]
 """Lower and upper limit of an axis."""
 
 
-def new_figure(x: tuple[str, Limits], y: tuple[str, Limits], **options: Any) -> figure:
+def new_figure(x: tuple[str, AxisLimits], y: tuple[str, AxisLimits], **options: Any) -> figure:
     """Empty Bokeh figure with the page's style, as wide as a column of the page. x, y: (label, limits) of the
     axes. options: keywords of Bokeh's `figure`."""
     plot = figure(
@@ -55,7 +55,7 @@ def new_figure(x: tuple[str, Limits], y: tuple[str, Limits], **options: Any) -> 
     # half a pixel beside its layout.
     plot.stylesheets = [InlineStyleSheet(css=":host { clip-path: inset(2px); }")]
     plot.xaxis.ticker.desired_num_ticks = TICK_COUNT
-    plot.xaxis.formatter.power_limit_high = MAX_PLAIN_POWER
+    plot.xaxis.formatter.power_limit_high = MIN_TICK_POWER_WITH_EXPONENT
     return plot
 
 
@@ -91,7 +91,7 @@ def source_columns(**arrays: Array) -> dict[str, list[Any]]:
     return {name: list_of(array) for name, array in arrays.items()}
 
 
-def axis_limits(values: Array, margin: float = 0.08) -> Limits:
+def axis_limits(values: Array, margin: float = 0.08) -> AxisLimits:
     """(lower, upper) limit of an axis for `values`, (n,): their range, widened at both ends by the fraction
     `margin`; (-1, 1) for an empty array."""
     if len(values) == 0:
@@ -125,9 +125,9 @@ class Card:
     def set_title(self, text: str) -> None:
         """Sets the title of the figure, wrapped to lines of at most MAX_TITLE_CHARACTERS characters."""
         lines = wrap(text, MAX_TITLE_CHARACTERS)
-        self.figure.title.text = "\n".join(lines + [NO_TITLE] * (self.title_lines - len(lines)))
+        self.figure.title.text = "\n".join(lines + [BLANK_TITLE] * (self.title_lines - len(lines)))
 
-    def set_axes(self, x: Limits, y: Limits, labels: tuple[str, str] | None = None) -> None:
+    def set_axes(self, x: AxisLimits, y: AxisLimits, labels: tuple[str, str] | None = None) -> None:
         """Sets the limits of the axes, which are also the limits that the reset button of the figure
         restores. labels: labels of the two axes; None leaves them unchanged."""
         for axis_range, (start, end) in ((self.figure.x_range, x), (self.figure.y_range, y)):
@@ -157,4 +157,4 @@ class Card:
         """Makes the axes transparent or opaque. Removing and adding axes instead would move the frame and
         leave parts of an earlier title. alpha: opacity, 0 or 1."""
         for axis in self.figure.axis:
-            axis.update(**dict.fromkeys(AXIS_ALPHA_NAMES, alpha))
+            axis.update(**dict.fromkeys(AXIS_OPACITY_PROPERTIES, alpha))

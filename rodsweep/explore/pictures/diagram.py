@@ -13,12 +13,12 @@ from ...arrays import Array
 from ...post.figures.phase_diagram import CURVE_END_CRUSHING_RATIO
 from ...post.figures.stability.regions import PIXEL_COUNT, ClassifiedPoints, DrawnPlane, pixel_classes
 from ...wording import counted
-from ..slider_scales import ControlScale
-from ..solving.curves_and_counts import DiagramCurve
-from ..solving.diagrams import CRUSHED_CODE, UNKNOWN_CODE
+from ..slider_scales import SliderScale
+from ..solving.diagram_curves_and_counts import DiagramCurve
+from ..solving.diagrams import CRUSHED_UNSTABLE_COUNT, UNKNOWN_UNSTABLE_COUNT
 from . import card
 
-PIXELS_PER_ROW = 2
+PIXEL_ROWS_PER_DRAWN_ROW = 2
 """Number of rows of pixels that are drawn as one row. The number of rows is then about the height of a
 picture of the page, in pixels."""
 MIN_LOG_TICKER_RATIO = 100
@@ -28,16 +28,16 @@ TICK_MANTISSAS = np.array([1.0, 2.0, 5.0])
 """Mantissas of the ticks of such an axis."""
 
 
-class RegionTable(NamedTuple):
+class UnstableCountGrid(NamedTuple):
     """Numbers of unstable modes in narrow rows of cells. column_edges: edges of the columns, (columns + 1,).
-    row_edges: edges of the rows, (rows + 1,). counts: numbers of unstable modes, (rows, columns)."""
+    row_edges: edges of the rows, (rows + 1,). unstable_counts: numbers of unstable modes, (rows, columns)."""
 
     column_edges: Array
     row_edges: Array
-    counts: Array
+    unstable_counts: Array
 
 
-def region_table(answer: dict[str, Any]) -> RegionTable | None:
+def unstable_count_grid(answer: dict[str, Any]) -> UnstableCountGrid | None:
     """Regions of the answer `answer` to the request "diagram", in its units. None if the answer has no curve
     of Hopf points, or fewer than two finite positive values of the second parameter."""
     x = answer["x"]
@@ -49,7 +49,7 @@ def region_table(answer: dict[str, Any]) -> RegionTable | None:
     plane = DrawnPlane(np.linspace(x[0], x[-1], 3), np.linspace(np.log(y[0]), np.log(y[-1]), 3))
     columns, rows = np.meshgrid(x, np.log(y))
     counts = np.asarray(answer["unstable_count"])
-    is_counted = counts != CRUSHED_CODE
+    is_counted = counts != CRUSHED_UNSTABLE_COUNT
     computed = ClassifiedPoints(
         plane.fractions_of_axes(columns[is_counted], rows[is_counted]), counts[is_counted]
     )
@@ -57,11 +57,15 @@ def region_table(answer: dict[str, Any]) -> RegionTable | None:
     row_points = ClassifiedPoints(row_positions, np.asarray(answer["between_count"]))
     curves = [plane.fractions_of_axes(curve.x, np.log(curve.y)) for curve in hopf_curves]
     ratio = _crushing_ratio(plane, np.log(y), answer["crushing_load"])
-    pixels = pixel_classes(computed, row_points, curves, ratio > CURVE_END_CRUSHING_RATIO, UNKNOWN_CODE)
-    pixels = np.where(ratio < 1, pixels, CRUSHED_CODE)
+    pixels = pixel_classes(
+        computed, row_points, curves, ratio > CURVE_END_CRUSHING_RATIO, UNKNOWN_UNSTABLE_COUNT
+    )
+    pixels = np.where(ratio < 1, pixels, CRUSHED_UNSTABLE_COUNT)
     column_edges = np.linspace(x[0], x[-1], PIXEL_COUNT + 1)
-    row_edges = np.geomspace(y[0], y[-1], PIXEL_COUNT // PIXELS_PER_ROW + 1)
-    return RegionTable(column_edges, row_edges, pixels[PIXELS_PER_ROW // 2 :: PIXELS_PER_ROW])
+    row_edges = np.geomspace(y[0], y[-1], PIXEL_COUNT // PIXEL_ROWS_PER_DRAWN_ROW + 1)
+    return UnstableCountGrid(
+        column_edges, row_edges, pixels[PIXEL_ROWS_PER_DRAWN_ROW // 2 :: PIXEL_ROWS_PER_DRAWN_ROW]
+    )
 
 
 def _crushing_ratio(plane: DrawnPlane, logs: Array, load: Array) -> Array:
@@ -94,7 +98,7 @@ class DiagramCell(NamedTuple):
     right: float
     bottom: float
     top: float
-    unstable: int
+    unstable_count: int
 
 
 def geometric_cell_edges(values: Array) -> Array:
@@ -110,12 +114,12 @@ def geometric_cell_edges(values: Array) -> Array:
 def diagram_cells(x: Array, y: Array, counts: Array) -> list[DiagramCell]:
     """Rectangles of equal numbers of unstable modes on a grid. x: loads, (columns,). y: second parameter,
     (rows,). counts: numbers of unstable modes, (rows, columns)."""
-    return joined_cells(
+    return merged_cells_of_rows(
         np.concatenate(([x[0]], (x[1:] + x[:-1]) / 2, [x[-1]])), geometric_cell_edges(y), counts
     )
 
 
-def joined_cells(edges: Array, row_edges: Array, counts: Array) -> list[DiagramCell]:
+def merged_cells_of_rows(edges: Array, row_edges: Array, counts: Array) -> list[DiagramCell]:
     """Rectangles of equal numbers of unstable modes in rows of cells. edges: edges of the columns, (columns +
     1,). row_edges: edges of the rows, (rows + 1,). counts: numbers of unstable modes, (rows, columns)."""
     cells = []
@@ -129,9 +133,10 @@ def joined_cells(edges: Array, row_edges: Array, counts: Array) -> list[DiagramC
 
 
 def stability_colour(unstable_count: int) -> tuple[str, float]:
-    """(colour, opacity) for a number of unstable modes, or for CRUSHED_CODE or UNKNOWN_CODE."""
-    if unstable_count in (CRUSHED_CODE, UNKNOWN_CODE):
-        return card.NEUTRAL_COLOUR, 0.55 if unstable_count == CRUSHED_CODE else 0.25
+    """(colour, opacity) for a number of unstable modes, or for CRUSHED_UNSTABLE_COUNT or
+    UNKNOWN_UNSTABLE_COUNT."""
+    if unstable_count in (CRUSHED_UNSTABLE_COUNT, UNKNOWN_UNSTABLE_COUNT):
+        return card.NEUTRAL_COLOUR, 0.55 if unstable_count == CRUSHED_UNSTABLE_COUNT else 0.25
     if unstable_count == 0:
         return card.STABLE_COLOUR, 0.18
     return card.UNSTABLE_COLOUR, 0.2 + 0.5 * min(
@@ -140,8 +145,12 @@ def stability_colour(unstable_count: int) -> tuple[str, float]:
 
 
 def unstable_count_words(unstable_count: int) -> str:
-    """Phrase for a number of unstable modes, or for CRUSHED_CODE or UNKNOWN_CODE."""
-    texts = {0: "stable", CRUSHED_CODE: "crushed by the load", UNKNOWN_CODE: "not searched, or not known"}
+    """Phrase for a number of unstable modes, or for CRUSHED_UNSTABLE_COUNT or UNKNOWN_UNSTABLE_COUNT."""
+    texts = {
+        0: "stable",
+        CRUSHED_UNSTABLE_COUNT: "crushed by the load",
+        UNKNOWN_UNSTABLE_COUNT: "not searched, or not known",
+    }
     return texts.get(unstable_count, counted(unstable_count, "unstable mode"))
 
 
@@ -177,24 +186,27 @@ class DiagramPicture:
         """Whether the figure contains a diagram."""
         return len(self.cell_source.data["left"]) > 0
 
-    def show(self, answer: dict[str, Any], load: ControlScale, row_scale: ControlScale) -> None:
+    def show(self, answer: dict[str, Any], load: SliderScale, row_scale: SliderScale) -> None:
         """Draws the answer `answer` to the request "diagram". load, row_scale: scales of the controls whose
         units the axes have."""
-        x = answer["x"] * load.factor
-        y = answer["y"] * row_scale.factor
-        regions = region_table(answer)
+        x = answer["x"] * load.factor_from_si
+        y = answer["y"] * row_scale.factor_from_si
+        regions = unstable_count_grid(answer)
         if regions is None:
             grid = diagram_cells(x, y, answer["unstable_count"])
         else:
-            edges = (regions.column_edges * load.factor, regions.row_edges * row_scale.factor)
-            grid = joined_cells(*edges, regions.counts)
+            edges = (regions.column_edges * load.factor_from_si, regions.row_edges * row_scale.factor_from_si)
+            grid = merged_cells_of_rows(*edges, regions.unstable_counts)
         data = {name: [getattr(cell, name) for cell in grid] for name in DiagramCell._fields}
-        shades = [stability_colour(cell.unstable) for cell in grid]
-        data["words"] = [unstable_count_words(cell.unstable) for cell in grid]
+        shades = [stability_colour(cell.unstable_count) for cell in grid]
+        data["words"] = [unstable_count_words(cell.unstable_count) for cell in grid]
         data |= {"colour": [colour for colour, _ in shades], "alpha": [alpha for _, alpha in shades]}
         self.cell_source.data = data
         self._show_curves(answer)
-        positions = (answer["crossing_x"] * load.factor, answer["crossing_y"] * row_scale.factor)
+        positions = (
+            answer["crossing_x"] * load.factor_from_si,
+            answer["crossing_y"] * row_scale.factor_from_si,
+        )
         self.crossing_source.data = _boundary_columns(*positions, answer["crossing_kind"])
         y_limits = float(grid[0].bottom), float(grid[-1].top)
         self.card.set_axes((float(x[0]), float(x[-1])), y_limits, (load.label, row_scale.label))
@@ -208,7 +220,7 @@ class DiagramPicture:
         self.cycle_curve_source.data = {"x": x, "y": y, "colour": colours, "dash": dashes}
         self.legend.visible = len(kinds) > 0
 
-    def move_point(self, x: float, y: float) -> None:
+    def mark_rod(self, x: float, y: float) -> None:
         """Moves the mark of the page's rod. x: load, y: second parameter, in the units of the axes."""
         self.point_source.data = {"x": [x], "y": [y]}
 

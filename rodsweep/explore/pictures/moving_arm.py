@@ -12,10 +12,10 @@ from ...arrays import Array
 from ...post.figures.cycle.tip_path import smooth_tip_path
 from ..slider_scales import PictureAxis
 from ..solving.dragged_tip import TipPosition
-from ..texts import template_text
+from ..templates_and_texts import template_text
 from . import card
 
-PERIOD_SECONDS = 2.0
+SCREEN_SECONDS_PER_PERIOD = 2.0
 """Duration of one period of a cycle on the screen, in seconds."""
 REACHED_STATE_CLAUSES = {
     "cycle": "it beats",
@@ -30,10 +30,10 @@ number of nodes per shape."""
 
 
 class MovingArmPicture:
-    """Animated picture of the arm with the path of its tip; one period of a cycle takes `PERIOD_SECONDS`. The
-    attributes `..._source` are Bokeh data sources: `shapes` of the cycle, `motion` after a release, `reached`
-    shapes of the cycle that the motion approaches, the drawn `arm`, the `bent` arm that the user drags, the
-    `path` of the tip, the position of the mouse (`grip`)."""
+    """Animated picture of the arm with the path of its tip; one period of a cycle takes
+    `SCREEN_SECONDS_PER_PERIOD`. The attributes `..._source` are Bokeh data sources: `shapes` of the cycle,
+    `motion` after a release, `reached` shapes of the cycle that the motion approaches, the drawn `arm`, the
+    `bent` arm that the user drags, the `path` of the tip, the position of the mouse (`grip`)."""
 
     def __init__(self) -> None:
         axes = ("x (L)", (-0.1, 1.1)), ("y (L)", (-0.7, 0.7))
@@ -72,7 +72,11 @@ class MovingArmPicture:
         ready."""
         names = ("shapes", "motion", "reached", "arm", "bent")
         sources: dict[str, Any] = {name: getattr(self, f"{name}_source") for name in names}
-        variables = {"period": PERIOD_SECONDS, "figure": self.card.figure, "colour": card.STABLE_COLOUR}
+        variables = {
+            "period": SCREEN_SECONDS_PER_PERIOD,
+            "figure": self.card.figure,
+            "colour": card.STABLE_COLOUR,
+        }
         return CustomJS(args=sources | variables, code=template_text("beating.js"))
 
     def on_drag(self, drag: Callable[[str, TipPosition], None]) -> None:
@@ -81,7 +85,7 @@ class MovingArmPicture:
 
         def dragged(attribute: str, previous: Any, data: dict[str, list[Any]]) -> None:
             if len(data["x"]) == 1:
-                x, y = (float(data[name][0]) / self.length.factor for name in "xy")
+                x, y = (float(data[name][0]) / self.length.factor_from_dimensionless for name in "xy")
                 drag("motion" if data["phase"][0] == "let go" else "bent", (x, y))
 
         self.grip_source.on_change("data", dragged)
@@ -92,10 +96,10 @@ class MovingArmPicture:
         axes."""
         self.length = length
         self.remove_dragged_shape()
-        x, y = (answer[name] * length.factor for name in ("shape_x", "shape_y"))
+        x, y = (answer[name] * length.factor_from_dimensionless for name in ("shape_x", "shape_y"))
         has_cycle = bool(np.isfinite(x).all())
         if not has_cycle:
-            x, y = (answer[name][None] * length.factor for name in "xy")
+            x, y = (answer[name][None] * length.factor_from_dimensionless for name in "xy")
         self.shapes_source.data = shape_columns(x, y)
         self._draw_path(x[: len(x) * has_cycle], y[: len(y) * has_cycle], is_closed=True)
         self._fit_axes(x, y)
@@ -106,29 +110,29 @@ class MovingArmPicture:
         else:
             self.card.show_sentence_above(card.status_sentence(answer))
 
-    def show_bent(self, answer: dict[str, Any]) -> None:
+    def show_arm_with_held_tip(self, answer: dict[str, Any]) -> None:
         """Draws the equilibrium shape of the arm whose tip the user drags. answer: result of
-        `dragged_equilibrium`."""
-        self.bent_source.data = {name: answer[name] * self.length.factor for name in "xy"}
+        `equilibrium_with_held_tip`."""
+        self.bent_source.data = {name: answer[name] * self.length.factor_from_dimensionless for name in "xy"}
 
     def show_motion(self, answer: dict[str, Any]) -> None:
         """Starts the animation of a released arm, and writes the state that the arm reaches into the title.
         answer: result of `released_motion_answer`, and the position `tip`."""
-        factor = self.length.factor
-        step = answer["step"]
+        factor = self.length.factor_from_dimensionless
+        step = answer["shape_interval"]
         x = answer["x"] * factor
         y = answer["y"] * factor
         shape_x = answer["shape_x"] * factor
         shape_y = answer["shape_y"] * factor
         cycle_frames = answer["period"] if len(shape_x) else step * answer["frames"]
-        self.motion_source.tags = [PERIOD_SECONDS * step / cycle_frames, PERIOD_SECONDS]
+        self.motion_source.tags = [SCREEN_SECONDS_PER_PERIOD * step / cycle_frames, SCREEN_SECONDS_PER_PERIOD]
         self.reached_source.data = shape_columns(shape_x, shape_y)
         self.motion_source.data = shape_columns(x, y)
         self._draw_path(x, y, is_closed=False)
         self._fit_axes(np.concatenate([x, shape_x]), np.concatenate([y, shape_y]))
         position = ", ".join(f"{coordinate * factor:.3g}" for coordinate in answer["tip"])
         end = REACHED_STATE_CLAUSES.get(answer["status"], answer["sentence"])
-        beginning_text = "" if answer["is_whole"] else "; only the beginning of the motion is shown"
+        beginning_text = "" if answer["is_motion_complete"] else "; only the beginning of the motion is shown"
         self.card.set_title(f"Let go at ({position}) {self.length.label}: {end}{beginning_text}")
 
     def remove_dragged_shape(self) -> None:
@@ -151,7 +155,7 @@ class MovingArmPicture:
     def _fit_axes(self, x: Array, y: Array) -> None:
         """Sets the ranges of the axes so that all shapes fit. x, y: coordinates, (shapes, nodes), in the unit
         of the axes."""
-        factor = self.length.factor
+        factor = self.length.factor_from_dimensionless
         half_height = 1.15 * max(0.3 * factor, float(np.abs(y).max()))
         x_limits = min(0.0, float(x.min())) - 0.1 * factor, 1.1 * factor
         labels = f"x ({self.length.label})", f"y ({self.length.label})"

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from . import card
-from .numbers import SI_NAME_BY_VARIABLE
+from .numbers_table import SI_NAME_BY_VARIABLE
 
 
 class SpectrumPicture:

@@ -9,20 +9,20 @@ from ...api.arm import Arm
 from ...errors import InputError
 from ...post.figures.cycle.animation import FilmedMotion, motion_film
 from ...post.rod_portrait.results import DescribedRod
-from ...tasks.released_motion import FRAMES_PER_RETURN, ReleasedMotion, bent_shape, released_motion
+from ...tasks.released_motion import FRAMES_PER_RETURN, ReleasedMotion, released_motion, shape_with_held_tip
 from ...tasks.rod_portrait import PortraitRequest
 from ...tasks.running.job import Job
+from ..page_state import MATERIAL_SECTION_BY_LAW, PageState, dimensionless_parameters_of
 from ..slider_scales import length_axis
-from ..state import MATERIAL_SECTION_BY_LAW, PageState, dimensionless_parameters_of
 
 TipPosition = tuple[float, float]
 """Coordinates (x, y) of the tip, in units of the arm's length L."""
 
 
-def dragged_equilibrium(state: PageState, tip: TipPosition | None) -> dict[str, Any]:
+def equilibrium_with_held_tip(state: PageState, tip: TipPosition | None) -> dict[str, Any]:
     """Equilibrium shape of the arm with its tip held at `tip`: coordinates `x` and `y`, (nodes,), in L. tip:
     None for the straight arm."""
-    x, y = bent_shape(_limit_cycle_job(state), tip)
+    x, y = shape_with_held_tip(_limit_cycle_job(state), tip)
     return {"x": x, "y": y}
 
 
@@ -49,14 +49,14 @@ def motion_film_answer(state: PageState, tip: TipPosition) -> dict[str, Any]:
 
 def motion_in_page_units(state: PageState, answer: Mapping[str, Any]) -> FilmedMotion:
     """The motion after a release, in the units of the page. answer: result of `released_motion_answer`."""
-    rod_or_arm = state.subject()
+    rod_or_arm = state.rod_or_arm()
     length = length_axis(state)
     tau2, time = (rod_or_arm.tau2, "s") if isinstance(rod_or_arm, Arm) else (1.0, "tau2")
     return FilmedMotion(
-        x=answer["x"] * length.factor,
-        y=answer["y"] * length.factor,
-        step=answer["step"] * tau2,
-        length=length.factor,
+        x=answer["x"] * length.factor_from_dimensionless,
+        y=answer["y"] * length.factor_from_dimensionless,
+        shape_interval=answer["step"] * tau2,
+        length=length.factor_from_dimensionless,
         units=(length.label, time),
     )
 
@@ -69,6 +69,6 @@ def _film_shapes(motion: ReleasedMotion) -> dict[str, Any]:
 
 
 def _limit_cycle_job(state: PageState, **options: int) -> Job:
-    rod = dict(dimensionless_parameters_of(state.subject()))
+    rod = dict(dimensionless_parameters_of(state.rod_or_arm()))
     request = PortraitRequest(rod=DescribedRod(parameters=rod, material=MATERIAL_SECTION_BY_LAW[state.law]))
     return request.job_of_task("limit_cycle", options, rod["F"])

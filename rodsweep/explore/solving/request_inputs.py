@@ -7,25 +7,25 @@ button.
 
 from dataclasses import replace
 
-from ..state import PageState
+from ..page_state import PageState
 from .diagrams import second_parameter_values
 from .dragged_tip import TipPosition
 from .requests import SolveRequest
 
 AnswerInputs = tuple[PageState, TipPosition | None]
 """Part of the page's state, and position of the dragged tip, on which an answer depends."""
-INSTANT_KINDS = ("spectrum", "cycle", "thresholds", "growth")
+INSTANT_REQUEST_KINDS = ("spectrum", "cycle", "thresholds", "growth")
 """Kinds of requests that are sent after every change of the controls."""
-LOAD_KIND = "load"
+LOAD_REQUEST_KIND = "load"
 """Kind of the request for the load of an arm. The request is sent after a change of the controls if the load
 is relative to flutter, because only a solver process may search for the flutter threshold."""
-IDLE_KINDS = ("branch", "diagram")
+IDLE_REQUEST_KINDS = ("branch", "diagram")
 """Kinds of requests that take seconds; they are sent once the controls have not changed for
 `PAUSE_MILLISECONDS`."""
-MANUAL_KINDS = ("motion", "film", "cycles")
+MANUAL_REQUEST_KINDS = ("motion", "film", "cycles")
 """Kinds of requests that are sent only when the user presses a button or drags the tip. A change of the rod
 cancels these requests."""
-STOPPABLE_KINDS = ("cycle", *IDLE_KINDS, *MANUAL_KINDS)
+STOPPABLE_REQUEST_KINDS = ("cycle", *IDLE_REQUEST_KINDS, *MANUAL_REQUEST_KINDS)
 """Kinds of requests that the button "Stop" cancels."""
 TIP_REQUEST_KINDS = ("bent", "motion")
 """Kinds of requests about a dragged tip. An answer for an earlier position of the tip is not shown."""
@@ -36,11 +36,11 @@ def inputs_of_request(request: SolveRequest) -> AnswerInputs:
     answer are blank. tip: position of the tip if the answer depends on the tip, else None."""
     kind = request.kind
     state = request.state
-    if kind in ("spectrum", "cycle", "film", LOAD_KIND, *TIP_REQUEST_KINDS):
+    if kind in ("spectrum", "cycle", "film", LOAD_REQUEST_KIND, *TIP_REQUEST_KINDS):
         return replace(state, across="", F_max=""), request.tip
-    blank = {state.load: ""}
+    blank = {state.load_name: ""}
     if kind in ("diagram", "cycles"):
-        return state.with_values(**blank, **{state.second: ""}), None
+        return state.with_values(**blank, **{state.second_parameter: ""}), None
     return replace(state.with_values(**blank), across=""), None
 
 
@@ -56,4 +56,4 @@ def state_to_solve(kind: str, state: PageState, diagram_state: PageState | None)
     ):
         return state
     low, high = second_parameter_values(diagram_state, 2)
-    return diagram_state if low <= float(state.values[state.second]) <= high else state
+    return diagram_state if low <= float(state.visible_texts[state.second_parameter]) <= high else state

@@ -18,11 +18,11 @@ from ...api.sweeping import sweep
 from ...arrays import Array
 from ...config.parameters_section import DEFAULT_VALUES_OF_PARAMETERS
 from ...errors import InputError
-from ...post.branch_curves import RodBranches, stability_runs
-from ..state import MATERIAL_SECTION_BY_LAW, PageState, dimensionless_parameters_of
-from .curves_and_counts import Dataset, flag_words
-from .diagrams import cycle_diagram_answer, diagram_answer
-from .dragged_tip import TipPosition, dragged_equilibrium, motion_film_answer, released_motion_answer
+from ...post.branch_curves import RodBranches, runs_of_equal_stability
+from ..page_state import MATERIAL_SECTION_BY_LAW, PageState, dimensionless_parameters_of
+from .diagram_curves_and_counts import DatasetOrArray, flag_words
+from .diagrams import diagram_answer, diagram_answer_with_cycle_curves
+from .dragged_tip import TipPosition, equilibrium_with_held_tip, motion_film_answer, released_motion_answer
 
 AnswerVariables = dict[str, Any]
 """Variables of an answer, by name: arrays, and texts such as `status`, `sentence` and `message`."""
@@ -32,7 +32,7 @@ SHAPE_COUNT = 48
 """Number of shapes of the arm per period of a cycle; the browser interpolates between these shapes."""
 GROWTH_FORCE_COUNT = 121
 """Number of forces at which growth rates are computed."""
-MAX_CRUSHING_FRACTION = 0.98
+MAX_GROWTH_TO_CRUSHING_FORCE_RATIO = 0.98
 """Largest force at which growth rates are computed, divided by the crushing force (zero stretch)."""
 
 
@@ -41,14 +41,14 @@ class SolveRequest:
     """Request of a page to a solver process.
 
     kind: a key of `STATE_SOLVERS`, or of `TIP_SOLVERS` if `tip` is given. state: state of the page at the
-    request. tip: position of the dragged tip, in L. stored: cycle from a result file, of which a film is made
-    without a solve.
+    request. tip: position of the dragged tip, in L. stored_cycle: cycle from a result file, of which a film
+    is made without a solve.
     """
 
     kind: str
     state: PageState
     tip: TipPosition | None = None
-    stored: Dataset | None = None
+    stored_cycle: DatasetOrArray | None = None
 
 
 class Reply(NamedTuple):
@@ -78,19 +78,19 @@ def answer_variables(answer: Answer) -> AnswerVariables:
 def thresholds_answer(state: PageState) -> AnswerVariables:
     """Thresholds of the straight rod along F, as variables by name. kinds: kind of each threshold, in
     words."""
-    answer = state.subject().thresholds(F_max=state.largest_force(), progress=False)
+    answer = state.rod_or_arm().thresholds(F_max=state.largest_force(), progress=False)
     return answer_variables(answer) | {"kinds": flag_words(answer.data["crossing_kind"]).tolist()}
 
 
 def growth_answer(state: PageState) -> AnswerVariables:
     """Growth rates of the leading modes along F, as variables by name, up to the largest force or just below
     the crushing force (zero stretch). unit: "1/tau2" for a rod, "1/s" for an arm."""
-    rod_or_arm = state.subject()
+    rod_or_arm = state.rod_or_arm()
     tau2, unit = (rod_or_arm.tau2, "1/s") if isinstance(rod_or_arm, Arm) else (1.0, "1/tau2")
     rod = dimensionless_parameters_of(rod_or_arm)
     keywords: dict[str, Any] = {name: rod[name] for name in ("k1", "k2", "gamma3", "taper") if name in rod}
     keywords |= {"material": MATERIAL_SECTION_BY_LAW[state.law]} if MATERIAL_SECTION_BY_LAW[state.law] else {}
-    F_max = min(state.largest_force(), MAX_CRUSHING_FRACTION * crushing_force(rod))
+    F_max = min(state.largest_force(), MAX_GROWTH_TO_CRUSHING_FORCE_RATIO * crushing_force(rod))
     F = np.linspace(0, F_max, GROWTH_FORCE_COUNT)
     data = sweep("spectrum", F=F, **keywords, certify=False, progress=False)
     rates = data["growth_rate"].values.reshape(GROWTH_FORCE_COUNT, -1) / tau2
@@ -101,20 +101,20 @@ def growth_answer(state: PageState) -> AnswerVariables:
 def cycle_answer(state: PageState) -> AnswerVariables:
     """Limit cycle with shapes of the arm over a period, and x, y: coordinates of the straight arm, whose tip
     the user can drag."""
-    cycle = state.subject().cycle(shapes=SHAPE_COUNT, progress=False)
-    return answer_variables(cycle) | dragged_equilibrium(state, None)
+    cycle = state.rod_or_arm().cycle(shapes=SHAPE_COUNT, progress=False)
+    return answer_variables(cycle) | equilibrium_with_held_tip(state, None)
 
 
 def film_answer(state: PageState) -> AnswerVariables:
     """Film of the limit cycle, as made by `rodsweep plot`: the content of a GIF file, under the name `gif`.
     Raises InputError if the rod has no cycle."""
-    answer = state.subject().cycle(shapes=SHAPE_COUNT, progress=False)
+    answer = state.rod_or_arm().cycle(shapes=SHAPE_COUNT, progress=False)
     if not np.isfinite(answer.data["shape_x"].values).all():
         raise InputError(f"there is no cycle to film, choose a load above flutter: {answer.sentence}")
     return film_of_cycle(answer)
 
 
-def film_of_cycle(cycle: Answer | Dataset) -> AnswerVariables:
+def film_of_cycle(cycle: Answer | DatasetOrArray) -> AnswerVariables:
     """Film of a limit cycle: the content of a GIF file, under the name `gif`. cycle: result with shapes."""
     return {"gif": plot(cycle, what="animation").image}
 
@@ -125,9 +125,9 @@ def branch_answer(state: PageState) -> AnswerVariables:
     pieces: (F, y, stability) of each part of a branch or of the straight rod; stability is 1, 0, or -1 if
     unknown. special: (F, y, kind, period) of each special point.
     """
-    answer = state.subject().branch(stop=state.largest_force(), progress=False)
+    answer = state.rod_or_arm().branch(stop=state.largest_force(), progress=False)
     rod = RodBranches(view_of_dataset(answer.whole, Path(answer.rod)))
-    branches = drawn_branches(rod, state.largest_force())
+    branches = branch_answer_of_rod(rod, state.largest_force())
     return branches | {"status": str(answer.status), "sentence": answer.sentence}
 
 
@@ -137,21 +137,21 @@ def crushing_force(rod: Mapping[str, float]) -> float:
 
 
 STATE_SOLVERS: dict[str, Callable[[PageState], AnswerVariables]] = {
-    "load": lambda state: {"F": dimensionless_parameters_of(state.subject())["F"]},  # in k3/L^2
+    "load": lambda state: {"F": dimensionless_parameters_of(state.rod_or_arm())["F"]},  # in k3/L^2
     "spectrum": lambda state: answer_variables(
-        state.subject().spectrum(modes=MODE_COUNT, vectors=True, progress=False)
+        state.rod_or_arm().spectrum(modes=MODE_COUNT, vectors=True, progress=False)
     ),
     "thresholds": thresholds_answer,
     "growth": growth_answer,
     "cycle": cycle_answer,
     "branch": branch_answer,
     "diagram": diagram_answer,
-    "cycles": cycle_diagram_answer,
+    "cycles": diagram_answer_with_cycle_curves,
     "film": film_answer,
 }
 """For each kind of request about the state of the page, the function that answers the request."""
 TIP_SOLVERS: dict[str, Callable[[PageState, TipPosition], AnswerVariables]] = {
-    "bent": dragged_equilibrium,
+    "bent": equilibrium_with_held_tip,
     "motion": released_motion_answer,
     "film": motion_film_answer,
 }
@@ -161,8 +161,8 @@ TIP_SOLVERS: dict[str, Callable[[PageState, TipPosition], AnswerVariables]] = {
 def answer_to(request: SolveRequest) -> AnswerVariables:
     """Answer to a request, as variables by name. Raises InputError for invalid values in the state of the
     page."""
-    if request.stored is not None:
-        return film_of_cycle(request.stored)
+    if request.stored_cycle is not None:
+        return film_of_cycle(request.stored_cycle)
     if request.tip is not None:
         return TIP_SOLVERS[request.kind](request.state, request.tip)
     return STATE_SOLVERS[request.kind](request.state)
@@ -173,22 +173,22 @@ BranchPiece = tuple[Array, Array, int]
 unstable, -1 unknown."""
 
 
-def drawn_branches(rod: RodBranches, end: float) -> dict[str, Any]:
+def branch_answer_of_rod(rod: RodBranches, end: float) -> dict[str, Any]:
     """Variables of the answer "branch" for a rod, by name.
 
     pieces: parts of the branches of cycles, and of the straight rod from F = 0 to `end`, see `BranchPiece`.
     special: (F, y, kind, period) of each special point except ends of branches.
     """
     pieces: list[BranchPiece] = [
-        (curve.parameter[run], curve.y[run], stable)
+        (curve.parameter[run], curve.tip_y_max[run], stable)
         for curve in rod.curves
-        for run, stable in stability_runs(curve.stable)
+        for run, stable in runs_of_equal_stability(curve.stability)
     ]
-    straight = rod.straight_rod_intervals((0.0, end))
+    straight = rod.straight_rod_stability_intervals((0.0, end))
     pieces += [(np.array([low, high]), np.zeros(2), stable) for low, high, stable in straight]
     special_points = [
         (special_point.at, special_point.tip_y_max, special_point.kind, special_point.period)
         for curve in rod.curves
-        for special_point in curve.special
+        for special_point in curve.special_points
     ]
     return {"pieces": pieces, "special": [point for point in special_points if point[2] != "end"]}

@@ -17,7 +17,7 @@ from typing import Any
 
 from ...errors import UserError
 from ...solve_progress import SolvePosition, reporting_to
-from ...sweep.stop import RankListener, SingleRankCommunication, StopRequest
+from ...sweep.stop import SingleRankCommunication, SolverReportListener, StopRequest
 from .requests import Reply, SolveRequest, answer_to
 
 CANCELLATION_RETRY_SECONDS = 0.05
@@ -80,7 +80,7 @@ def reply_to(
         try:
             cancellation.is_solving = True
             outcome = "answer"
-            with reporting_to(RankListener(SingleRankCommunication(send_progress), StopRequest())):
+            with reporting_to(SolverReportListener(SingleRankCommunication(send_progress), StopRequest())):
                 content = answer_to(request)
         finally:
             cancellation.is_solving = False

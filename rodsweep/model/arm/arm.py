@@ -16,25 +16,26 @@ from ..material.rod_material import DEFAULT_MATERIAL, RodMaterial
 from ..parameters import PARAMETERS
 from ..units import GivenQuantity, load_over_flutter
 from .drag import DRAG_ESTIMATE_NAMES, Drag
-from .quantities import LOADS, UNITS, arm_quantity_in_si, quoted_quantity
+from .geometry import ArmGeometry, Station, geometry_of_segments
+from .quantities import LOAD_NAMES, UNITS_AND_EXAMPLES, arm_quantity_in_si, quoted_quantity
 from .refusals import refuse_crushed, refuse_out_of_range, refuse_wrong_choices, refuse_wrong_combinations
 from .section import Circle, Rectangle, Section, Tube
-from .segments import ArmSegment, segment_texts, segments_of
-from .shape import ArmGeometry, Station, shape_of_segments
+from .segments import ArmSegment, segment_texts, segments_from_texts
 
 
 @dataclass(frozen=True, kw_only=True)
 class SlenderArm:
     """An arm in a viscous fluid, clamped at the base, with a pressure or a follower force on its tip.
 
-    Cross-section: a radius, or width and height (the height lies in the plane of motion), or segments from
-    the base to the tip, each like "4 cm: radius 6 mm, young 80 kPa". `young` is the modulus of the arm and of
-    segments without a modulus. tip_radius: tip radius of a solid cone. inner_radius: radius of a tube's bore;
-    the bore is closed at the tip and filled with the surrounding fluid at ambient pressure. (law, section): a
-    key of `rodsweep.model.material.laws.LAWS`. Load: pressure, force, or no load; positive loads push towards
-    the base; "1.2 of flutter" is a multiple of the flutter threshold. density_difference: density of the
-    arm's material minus density of the fluid. drag: name in DRAG_ESTIMATE_NAMES of the drag estimate that the
-    rod uses. Raises InputError, naming the quantity.
+    length: clamp to tip; None for an arm of segments. viscosity, fluid_density: of the fluid. poisson:
+    Poisson's ratio of the material. Cross-section: a radius, or width and height (the height lies in the
+    plane of motion), or segments from the base to the tip, each like "4 cm: radius 6 mm, young 80 kPa".
+    `young` is the modulus of the arm and of segments without a modulus. tip_radius: tip radius of a solid
+    cone. inner_radius: radius of a tube's bore; the bore is closed at the tip and filled with the surrounding
+    fluid at ambient pressure. (law, section): a key of `rodsweep.model.material.laws.LAWS`. Load: pressure,
+    force, or no load; positive loads push towards the base; "1.2 of flutter" is a multiple of the flutter
+    threshold. density_difference: density of the arm's material minus density of the fluid. drag: name in
+    DRAG_ESTIMATE_NAMES of the drag estimate that the rod uses. Raises InputError, naming the quantity.
     """
 
     length: GivenQuantity | None = None
@@ -55,7 +56,7 @@ class SlenderArm:
     density_difference: GivenQuantity | None = None
     drag: str = DRAG_ESTIMATE_NAMES[0]
     si: SimpleNamespace = field(init=False, repr=False, compare=False)
-    """Quantities of UNITS in SI units; nan if not given. `length`, `young` (base): of segments, if any."""
+    """Quantities of UNITS_AND_EXAMPLES in SI units, or nan. `length`, `young` (base): of segments, if any."""
     si_segments: tuple[ArmSegment, ...] = field(init=False, repr=False, compare=False)
     """The segments of the arm in SI units; empty for an arm without segments."""
 
@@ -63,16 +64,16 @@ class SlenderArm:
         """Converts quantities to SI. Raises InputError for invalid quantities, NotSlender for a short arm."""
         # A NumPy number becomes a plain number, as messages and files show it.
         object.__setattr__(self, "poisson", getattr(self.poisson, "tolist", lambda: self.poisson)())
-        si_values = {name: arm_quantity_in_si(name, getattr(self, name)) for name in UNITS}
+        si_values = {name: arm_quantity_in_si(name, getattr(self, name)) for name in UNITS_AND_EXAMPLES}
         texts = None if self.segments is None else segment_texts(self.segments)
         object.__setattr__(self, "si", SimpleNamespace(**si_values))
         object.__setattr__(self, "segments", texts)
-        object.__setattr__(self, "si_segments", segments_of(texts or ()))
+        object.__setattr__(self, "si_segments", segments_from_texts(texts or ()))
         refuse_wrong_choices(self)
         refuse_wrong_combinations(self)
         # An arm of segments has length and modulus from them; the checks before ensure that a shape exists.
-        self.si.length = self.shape.length
-        self.si.young = self.shape.base.young
+        self.si.length = self.geometry.length
+        self.si.young = self.geometry.base.young
         refuse_out_of_range(self)
         refuse_crushed(self)
 
@@ -80,15 +81,16 @@ class SlenderArm:
         """Value of the rod parameter `name`; the neutral value if an arm does not determine the parameter."""
         return float(getattr(self, name, PARAMETERS[name].neutral_value))
 
-    def text_of(self, name: str) -> str:
+    def quoted_quantity(self, name: str) -> str:
         """Name and value of the quantity `name` for messages: see `quoted_quantity`."""
         return quoted_quantity(name, getattr(self, name))
 
     @cached_property
-    def shape(self) -> ArmGeometry:
+    def geometry(self) -> ArmGeometry:
         """Cross-sections and Young's moduli along the arm."""
         if self.si_segments:
-            return shape_of_segments([(L, section, E or self.si.young) for L, section, E in self.si_segments])
+            segments = [(L, section, E or self.si.young) for L, section, E in self.si_segments]
+            return geometry_of_segments(segments)
         if self.tip_radius is not None:
             radii = ((0.0, self.si.radius), (1.0, self.si.tip_radius))
             # A cone needs its two ends only, as the parameter taper implies the sections between.
@@ -104,7 +106,7 @@ class SlenderArm:
     @property
     def cross_section(self) -> Section:
         """The cross-section at the base."""
-        return self.shape.base.section
+        return self.geometry.base.section
 
     @property
     def is_equally_stiff_in_all_planes(self) -> bool:
@@ -114,11 +116,12 @@ class SlenderArm:
     @property
     def taper(self) -> float:
         """Tip radius over base radius of a cone; 1 for other arms."""
-        return self.shape.taper
+        return self.geometry.taper
 
     def material_with_drag(self, drag: Drag) -> RodMaterial:
-        """Constitutive law and profile of the arm as a rod, for the drag estimate `drag`, one of `drags`."""
-        return RodMaterial(self.law, self.section, self.shape.profile(self.poisson, self.drags.index(drag)))
+        """Law and profile of the arm as a rod, for the drag estimate `drag` in `base_drag_estimates`."""
+        profile = self.geometry.profile(self.poisson, self.base_drag_estimates.index(drag))
+        return RodMaterial(self.law, self.section, profile)
 
     @cached_property
     def material(self) -> RodMaterial:
@@ -136,14 +139,14 @@ class SlenderArm:
         return self.material.relative_crushing_force(self.taper) * self.k1
 
     @property
-    def load(self) -> str | None:
+    def load_name(self) -> str | None:
         """Name of the given load, "pressure" or "force"; None for an arm without load."""
-        return next((name for name in LOADS if getattr(self, name) is not None), None)
+        return next((name for name in LOAD_NAMES if getattr(self, name) is not None), None)
 
     @property
-    def share_of_flutter(self) -> float | None:
+    def load_over_flutter(self) -> float | None:
         """Load divided by the flutter load; None for an absolute load and for an arm without load."""
-        return None if self.load is None else load_over_flutter(getattr(self, self.load))
+        return None if self.load_name is None else load_over_flutter(getattr(self, self.load_name))
 
     def mass_per_length_at(self, station: Station) -> float:
         """Mass per length at the cross-section `station`, in kg/m: material plus fluid in the bore. Without a
@@ -158,22 +161,23 @@ class SlenderArm:
     def tip_force(self) -> float:
         """Follower force at the tip, in N: pressure times face area, p A, or the given force (Sec. IV).
         Raises InputError for an arm without load and for a load relative to flutter."""
-        if self.load is None:
+        if self.load_name is None:
             raise InputError("pressure is missing; give the pressure on the tip's cross section, or a force")
-        if self.share_of_flutter is not None:
-            raise InputError(f"{self.text_of(self.load)} is relative to flutter; give an absolute load")
-        loaded_area = 1.0 if self.load == "force" else self.shape.tip.section.face_area
-        return float(getattr(self.si, self.load)) * loaded_area
+        if self.load_over_flutter is not None:
+            load = self.quoted_quantity(self.load_name)
+            raise InputError(f"{load} is relative to flutter; give an absolute load")
+        loaded_area = 1.0 if self.load_name == "force" else self.geometry.tip.section.face_area
+        return float(getattr(self.si, self.load_name)) * loaded_area
 
     @property
     def pressure_scale(self) -> float:
         """Pressure on the face of the tip at which F = 1, in Pa."""
-        return self.force_scale / self.shape.tip.section.face_area
+        return self.force_scale / self.geometry.tip.section.face_area
 
     @property
     def load_scale(self) -> float:
         """The load at which F = 1: a force in N for an arm with a force, otherwise a pressure in Pa."""
-        return self.force_scale if self.load == "force" else self.pressure_scale
+        return self.force_scale if self.load_name == "force" else self.pressure_scale
 
     @property
     def bending_stiffness(self) -> float:
@@ -201,25 +205,24 @@ class SlenderArm:
         return self.tip_force / self.force_scale
 
     @cached_property
-    def drags(self) -> tuple[Drag, ...]:
+    def base_drag_estimates(self) -> tuple[Drag, ...]:
         """Estimates of the drag at the base, in the order of DRAG_ESTIMATE_NAMES."""
-        return self.shape.drags_at(self.shape.base, self.si.viscosity)
+        return self.geometry.drag_estimates_at(self.geometry.base, self.si.viscosity)
 
     def drags_along(self, drag: Drag) -> tuple[Drag, ...]:
-        """Drag at every station of `shape`. drag: the estimate at the base, one of `drags`."""
-        index = self.drags.index(drag)
-        return tuple(
-            self.shape.drags_at(station, self.si.viscosity)[index] for station in self.shape.stations
-        )
+        """Drag at every station of `geometry`. drag: the estimate at the base, in `base_drag_estimates`."""
+        index = self.base_drag_estimates.index(drag)
+        stations = self.geometry.stations
+        return tuple(self.geometry.drag_estimates_at(place, self.si.viscosity)[index] for place in stations)
 
     @property
     def chosen_drag(self) -> Drag:
         """Drag of the rod at the base: the drag estimate with the name in the field `drag`."""
-        return self.drags[DRAG_ESTIMATE_NAMES.index(self.drag)]
+        return self.base_drag_estimates[DRAG_ESTIMATE_NAMES.index(self.drag)]
 
     def gamma3_with(self, drag: Drag) -> float:
         """Dimensionless rotational drag gamma3/(gamma2 L^2) for the drag estimate `drag` (Sec. VI)."""
-        return drag.rotational / (drag.across * self.si.length**2)
+        return drag.rotational_factor / (drag.normal_factor * self.si.length**2)
 
     def tau2_with(self, drag: Drag) -> float:
         """Unit of time gamma2 L^4/k3 for the drag estimate `drag`, in s (Sec. VI)."""
@@ -233,7 +236,7 @@ class SlenderArm:
     @property
     def gamma1(self) -> float:
         """Dimensionless axial drag gamma1/gamma2 at the base (Sec. VI)."""
-        return self.chosen_drag.axial / self.chosen_drag.across
+        return self.chosen_drag.axial_factor / self.chosen_drag.normal_factor
 
     @property
     def tau2(self) -> float:

@@ -7,14 +7,14 @@ from typing import Any
 
 from ..material.profile import FACTOR_NAMES
 from ..material.rod_material import DEFAULT_MATERIAL
-from ..parameters import NONLINEAR_PARAMETERS
+from ..parameters import NONLINEAR_ROD_PARAMETER_NAMES
 from .arm import SlenderArm
 
 
 def rod_parameters_of(arm: SlenderArm) -> dict[str, float]:
     """Dimensionless parameters of the rod that represents `arm`, by name; without F for an arm without load.
     Raises InputError for a load relative to flutter, because the flutter threshold must be solved first."""
-    names = [name for name in NONLINEAR_PARAMETERS if name != "F" or arm.load is not None]
+    names = [name for name in NONLINEAR_ROD_PARAMETER_NAMES if name != "F" or arm.load_name is not None]
     names += ["taper"] if arm.taper != 1 else []
     return {name: arm.parameter(name) for name in names}
 

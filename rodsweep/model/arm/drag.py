@@ -27,30 +27,30 @@ ALL_DRAG_ESTIMATES_NAME = "range"
 class Drag:
     """Drag coefficients of an arm per length, stored as viscosity times geometric factors.
 
-    viscosity: in Pa s. axial, across: dimensionless factors of the drag along and across the axis of the arm.
-    rotational: factor of the rotational drag, in m^2. A rod depends only on ratios of drags, so the viscosity
-    cancels exactly.
+    viscosity: in Pa s. axial_factor, normal_factor: dimensionless factors of the drag along and across the
+    axis of the arm. rotational_factor: factor of the rotational drag, in m^2. A rod depends only on ratios of
+    drags, so the viscosity cancels exactly.
     """
 
     viscosity: float
-    axial: float
-    across: float
-    rotational: float
+    axial_factor: float
+    normal_factor: float
+    rotational_factor: float
 
     @property
     def gamma1(self) -> float:
         """Axial drag force per length and per axial velocity, in Pa s."""
-        return self.viscosity * self.axial
+        return self.viscosity * self.axial_factor
 
     @property
     def gamma2(self) -> float:
         """Normal drag force per length and per normal velocity, in Pa s."""
-        return self.viscosity * self.across
+        return self.viscosity * self.normal_factor
 
     @property
     def gamma3(self) -> float:
         """Drag torque per length and per angular velocity, in Pa s m^2."""
-        return self.viscosity * self.rotational
+        return self.viscosity * self.rotational_factor
 
 
 def cox_drag(slenderness: float) -> tuple[float, float]:
@@ -94,6 +94,6 @@ def drag_estimates(viscosity: float, length: float, radius: float, half_height: 
         for rotational in (min_rotational, max_rotational)
     ]
     return tuple(
-        Drag(viscosity=viscosity, axial=axial, across=across, rotational=rotational)
+        Drag(viscosity=viscosity, axial_factor=axial, normal_factor=across, rotational_factor=rotational)
         for axial, across, rotational in drag_factors
     )

@@ -1,7 +1,6 @@
 """Effects on an arm that the model neglects, each as a ratio to an effect that the model contains.
 
 For an arm that varies along its length, an effect is evaluated at the section where the effect is largest.
-
 The model does not apply if an effect exceeds its limit, and is doubtful above a tenth of the limit.
 Quantities are in SI units. Rates, forces and amplitudes are numbers or NumPy arrays that broadcast. Sentences
 about the effects are in `rodsweep.verdict`.
@@ -62,14 +61,15 @@ class Effect:
     """One effect that the model neglects. Arrays have the shape (...,) of rates, forces and amplitudes."""
 
     name: str
+    """Name of the neglected effect in reports."""
     value: Array
     """Ratio of the neglected effect to an effect in the model; nan if unknown, as inertia at rest."""
     limit: float
     """The model does not apply if `value` is larger than this."""
-    viscosity_factor: Array
+    viscosity_factor_at_limit: Array
     """Factor on the viscosity of the fluid with which `value` would equal `limit`. For an effect that does
     not depend on the viscosity: 0 if `value` is at most `limit`, else inf."""
-    of_cycles_only: bool = False
+    is_of_cycles_only: bool = False
     """Whether the effect changes only limit cycles, not the thresholds of the straight arm."""
 
     @property
@@ -91,13 +91,11 @@ def neglected_effects(
     drag: Drag | None = None,
     amplitude: ArrayLike = LARGE_AMPLITUDE,
 ) -> tuple[Effect, ...]:
-    """All neglected effects on a moving arm.
-
-    rate: angular frequency of the motion, in rad/s; nan for an arm at rest. F: `equivalent_base_force` of the
-    follower force, in k3/L^2; nan without load. drag: the drag estimate for which `rate` was computed; by
-    default the smallest estimate, for which inertia is largest. amplitude: amplitude of the tip divided by L.
-    Weight is included if the arm has a density difference, flattening of the wall if the arm has a bore.
-    """
+    """All neglected effects on a moving arm. rate: angular frequency of the motion, in rad/s; nan for an arm
+    at rest. F: `base_force_of_equal_compression` of the follower force, in k3/L^2; nan without load. drag:
+    the drag estimate for which `rate` was computed; by default the smallest estimate, for which inertia is
+    largest. amplitude: amplitude of the tip divided by L. Weight is included if the arm has a density
+    difference, flattening of the wall if the arm has a bore."""
     drag = smallest_drag(arm) if drag is None else drag
     omega, forces, tip_amplitude = np.broadcast_arrays(*(np.asarray(x, float) for x in (rate, F, amplitude)))
     # A rate may come from an eigenvalue of negative imaginary part.
@@ -110,7 +108,7 @@ def neglected_effects(
     ]
     if not isnan(arm.si.density_difference):
         effects.append(weight_effect(arm, forces))
-    tubes = [station.section for station in arm.shape.stations if isinstance(station.section, Tube)]
+    tubes = [station.section for station in arm.geometry.stations if isinstance(station.section, Tube)]
     if tubes:
         L = arm.si.length
         wall_effects = [
@@ -124,14 +122,14 @@ def neglected_effects(
 def worst_validity(effects: Iterable[Effect], *, of_cycles: bool) -> NDArray[np.int8]:
     """Worst `Validity` under all effects, integers of the shape (...,) of the effects. of_cycles: whether to
     include effects that change only limit cycles."""
-    validities = (effect.validity for effect in effects if of_cycles or not effect.of_cycles_only)
+    validities = (effect.validity for effect in effects if of_cycles or not effect.is_of_cycles_only)
     return np.maximum.reduce(list(validities))
 
 
 def smallest_drag(arm: SlenderArm) -> Drag:
     """The drag estimate with the smallest gamma2, for which the motion of the arm is fastest."""
     # Rates in Hz scale with 1/gamma2, so inertia is judged at its largest.
-    return min(arm.drags, key=lambda drag: drag.gamma2)
+    return min(arm.base_drag_estimates, key=lambda drag: drag.gamma2)
 
 
 def angular_frequency_at_smallest_drag(arm: SlenderArm, frequency: ArrayLike) -> Array:
@@ -141,15 +139,14 @@ def angular_frequency_at_smallest_drag(arm: SlenderArm, frequency: ArrayLike) ->
 
 def arm_inertia_effect(arm: SlenderArm, omega: Array, drag: Drag) -> Effect:
     """Phase lag m omega/gamma2 of the drag, caused by the arm's mass. omega: omega in rad/s, (...,)."""
-    stations_and_drags = zip(arm.shape.stations, arm.drags_along(drag), strict=True)
+    places = zip(arm.geometry.stations, arm.drags_along(drag), strict=True)
     # The value is taken at the section with the largest ratio of mass to drag.
-    value = (
-        max(arm.mass_per_length_at(station) / local_drag.gamma2 for station, local_drag in stations_and_drags)
-        * omega
-    )
+    value = max(arm.mass_per_length_at(station) / local_drag.gamma2 for station, local_drag in places) * omega
     # omega ~ 1/viscosity and gamma2 ~ viscosity, so the value is proportional to 1/viscosity^2.
     factor = np.sqrt(value / INERTIA_LIMIT)
-    return Effect(name="inertia of the arm", value=value, limit=INERTIA_LIMIT, viscosity_factor=factor)
+    return Effect(
+        name="inertia of the arm", value=value, limit=INERTIA_LIMIT, viscosity_factor_at_limit=factor
+    )
 
 
 def fluid_inertia_effect(arm: SlenderArm, omega: Array, drag: Drag) -> Effect:
@@ -167,7 +164,7 @@ def fluid_inertia_effect(arm: SlenderArm, omega: Array, drag: Drag) -> Effect:
         value=drag_phase_lag(relative_frequency, logarithm),
         limit=INERTIA_LIMIT,
         # The relative frequency is proportional to rate over viscosity, thus to 1/viscosity^2.
-        viscosity_factor=np.sqrt(relative_frequency / limit_frequency),
+        viscosity_factor_at_limit=np.sqrt(relative_frequency / limit_frequency),
     )
 
 
@@ -176,7 +173,7 @@ def compression_effect(arm: SlenderArm, F: Array) -> Effect:
     return _effect_independent_of_viscosity("compression", abs(F) / arm.k1, COMPRESSION_LIMIT)
 
 
-def equivalent_base_force(arm: SlenderArm, F: ArrayLike) -> Array:
+def base_force_of_equal_compression(arm: SlenderArm, F: ArrayLike) -> Array:
     """Force that compresses the base as much as F compresses the weakest section, in the shape of F, (...,).
     F: in k3/L^2. The result is nan for rubber, whose constitutive law includes large compression."""
     # At the base a force F compresses by F/k1, at the weakest section by F over the crushing force.
@@ -191,9 +188,8 @@ def weight_effect(arm: SlenderArm, F: Array) -> Effect:
     weight = weight_density * arm.cross_section.area * arm.si.length
     # For a uniform arm the closed value is exact, where the quadrature is not.
     ratio_of_uniform_arm = weight / (SELF_BUCKLING_WEIGHT * arm.force_scale)
-    value = (
-        arm.shape.weight_over_buckling_weight(weight_density) if arm.shape.varies else ratio_of_uniform_arm
-    )
+    varies = arm.geometry.varies_along_arm
+    value = arm.geometry.weight_over_buckling_weight(weight_density) if varies else ratio_of_uniform_arm
     return _effect_independent_of_viscosity("weight", np.full(F.shape, value), WEIGHT_LIMIT)
 
 
@@ -205,20 +201,17 @@ def wall_flattening_effect(
     amplitude: ArrayLike = LARGE_AMPLITUDE,
 ) -> Effect:
     """Fraction of the bending stiffness that a beating tube loses, in the common shape (...,) of the
-    arguments.
-
-    length, radius, bore: in m. poisson: Poisson's ratio nu. amplitude: amplitude of the tip divided by the
-    length. A tube bent to the radius of curvature R flattens by zeta = (1 - nu^2) (r^2/(R t))^2, where r is
-    the radius of the middle of the wall and t the thickness; the remaining fraction of its stiffness is 1 - 3
-    zeta/2 (Brazier 1927).
-    """
+    arguments. length, radius, bore: in m. poisson: Poisson's ratio nu. amplitude: amplitude of the tip
+    divided by the length. A tube bent to the radius of curvature R flattens by zeta = (1 - nu^2) (r^2/(R
+    t))^2, where r is the radius of the middle of the wall and t the thickness; the remaining fraction of its
+    stiffness is 1 - 3 zeta/2 (Brazier 1927)."""
     outer, inner, nu = (np.asarray(x, float) for x in (radius, bore, poisson))
     curvature = CURVATURE_OVER_AMPLITUDE * np.asarray(amplitude, float) / np.asarray(length, float)
     middle_radius = (outer + inner) / 2
     thickness = outer - inner
     value = 1.5 * (1 - nu**2) * (curvature * middle_radius**2 / thickness) ** 2
     return _effect_independent_of_viscosity(
-        "flattening of the wall", value, WALL_FLATTENING_LIMIT, of_cycles_only=True
+        "flattening of the wall", value, WALL_FLATTENING_LIMIT, is_of_cycles_only=True
     )
 
 
@@ -227,23 +220,27 @@ def reynolds_number_effect(arm: SlenderArm, omega: Array, amplitude: Array) -> E
     rad/s, (...,). amplitude: in L. The effect has the shape of `omega`."""
     # The tip is the fastest point of the arm.
     speed = omega * amplitude * arm.si.length
-    value = arm.si.fluid_density * speed * 2 * arm.shape.largest_drag_radius / arm.si.viscosity
+    value = arm.si.fluid_density * speed * 2 * arm.geometry.largest_drag_radius / arm.si.viscosity
     return Effect(
         name="Reynolds number",
         value=value,
         limit=REYNOLDS_LIMIT,
-        viscosity_factor=np.sqrt(value / REYNOLDS_LIMIT),
-        of_cycles_only=True,
+        viscosity_factor_at_limit=np.sqrt(value / REYNOLDS_LIMIT),
+        is_of_cycles_only=True,
     )
 
 
 def _effect_independent_of_viscosity(
-    name: str, value: Array, limit: float, of_cycles_only: bool = False
+    name: str, value: Array, limit: float, is_of_cycles_only: bool = False
 ) -> Effect:
     """The effect `name`, whose `value` does not depend on the viscosity: its viscosity factor is inf if
-    `value` exceeds `limit`, otherwise 0. of_cycles_only: whether the effect changes only limit cycles."""
+    `value` exceeds `limit`, otherwise 0. is_of_cycles_only: whether the effect changes only limit cycles."""
     # No viscosity reduces the effect; below the limit a fluid of any viscosity is allowed.
     viscosity_factor = np.where(value > limit, inf, 0.0)
     return Effect(
-        name=name, value=value, limit=limit, viscosity_factor=viscosity_factor, of_cycles_only=of_cycles_only
+        name=name,
+        value=value,
+        limit=limit,
+        viscosity_factor_at_limit=viscosity_factor,
+        is_of_cycles_only=is_of_cycles_only,
     )

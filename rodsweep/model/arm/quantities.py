@@ -10,7 +10,7 @@ from typing import NamedTuple
 from ...errors import InputError
 from ..units import GivenQuantity, load_over_flutter, quantity_in_si
 
-LOADS = ("pressure", "force")
+LOAD_NAMES = ("pressure", "force")
 """Names of the loads on the tip; an arm has at most one load."""
 
 
@@ -27,7 +27,7 @@ class Quantity(NamedTuple):
     """Whether zero and negative values of the quantity are allowed."""
 
 
-QUANTITIES = {
+GIVEN_QUANTITIES = {
     "length": Quantity("m", "length of the arm", "10 cm"),
     "radius": Quantity("m", "radius of the arm's circular section", "5 mm"),
     "inner_radius": Quantity("m", "radius of the bore of the arm, closed at its tip", "3 mm"),
@@ -50,13 +50,15 @@ QUANTITIES = {
         f"{load}_over_flutter": Quantity(
             "1", f"{load} divided by the {load} at first flutter, with the likeliest drag"
         )
-        for load in LOADS
+        for load in LOAD_NAMES
     },
 }
 """All quantities of an arm that a user may give, by name."""
-UNITS = {name: (quantity.unit, quantity.example) for name, quantity in QUANTITIES.items() if quantity.example}
+UNITS_AND_EXAMPLES = {
+    name: (quantity.unit, quantity.example) for name, quantity in GIVEN_QUANTITIES.items() if quantity.example
+}
 """(SI unit, example) of each quantity with a unit, by name."""
-LOAD_OF_RATIO = {f"{load}_over_flutter": load for load in LOADS}
+LOAD_NAME_BY_RELATIVE_LOAD = {f"{load}_over_flutter": load for load in LOAD_NAMES}
 """Name of the load, "pressure" or "force", by name of the relative load: the load divided by the load at
 first flutter with the likeliest drag."""
 SECTION_SIZE_NAMES = ("radius", "inner_radius", "tip_radius"), ("width", "height")
@@ -67,33 +69,34 @@ ARM_SCALES = {
     "pressure_scale": Quantity("Pa", "pressure on the tip's cross section that makes F = 1, k3/(L^2 A)"),
 }
 """Units of time, force and pressure that an arm defines, by name of the property of `SlenderArm`."""
-SCALE_NAMES = {load: f"{load}_scale" for load in LOADS}
+LOAD_SCALE_NAMES = {load: f"{load}_scale" for load in LOAD_NAMES}
 """Name of the property of `SlenderArm` that is the load at which F = 1, by name of the load."""
-ALL_QUANTITIES = QUANTITIES | ARM_SCALES
+ARM_FILE_VARIABLES = GIVEN_QUANTITIES | ARM_SCALES
 """All variables of an arm in a result file, except the parameters of the arm as a rod."""
 
 
 def arm_quantity_in_si(name: str, quantity: GivenQuantity | None) -> float:
-    """Value in SI of the quantity `name` in UNITS; nan for a missing quantity and for a load relative to
-    flutter. Raises InputError, naming the quantity, for an invalid value."""
-    if quantity is None or (name in LOADS and load_over_flutter(quantity) is not None):
+    """Value in SI of the quantity `name` in UNITS_AND_EXAMPLES; nan for a missing quantity and for a load
+    relative to flutter. Raises InputError, naming the quantity, for an invalid value."""
+    if quantity is None or (name in LOAD_NAMES and load_over_flutter(quantity) is not None):
         return float("nan")
-    value = quantity_in_si(name, quantity, *UNITS[name])
-    if not (QUANTITIES[name].may_be_nonpositive or value > 0):
+    value = quantity_in_si(name, quantity, *UNITS_AND_EXAMPLES[name])
+    if not (GIVEN_QUANTITIES[name].may_be_nonpositive or value > 0):
         advice = "; leave it out for a solid arm" if name == "inner_radius" and value == 0 else ""
         raise InputError(f"{quoted_quantity(name, quantity)} is not above 0{advice}")
     return value
 
 
 def quoted_quantity(name: str, quantity: GivenQuantity) -> str:
-    """Name and value of the quantity `name` in UNITS, for messages, like "length = '10 cm'": a text as the
-    user wrote it, a number with its SI unit."""
+    """Name and value of the quantity `name` in UNITS_AND_EXAMPLES, for messages, like "length = '10 cm'": a
+    text as the user wrote it, a number with its SI unit."""
     if isinstance(quantity, str):
         return f"{name} = '{quantity}'"
-    return f"{name} = {quantity_in_si(name, quantity, *UNITS[name]):.6g} {UNITS[name][0]}"
+    unit, example = UNITS_AND_EXAMPLES[name]
+    return f"{name} = {quantity_in_si(name, quantity, unit, example):.6g} {unit}"
 
 
-def radius_of_diameter(name: str, names: Collection[str]) -> str:
+def radius_name_of_diameter(name: str, names: Collection[str]) -> str:
     """The quantity in `names` that is half of the diameter `name`, such as inner_radius for inner_diameter;
     "" if `name` is no diameter, or its radius is not known."""
     plain_name = name.lower().replace("-", "_").removeprefix("outer_")

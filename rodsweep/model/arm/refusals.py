@@ -12,7 +12,7 @@ from ..material.profile import MIN_ROW_DISTANCE
 from ..parameters import MAX_TAPER, MIN_TAPER
 from ..units import unit_of, value_in_unit
 from .drag import ALL_DRAG_ESTIMATES_NAME, DRAG_ESTIMATE_NAMES, MIN_FORMULA_SLENDERNESS
-from .quantities import QUANTITIES, SECTION_SIZE_NAMES, UNITS
+from .quantities import GIVEN_QUANTITIES, SECTION_SIZE_NAMES, UNITS_AND_EXAMPLES
 from .section import BoreTooWide
 
 if TYPE_CHECKING:
@@ -78,15 +78,15 @@ def refuse_wrong_combinations(arm: "SlenderArm") -> None:
     else:
         for name in ("length", "young"):
             if getattr(arm, name) is None:
-                raise InputError(f"{name} is missing; write it as in '{QUANTITIES[name].example}'")
+                raise InputError(f"{name} is missing; write it as in '{GIVEN_QUANTITIES[name].example}'")
         _refuse_sections(arm)
-    for name, quantity in QUANTITIES.items():
+    for name, quantity in GIVEN_QUANTITIES.items():
         if quantity.is_required and getattr(arm, name) is None:
             raise InputError(f"{name} is missing; write it as in '{quantity.example}'")
     if arm.pressure is not None and arm.force is not None:
         raise InputError(
-            f"{arm.text_of('pressure')} and {arm.text_of('force')} are both given; give one of them: the "
-            "pressure on the tip's cross section, or the resulting force"
+            f"{arm.quoted_quantity('pressure')} and {arm.quoted_quantity('force')} are both given; give one "
+            "of them: the pressure on the tip's cross section, or the resulting force"
         )
 
 
@@ -99,7 +99,7 @@ def _refuse_sections(arm: "SlenderArm") -> None:
         ("tip_radius", "only a cone has a tip radius"),
     ):
         if getattr(arm, name) is not None and arm.radius is None:
-            raise InputError(f"{arm.text_of(name)} needs a radius; {reason}")
+            raise InputError(f"{arm.quoted_quantity(name)} needs a radius; {reason}")
     # Both given, neither given, or one side of a rectangle only.
     if (arm.radius is None) == (width_and_height == (None, None)) or (
         arm.radius is None and None in width_and_height
@@ -111,18 +111,20 @@ def _refuse_sections(arm: "SlenderArm") -> None:
         )
     # A missing size is nan here, for which the comparison is false.
     if arm.si.inner_radius >= arm.si.radius:
-        raise BoreTooWide(f"{arm.text_of('inner_radius')} is not below {arm.text_of('radius')}")
+        raise BoreTooWide(
+            f"{arm.quoted_quantity('inner_radius')} is not below {arm.quoted_quantity('radius')}"
+        )
     if arm.tip_radius is None:
         return
     if arm.inner_radius is not None:
         raise InputError(
-            f"{arm.text_of('tip_radius')} and {arm.text_of('inner_radius')} are both given, but a cone is "
-            "solid; give one of them, or segments"
+            f"{arm.quoted_quantity('tip_radius')} and {arm.quoted_quantity('inner_radius')} are both given, "
+            "but a cone is solid; give one of them, or segments"
         )
     if not MIN_TAPER <= arm.si.tip_radius / arm.si.radius <= MAX_TAPER:
         raise InputError(
-            f"{arm.text_of('tip_radius')} is {arm.si.tip_radius / arm.si.radius:.3g} of the radius; the "
-            f"ratio must be from {MIN_TAPER:g} to {MAX_TAPER:g}"
+            f"{arm.quoted_quantity('tip_radius')} is {arm.si.tip_radius / arm.si.radius:.3g} of the radius; "
+            f"the ratio must be from {MIN_TAPER:g} to {MAX_TAPER:g}"
         )
 
 
@@ -133,8 +135,8 @@ def _refuse_wrong_segments(arm: "SlenderArm") -> None:
     for name in (*SECTION_SIZE_NAMES[0], *SECTION_SIZE_NAMES[1]):
         if getattr(arm, name) is not None:
             raise InputError(
-                f"{arm.text_of(name)} and segments are both given; give one of them, because every segment "
-                "has its own radius"
+                f"{arm.quoted_quantity(name)} and segments are both given; give one of them, because every "
+                "segment has its own radius"
             )
     segments = arm.si_segments
     total = sum(segment.length for segment in segments)
@@ -154,7 +156,8 @@ def _refuse_wrong_segments(arm: "SlenderArm") -> None:
         unit = unit_of(arm.length, "m")
         summed = f"{value_in_unit(total, unit, 'm'):.6g} {unit}"
         raise InputError(
-            f"{arm.text_of('length')} is not the sum of the segment lengths, {summed}; leave out length"
+            f"{arm.quoted_quantity('length')} is not the sum of the segment lengths, {summed}; "
+            "leave out length"
         )
 
 
@@ -162,14 +165,14 @@ def refuse_out_of_range(arm: "SlenderArm") -> None:
     """Raises InputError for an arm without mass, and if its stiffnesses, its units or the fluid's inertia
     overflow or underflow. Raises NotSlender for an arm that is too short."""
     if arm.si.density_difference <= -arm.si.fluid_density:
-        density_text = arm.text_of("density_difference")
+        density_text = arm.quoted_quantity("density_difference")
         min_density = f"{-arm.si.fluid_density:.4g} kg/m^3"
         raise InputError(
             f"{density_text} gives the arm no positive mass; the difference must be above {min_density}"
         )
-    length = "segments: their length" if arm.length is None else arm.text_of("length")
+    length = "segments: their length" if arm.length is None else arm.quoted_quantity("length")
     try:
-        slenderness = arm.shape.length / arm.shape.largest_drag_radius
+        slenderness = arm.geometry.length / arm.geometry.largest_drag_radius
         is_representable = all(0 < number < inf for number in (arm.k1, arm.k2, arm.force_scale))
         # The drags of too short an arm mean nothing, and are not always numbers.
         if slenderness >= MIN_FORMULA_SLENDERNESS:
@@ -189,15 +192,15 @@ def refuse_out_of_range(arm: "SlenderArm") -> None:
         )
     if not _has_representable_motion(arm):
         raise InputError(
-            f"{length} and {arm.text_of('viscosity')} make the unit of time or the inertia of the fluid "
-            "overflow or underflow; check the units"
+            f"{length} and {arm.quoted_quantity('viscosity')} make the unit of time or the inertia of the "
+            "fluid overflow or underflow; check the units"
         )
 
 
 def _has_representable_motion(arm: "SlenderArm") -> bool:
     """Whether the unit of time, and the inertia of the fluid relative to its viscosity, are representable."""
     try:
-        tau2 = min(arm.tau2_with(drag) for drag in arm.drags)
+        tau2 = min(arm.tau2_with(drag) for drag in arm.base_drag_estimates)
         inertia = arm.si.fluid_density * arm.si.length**2 / (arm.si.viscosity * tau2)
         # The square leaves room for the frequency in units of 1/tau2.
         return 0 < tau2 < inf and inertia**2 < inf
@@ -209,23 +212,25 @@ def _radius_text(arm: "SlenderArm") -> str:
     """The largest radius of the arm for messages: as given by the user, or else as a number in m."""
     if arm.radius is None:
         adjective = "largest" if arm.segments else "equivalent"
-        return f"{'a' if arm.segments else 'an'} {adjective} radius of {arm.shape.largest_drag_radius:.3g} m"
+        return (
+            f"{'a' if arm.segments else 'an'} {adjective} radius of {arm.geometry.largest_drag_radius:.3g} m"
+        )
     is_wider_at_tip = arm.tip_radius is not None and arm.si.tip_radius > arm.si.radius
-    return arm.text_of("tip_radius" if is_wider_at_tip else "radius")
+    return arm.quoted_quantity("tip_radius" if is_wider_at_tip else "radius")
 
 
 def refuse_crushed(arm: "SlenderArm") -> None:
     """Raises InputError if the load crushes the arm at its weakest cross-section. An arm without load, or
     with a load given relative to flutter, is not checked."""
-    load = arm.load
+    load = arm.load_name
     # A load relative to flutter has no value before flutter is solved.
-    if load is None or arm.share_of_flutter is not None or CRUSHED_FORCE_RATIO * arm.crushing_force > arm.F:
+    if load is None or arm.load_over_flutter is not None or CRUSHED_FORCE_RATIO * arm.crushing_force > arm.F:
         return
     limit = arm.crushing_force * arm.load_scale
-    si_unit = UNITS[load][0]
+    si_unit = UNITS_AND_EXAMPLES[load][0]
     unit = unit_of(getattr(arm, load), si_unit)
-    phrase = "the weakest section of" if arm.shape.varies else ""
+    phrase = "the weakest section of" if arm.geometry.varies_along_arm else ""
     raise InputError(
-        f"{arm.text_of(load)} crushes {f'{phrase} the arm'.strip()}; the load on a linear material must "
-        f"be below {float(f'{value_in_unit(limit, unit, si_unit):.4g}'):g} {unit}"
+        f"{arm.quoted_quantity(load)} crushes {f'{phrase} the arm'.strip()}; the load on a linear material "
+        f"must be below {float(f'{value_in_unit(limit, unit, si_unit):.4g}'):g} {unit}"
     )

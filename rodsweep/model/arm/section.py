@@ -18,7 +18,7 @@ class Circle:
     tip force under a pressure p."""
 
     radius: float
-    formula: ClassVar[str] = "A = pi a^2, I = pi a^4/4"
+    area_and_moment_formula: ClassVar[str] = "A = pi a^2, I = pi a^4/4"
     shear_coefficient_formula: ClassVar[str] = "kappa = 6 (1 + nu)/(7 + 6 nu)"
     pressure_force_formula: ClassVar[str] = "p A"
 
@@ -60,12 +60,13 @@ class Circle:
 @dataclass(frozen=True, slots=True)
 class Tube:
     """A circular cross-section of radius a with a bore of radius b, in m. The bore is closed at the tip.
-    formula, shear_coefficient_formula, pressure_force_formula: texts for reports, on area and second moment,
-    on the shear coefficient, and on the tip force under a pressure p."""
+    area_and_moment_formula, shear_coefficient_formula, pressure_force_formula: texts for reports, on area and
+    second moment, on the shear coefficient, and on the tip force under a pressure p."""
 
     radius: float
     inner_radius: float
-    formula: ClassVar[str] = "A = pi (a^2 - b^2), I = pi (a^4 - b^4)/4"
+    """Radius b of the bore, in m."""
+    area_and_moment_formula: ClassVar[str] = "A = pi (a^2 - b^2), I = pi (a^4 - b^4)/4"
     shear_coefficient_formula: ClassVar[str] = (
         "kappa = 6 (1 + nu) (1 + m^2)^2/((7 + 6 nu) (1 + m^2)^2 + (20 + 12 nu) m^2), m = b/a"
     )
@@ -114,12 +115,12 @@ class Tube:
 @dataclass(frozen=True, slots=True)
 class Rectangle:
     """A solid rectangular cross-section, in m: height in the plane of motion, width across this plane.
-    formula, shear_coefficient_formula, pressure_force_formula: texts for reports, on area and second moment,
-    on the shear coefficient, and on the tip force under a pressure p."""
+    area_and_moment_formula, shear_coefficient_formula, pressure_force_formula: texts for reports, on area and
+    second moment, on the shear coefficient, and on the tip force under a pressure p."""
 
     width: float
     height: float
-    formula: ClassVar[str] = "A = w h, I = w h^3/12"
+    area_and_moment_formula: ClassVar[str] = "A = w h, I = w h^3/12"
     shear_coefficient_formula: ClassVar[str] = "kappa = 10 (1 + nu)/(12 + 11 nu)"
     pressure_force_formula: ClassVar[str] = "p A"
 

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from ...errors import InputError, short_repr
 from ..units import GivenQuantity
-from .quantities import UNITS, arm_quantity_in_si, quoted_quantity, radius_of_diameter
+from .quantities import UNITS_AND_EXAMPLES, arm_quantity_in_si, quoted_quantity, radius_name_of_diameter
 from .section import BoreTooWide, Circle, Tube
 
 SEGMENT_KEYS = ("length", "radius", "inner_radius", "young")
@@ -26,13 +26,15 @@ class ArmSegment(NamedTuple):
     """A uniform segment of an arm, in SI units. young: None if the segment has Young's modulus of the arm."""
 
     length: float
+    """Length of the segment, in m."""
     section: Circle | Tube
+    """Cross-section of the segment."""
     young: float | None
 
 
 def segment_texts(segments: Any) -> tuple[str, ...]:
-    """Texts of all segments of an arm, the input of `segments_of`. segments: the user's value of `segments`.
-    Raises InputError, beginning with "segments", for an invalid segment."""
+    """Texts of all segments of an arm, the input of `segments_from_texts`. segments: the user's value of
+    `segments`. Raises InputError, beginning with "segments", for an invalid segment."""
     if isinstance(segments, str | Mapping):
         segments = [segments]
     if hasattr(segments, "tolist"):  # an array of texts
@@ -51,7 +53,7 @@ def segment_texts(segments: Any) -> tuple[str, ...]:
     return tuple(map(_segment_text, written_segments))
 
 
-def segments_of(texts: Sequence[str]) -> tuple[ArmSegment, ...]:
+def segments_from_texts(texts: Sequence[str]) -> tuple[ArmSegment, ...]:
     """Segments in SI units. texts: result of `segment_texts`."""
     return tuple(
         _segment_in_si(number, written_segment(number, text)) for number, text in enumerate(texts, 1)
@@ -65,7 +67,7 @@ def written_segment(segment_number: int, segment: Any) -> WrittenSegment:
     quantities = dict(_quantities_by_name(start, segment))
     for name in quantities:
         if name not in SEGMENT_KEYS:
-            radius = radius_of_diameter(name, SEGMENT_KEYS)
+            radius = radius_name_of_diameter(name, SEGMENT_KEYS)
             advice = f"give {radius}, half of it" if radius else f"a segment has {', '.join(SEGMENT_KEYS)}"
             raise InputError(f"{start}: unknown key {name}; {advice}")
     for name in ("length", "radius"):
@@ -121,7 +123,7 @@ def _segment_text(quantities: WrittenSegment) -> str:
     texts = {
         name: value.strip()
         if isinstance(value, str)
-        else f"{arm_quantity_in_si(name, value)!r} {UNITS[name][0]}"
+        else f"{arm_quantity_in_si(name, value)!r} {UNITS_AND_EXAMPLES[name][0]}"
         for name, value in quantities.items()
     }
     length = texts.pop("length")

@@ -32,7 +32,7 @@ from numba.core.sigutils import normalize_signature
 
 from ...solve_progress import report
 from .digest import FunctionText, kernel_digest, kernel_of, type_text
-from .slice_assignment import use_fixed_shape_message
+from .slice_assignment import install_shape_mismatch_message
 
 COMPILER_VERSIONS = (sys.implementation.cache_tag, numba.__version__, llvmlite.__version__, np.__version__)
 """Versions of Python, numba, llvmlite and NumPy. They are part of the name of a cache file, because compiled
@@ -83,11 +83,11 @@ class KernelCache(_Cache):
         name = self._cache_file_name(sig, target_context.codegen(), _texts_at_first_use)
         # All directories are read, as the file may have been written by a user with other rights.
         for directory in self._directories:
-            content = _read(directory / name)
+            content = _read_cache_file(directory / name)
             if content is not None:
                 return CompileResult._rebuild(target_context, *pickle.loads(content))
         # Only now, because this imports the compiler, which a run with a full cache never needs.
-        use_fixed_shape_message()  # numba compiles the function next
+        install_shape_mismatch_message()  # numba compiles the function next
         return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
@@ -105,7 +105,7 @@ class KernelCache(_Cache):
         failures = []
         for directory in self._directories:
             try:
-                _write(directory / name, content)
+                _write_cache_file(directory / name, content)
                 return
             except OSError as error:
                 failures.append(f"{directory} ({error.strerror})")
@@ -143,7 +143,7 @@ def _warn_once(sentence: str) -> None:
     warnings.warn(sentence, stacklevel=1)
 
 
-def _read(path: Path) -> bytes | None:
+def _read_cache_file(path: Path) -> bytes | None:
     """Content of the cache file `path` without its checksum; None if the file is missing or damaged."""
     try:
         checked_bytes = path.read_bytes()
@@ -155,7 +155,7 @@ def _read(path: Path) -> bytes | None:
     return content if sha256(content).digest() == checksum else None
 
 
-def _write(path: Path, content: bytes) -> None:
+def _write_cache_file(path: Path, content: bytes) -> None:
     """Writes `content` to the file `path` atomically: other processes see the complete file or no file."""
     path.parent.mkdir(parents=True, exist_ok=True)
     # Each process writes its own file, so that ranks which compile the same kernel do not mix their bytes.

@@ -22,7 +22,7 @@ def compiled(function: Callable[P, R]) -> Callable[P, R]:
     return _compiled(function, fastmath=False)
 
 
-def compiled_for_vectors(function: Callable[P, R]) -> Callable[P, R]:
+def compiled_with_reordered_sums(function: Callable[P, R]) -> Callable[P, R]:
     """The function `function`, compiled as by `compiled` but with sums in any order, which is five times as
     fast.
 

@@ -96,12 +96,12 @@ def _text_of_function(function: FunctionType, options: str) -> FunctionText:
     for code in _code_objects(function.__code__):
         instructions = list(dis.get_instructions(code))
         lines += _code_lines(code, instructions)
-        read_values = _values_read(function, instructions)
+        read_values = _global_values_read(function, instructions)
         lines += [f"{name} = {values.text(value)}" for name, value in read_values.items()]
     return FunctionText("\n".join(lines), values.called_kernels)
 
 
-def _values_read(function: FunctionType, instructions: Iterable[dis.Instruction]) -> dict[str, Any]:
+def _global_values_read(function: FunctionType, instructions: Iterable[dis.Instruction]) -> dict[str, Any]:
     """Global values of `function` that `instructions` read, by name; of a `KernelConstants` object only the
     fields that are read. Raises NameError for a name that is neither a global name nor a builtin."""
     values = {}

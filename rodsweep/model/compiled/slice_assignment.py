@@ -21,7 +21,7 @@ def refuse_shape_mismatch(source: tuple[int, ...], target: tuple[int, ...]) -> N
 
 
 @cache
-def use_fixed_shape_message() -> None:
+def install_shape_mismatch_message() -> None:
     """Makes numba use the fixed message in all later compilations; this function imports the compiler.
     Releases of numba with a fixed message are not changed."""
     from numba.np import arrayobj

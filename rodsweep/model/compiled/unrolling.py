@@ -19,7 +19,7 @@ from types import CodeType
 from typing import Any, Concatenate, Generic, NamedTuple, ParamSpec, TypeVar
 
 from ..algebra import LieAlgebra
-from .compilation import compiled_for_vectors
+from .compilation import compiled_with_reordered_sums
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -43,7 +43,7 @@ class UnrolledOverAlgebra(Generic[P, R]):
         """The function for the algebra `g`, unrolled and compiled, without the argument for the algebra."""
         if g not in self._compiled:
             # Compiled once per algebra: each compilation takes seconds.
-            self._compiled[g] = compiled_for_vectors(self.unrolled_for(g))
+            self._compiled[g] = compiled_with_reordered_sums(self.unrolled_for(g))
         return self._compiled[g]
 
     def unrolled_for(self, g: LieAlgebra) -> Callable[P, R]:
@@ -110,7 +110,7 @@ class _UnrollingTransformer(ast.NodeVisitor):
 
     def generic_visit(self, node: ast.AST) -> Any:
         fields = {
-            name: self._visit_all(value) if isinstance(value, list) else self._visit_if_node(value)
+            name: self._visit_all(value) if isinstance(value, list) else self._visit_node_or_keep_value(value)
             for name, value in ast.iter_fields(node)
         }
         return ast.copy_location(type(node)(**fields), node)
@@ -174,10 +174,10 @@ class _UnrollingTransformer(ast.NodeVisitor):
         )
 
     def _visit_all(self, parts: Iterable[Any]) -> list[Any]:
-        copies = [self._visit_if_node(part) for part in parts]
+        copies = [self._visit_node_or_keep_value(part) for part in parts]
         return [part for copy in copies for part in (copy if isinstance(copy, list) else [copy])]
 
-    def _visit_if_node(self, part: Any) -> Any:
+    def _visit_node_or_keep_value(self, part: Any) -> Any:
         return self.visit(part) if isinstance(part, ast.AST) else part
 
     def _has_known_value(self, node: ast.AST) -> bool:

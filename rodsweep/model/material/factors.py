@@ -80,6 +80,6 @@ def smallest_factor_along(profile: Profile | None, taper: float, name: str) -> f
             relative_radius(taper, u) ** exponent * row[column]
             for u, row in zip(profile.u, profile.rows, strict=True)
         ]
-        points = profile.minima_between_rows(name, taper, min(row_factors))
+        points = profile.minimum_points_between_rows(name, taper, min(row_factors))
         factors_between_rows = relative_radius(taper, points) ** exponent * profile.factors_at(points)[column]
     return float(min(*row_factors, *factors_between_rows))

@@ -10,9 +10,9 @@ where q are the unknowns of a linear rod that has the mean compliances and the m
 a = b = q. The weight of a side is proportional to the compliance times the quadrature weight of the side; the
 weights have a limit if both compliances tend to 0.
 
-The argument `sides` of all functions describes both sides of a jump, (2, 7), with the columns `SIDE_COLUMNS`.
-The strains on both sides follow from a and b and the compliances of both sides. The shear stress q2 is equal
-on both sides.
+The argument `sides` of all functions describes both sides of a jump, (2, 7), with the columns
+`JUMP_SIDE_COLUMNS`. The strains on both sides follow from a and b and the compliances of both sides. The
+shear stress q2 is equal on both sides.
 """
 
 from typing import NamedTuple
@@ -24,20 +24,21 @@ from .stress_strain import (
     LocalSection,
     Stress,
     TangentMatrix,
-    stress_beyond_rest,
+    stress_minus_rest_stress,
     stress_parameter_derivative,
     stress_tangent,
 )
 
-SIDE_COLUMNS = ("nu", "c1", "c3", "share of c1", "share of c3", "share of the quadrature", "c2")
+JUMP_SIDE_COLUMNS = ("nu", "c1", "c3", "share of c1", "share of c3", "share of the quadrature", "c2")
 """Columns of the array that describes both sides of a jump: the fields of `LocalSection`, the side's weights
 w in the mean of q1 and of q3, the side's fraction of the quadrature weight of the node, and c2."""
-SHEAR_COLUMN = SIDE_COLUMNS.index("c2")
-"""Index of the shear compliance c2 in `SIDE_COLUMNS`."""
+SHEAR_COMPLIANCE_COLUMN = JUMP_SIDE_COLUMNS.index("c2")
+"""Index of the shear compliance c2 in `JUMP_SIDE_COLUMNS`."""
 MAX_JUMP_ITERATIONS = 40
 """Maximum number of Newton iterations; without convergence the last iterate is used."""
-CONVERGED_STEP = 1e-9
-"""Newton's method stops when |step| <= CONVERGED_STEP * |unknown|, as the next step would be rounding."""
+CONVERGED_RELATIVE_STEP = 1e-9
+"""Newton's method stops when |step| <= CONVERGED_RELATIVE_STEP * |unknown|, as the next step would be
+rounding."""
 MIN_STEP_STRETCH_RATIO = 0.1
 """A Newton step is shortened so that the stretch h1 after the step is at least this times h1 before the step,
 because the law is defined for h1 > 0 only."""
@@ -77,9 +78,9 @@ def _largest_step_fraction(material: LocalSection, q1: float, step: float) -> fl
 @compiled
 def _is_negligible(step: LawUnknowns, unknowns: LawUnknowns) -> bool:
     """Whether a Newton step is small enough to stop; unknowns: the unknowns after the step."""
-    return abs(step.q1) <= CONVERGED_STEP * abs(unknowns.q1) and abs(step.q3) <= CONVERGED_STEP * abs(
-        unknowns.q3
-    )
+    return abs(step.q1) <= CONVERGED_RELATIVE_STEP * abs(unknowns.q1) and abs(
+        step.q3
+    ) <= CONVERGED_RELATIVE_STEP * abs(unknowns.q3)
 
 
 @compiled
@@ -97,8 +98,8 @@ def unknowns_before_jump(law: int, sides: Array, q: LawUnknowns) -> LawUnknowns:
     a = q
     for _ in range(MAX_JUMP_ITERATIONS):
         b = unknowns_behind_jump(sides, q, a)
-        s = stress_beyond_rest(law, base_side, a.q1, a.q3)
-        t = stress_beyond_rest(law, tip_side, b.q1, b.q3)
+        s = stress_minus_rest_stress(law, base_side, a.q1, a.q3)
+        t = stress_minus_rest_stress(law, tip_side, b.q1, b.q3)
         S = stress_tangent(law, base_side, a.q1, a.q3)
         T = stress_tangent(law, tip_side, b.q1, b.q3)
         # J is the derivative of (stress on the base side - stress on the tip side) with respect to a.
@@ -131,7 +132,7 @@ def stress_at_jump(law: int, sides: Array, q1: float, q3: float) -> Stress:
     the constitutive law. sides: both sides, (2, 7)."""
     # The stress is equal on both sides, so one side suffices.
     a = unknowns_before_jump(law, sides, LawUnknowns(q1, q3))
-    return stress_beyond_rest(law, _section_of_side(sides[0]), a.q1, a.q3)
+    return stress_minus_rest_stress(law, _section_of_side(sides[0]), a.q1, a.q3)
 
 
 @compiled

@@ -24,7 +24,7 @@ of 1 - nu is 6e-15 of nu. At F/k1 = 1e9 it is 6e-12: errors of eigenvalues were 
 LARGEST_SWELLING_PULL = 1e50
 """Largest pull -F/k1 of swelling rubber. The sixth power of nu = 3 |F|/k1, which the law contains, overflows
 from 8e50 on."""
-CUBIC_LOAD = 1e6
+MIN_ASYMPTOTIC_PULL = 1e6
 """Pull -F/k1 beyond which nu = 3 |F|/k1 to all digits; the cube of |F|/k1 may overflow."""
 SHORTENING_NEWTON_STEPS = 2
 """Newton steps for the shortening e = 1 - nu, which double the correct digits. Cardano's formula gives nu, so
@@ -36,17 +36,19 @@ class Law:
     """A constitutive law, by its stretch energy W and bending factor B as functions of the stretch h1.
 
     Kernels use the compiled twin of all laws in `rodsweep.model.material.stress_strain`; a change of a law is
-    a change in both modules. All functions take and return floats or arrays. energy_over_square: W(h1)/(h1 -
-    1)^2. stress: W'(h1). stiffness: W''(h1). stiffness_slope, stiffness_second_derivative: W''' and W''''.
-    bending_factor: B(h1). bending_factor_slope, bending_factor_second_derivative: B' and B''. shortening: 1 -
-    nu at the load x = F/k1, from W'(nu) = -x, without cancellation for small loads. crushing_load: the load x
-    that crushes the rod; inf if no force crushes the rod. largest_load: largest load x at which nu = 1 -
-    shortening has nearly all digits; inf if the rod is crushed before. largest_pull: largest pull -x at which
-    no function overflows; inf if any pull is allowed."""
+    a change in both modules. All functions take and return floats or arrays. energy_over_squared_strain:
+    W(h1)/(h1 - 1)^2. stress: W'(h1). stiffness: W''(h1). stiffness_slope, stiffness_second_derivative: W'''
+    and W''''. bending_factor: B(h1). bending_factor_slope, bending_factor_second_derivative: B' and B''.
+    shortening: 1 - nu at the load x = F/k1, from W'(nu) = -x, without cancellation for small loads.
+    crushing_load: the load x that crushes the rod; inf if no force crushes the rod. largest_accurate_load:
+    largest load x at which nu = 1 - shortening has nearly all digits; inf if the rod is crushed before.
+    largest_pull: largest pull -x at which no function overflows; inf if any pull is allowed."""
 
     law_name: str
+    """Name of the stress-strain law, the first part of a key of `LAWS`."""
     section_name: str
-    energy_over_square: Callable[[FloatOrArray], FloatOrArray]
+    """Behaviour of the section under stretch, "fixed" or "swelling": the second part of a key of `LAWS`."""
+    energy_over_squared_strain: Callable[[FloatOrArray], FloatOrArray]
     stress: Callable[[FloatOrArray], FloatOrArray]
     stiffness: Callable[[FloatOrArray], FloatOrArray]
     stiffness_slope: Callable[[FloatOrArray], FloatOrArray]
@@ -56,7 +58,7 @@ class Law:
     bending_factor_second_derivative: Callable[[FloatOrArray], FloatOrArray]
     shortening: Callable[[FloatOrArray], FloatOrArray]
     crushing_load: float = np.inf
-    largest_load: float = np.inf
+    largest_accurate_load: float = np.inf
     largest_pull: float = np.inf
 
 
@@ -64,7 +66,7 @@ def _neo_hookean_shortening(x: FloatOrArray) -> FloatOrArray:
     """Shortening e = 1 - nu of neo-Hookean rubber under the load x = F/k1, (...,); nu^3 + 3 x nu^2 = 1.
     Cardano's formula gives a start for Newton's method for e."""
     pull = np.asarray(x, dtype=float)
-    x = np.maximum(pull, -CUBIC_LOAD)
+    x = np.maximum(pull, -MIN_ASYMPTOTIC_PULL)
     discriminant = 0.25 - x**3
     root = np.cbrt(0.5 + np.sqrt(np.maximum(discriminant, 0.0)))
     nu = root**2 - x + (x / root) ** 2
@@ -77,7 +79,7 @@ def _neo_hookean_shortening(x: FloatOrArray) -> FloatOrArray:
         nu = 1 - e
         residual = 3 * x * nu**2 - e * (3 - 3 * e + e**2)
         e = e + residual / (3 * nu * (nu + 2 * x))
-    e = np.where(pull < -CUBIC_LOAD, 1 + 3 * pull, e)
+    e = np.where(pull < -MIN_ASYMPTOTIC_PULL, 1 + 3 * pull, e)
     return e if e.ndim else float(e)
 
 
@@ -92,7 +94,7 @@ def _zeros(h1: FloatOrArray) -> FloatOrArray:
 LINEAR_CONSTITUTIVE_LAW = Law(
     law_name="linear",
     section_name="fixed",
-    energy_over_square=lambda h: 0.5 * _ones(h),
+    energy_over_squared_strain=lambda h: 0.5 * _ones(h),
     stress=lambda h: h - 1,
     stiffness=_ones,
     stiffness_slope=_zeros,
@@ -106,7 +108,7 @@ LINEAR_CONSTITUTIVE_LAW = Law(
 NEO_HOOKEAN_CONSTITUTIVE_LAW = Law(
     law_name="neo_hookean",
     section_name="fixed",
-    energy_over_square=lambda h: (h + 2) / (6 * h),
+    energy_over_squared_strain=lambda h: (h + 2) / (6 * h),
     stress=lambda h: (h - 1 / h**2) / 3,
     stiffness=lambda h: (1 + 2 / h**3) / 3,
     stiffness_slope=lambda h: -2 / h**4,
@@ -115,7 +117,7 @@ NEO_HOOKEAN_CONSTITUTIVE_LAW = Law(
     bending_factor_slope=_zeros,
     bending_factor_second_derivative=_zeros,
     shortening=_neo_hookean_shortening,
-    largest_load=LARGEST_RUBBER_LOAD,
+    largest_accurate_load=LARGEST_RUBBER_LOAD,
 )
 SWELLING_CONSTITUTIVE_LAW = replace(
     NEO_HOOKEAN_CONSTITUTIVE_LAW,

@@ -19,7 +19,7 @@ FACTOR_NAMES = ("k1", "k2", "k3", "gamma1", "gamma2", "gamma3")
 MIN_ROW_DISTANCE = 1e-6
 """Smallest distance in u between two rows that are no jump. Of sixty random arms with two rows this close all
 spectra were solved; at 1e-7 no elements resolved eight of them."""
-ROW_ROUNDING = 1e-9
+ROW_DISTANCE_TOLERANCE = 1e-9
 """Relative rounding error of a distance `MIN_ROW_DISTANCE` between two values of u, which is allowed for."""
 RADIUS_POWERS = {"k1": 2, "k2": 2, "k3": 4, "gamma3": 2}
 """Exponents of the radius in the stiffnesses and drags of a cone; for missing names the exponent is 0."""
@@ -55,7 +55,7 @@ class Profile:
                     f"u = {_all_digits_text(b)} follows u = {_all_digits_text(a)}; u must not decrease"
                 )
             # Distance 0 is a jump, which the elements follow exactly; only nearly equal rows are a problem.
-            if 0 < b - a < MIN_ROW_DISTANCE * (1 - ROW_ROUNDING):
+            if 0 < b - a < MIN_ROW_DISTANCE * (1 - ROW_DISTANCE_TOLERANCE):
                 raise ValueError(
                     f"two rows near u = {a:g} differ by {b - a:.2g} in u; allowed: 0 (a jump) or at least "
                     f"{MIN_ROW_DISTANCE:g}"
@@ -125,7 +125,7 @@ class Profile:
             rows.append(row[:column] + (factor,) + row[column + 1 :])
         return Profile(self.u, tuple(rows))
 
-    def minima_between_rows(self, name: str, taper: float, limit: float) -> Array:
+    def minimum_points_between_rows(self, name: str, taper: float, limit: float) -> Array:
         """Points u between rows, (points,), among them all minima of the stiffness or drag `name` of an arm
         that are below `limit`. taper: tip radius over base radius of the arm."""
         column, exponent = FACTOR_NAMES.index(name), RADIUS_POWERS.get(name, 0)

@@ -103,16 +103,17 @@ class RodMaterial:
         return self.constitutive_law.crushing_load * smallest_factor_along(self.profile, taper, "k1")
 
     def refuse_extreme_load(self, forces: Array | float, k1: float, taper: float) -> None:
-        """Raises ValueError if a force compresses the weakest section beyond the law's `largest_load`, or
-        stretches it beyond the law's `largest_pull`. forces: a number, or numbers, (n,). k1: stretch
-        stiffness at the base. taper: tip radius over base radius."""
+        """Raises ValueError if a force compresses the weakest section beyond the law's
+        `largest_accurate_load`, or stretches it beyond the law's `largest_pull`. forces: a number, or
+        numbers, (n,). k1: stretch stiffness at the base. taper: tip radius over base radius."""
         law = self.constitutive_law
         weakest_k1 = smallest_factor_along(self.profile, taper, "k1") * k1
-        low, high = -law.largest_pull * weakest_k1, law.largest_load * weakest_k1
+        low, high = -law.largest_pull * weakest_k1, law.largest_accurate_load * weakest_k1
         if (F := np.max(forces)) > high:
             raise ValueError(
-                f"F = {F:.15g} is above {high:.15g}, {law.largest_load:g} times the stretch stiffness of the "
-                "weakest section; rubber this compressed cannot be computed, so give a smaller force"
+                f"F = {F:.15g} is above {high:.15g}, {law.largest_accurate_load:g} times the stretch "
+                "stiffness of the weakest section; rubber this compressed cannot be computed, so give a "
+                "smaller force"
             )
         if (F := np.min(forces)) < low:
             raise ValueError(
@@ -120,7 +121,7 @@ class RodMaterial:
                 "overflows, so give a weaker pull"
             )
 
-    def crushing_ratio(self, F: float, k1: float, taper: float) -> float:
+    def force_over_crushing_force(self, F: float, k1: float, taper: float) -> float:
         """F divided by the force that crushes the weakest section; 0 if no force crushes the arm. k1: stretch
         stiffness at the base. taper: tip radius over base radius."""
         return F / (k1 * self.relative_crushing_force(taper))
@@ -157,7 +158,7 @@ class RodMaterial:
         # A copy, because the factors are cached.
         return LocalCoefficients(nu, c2, c3, factors["gamma2"].copy(), gamma3, nu + F * c2)
 
-    def sections(self, F: float, at_base: Mapping[str, float], u: Array) -> CrossSections:
+    def cross_sections_at(self, F: float, at_base: Mapping[str, float], u: Array) -> CrossSections:
         """Properties of the cross-sections at points u, (points,), under the tip force F. No point may be a
         break of the profile. The compliances belong to the undeformed arm. at_base: stiffnesses and drags at
         u = 0, and taper, by name."""
@@ -175,12 +176,12 @@ class RodMaterial:
         # A ratio of compliances at an infinite stiffness would be 0/0, but the factors alone give it.
         return np.array([1 / factors[name] for name in ("k1", "k2", "k3")])
 
-    def section_derivatives(
+    def cross_section_derivatives(
         self, sections: CrossSections, F: float, taper: float, slopes: Mapping[str, float], u: Array
     ) -> CrossSections:
-        """Derivatives of the cross-sections `sections` at points u, (points,), with respect to a parameter.
-        slopes: derivatives of F, of the taper, and of compliances and drags at the base with respect to the
-        parameter, by name; the derivative of a missing name is 0."""
+        """Derivatives of the cross-sections `cross_sections_at` at points u, (points,), with respect to a
+        parameter. slopes: derivatives of F, of the taper, and of compliances and drags at the base with
+        respect to the parameter, by name; the derivative of a missing name is 0."""
         factors = factors_along(self.profile, taper, u)
         compliance = np.zeros((3, *u.shape))
         drag = np.zeros((3, *u.shape))

@@ -14,7 +14,7 @@ import math
 from typing import NamedTuple
 
 from ..compiled.compilation import compiled
-from .laws import CUBIC_LOAD, LAWS, SHORTENING_NEWTON_STEPS
+from .laws import LAWS, MIN_ASYMPTOTIC_PULL, SHORTENING_NEWTON_STEPS
 
 LINEAR_LAW_NUMBER, FIXED_SECTION_LAW_NUMBER, SWELLING_SECTION_LAW_NUMBER = range(len(LAWS))
 """Numbers of the constitutive laws in compiled code, in the order of `LAWS`."""
@@ -45,7 +45,7 @@ class TangentMatrix(NamedTuple):
 
 
 @compiled
-def bending_factor(law: int, h: float) -> tuple[float, float, float]:
+def bending_factor_and_derivatives(law: int, h: float) -> tuple[float, float, float]:
     """Returns (B, B', B''): bending factor of the law number `law` at the stretch h, and derivatives."""
     if law == SWELLING_SECTION_LAW_NUMBER:
         # The law is that of an incompressible rubber whose section shrinks as the rod is stretched.
@@ -60,7 +60,7 @@ def shortening(law: int, x: float) -> float:
     """1 - nu at the load x = F/k1 of the law number `law`, as `Law.shortening`."""
     if law == LINEAR_LAW_NUMBER:
         return x
-    if x < -CUBIC_LOAD:
+    if x < -MIN_ASYMPTOTIC_PULL:
         return 1 + 3 * x
     discriminant = 0.25 - x * x * x
     if discriminant < 0:
@@ -85,14 +85,14 @@ def _neo_hookean_secant(nu: float, h: float) -> float:
 
 
 @compiled
-def stress_beyond_rest(law: int, material: LocalSection, q1: float, q3: float) -> Stress:
+def stress_minus_rest_stress(law: int, material: LocalSection, q1: float, q3: float) -> Stress:
     """Stresses N and M at one point, minus their values at rest, for the unknowns q1 and q3. law: number of
     the law. material: stretch at rest and compliances at the point."""
     if law == LINEAR_LAW_NUMBER:
         return Stress(q1, q3)
     h = material.nu + material.c1 * q1
     # The energy of bending depends on the stretch, so a bent rod has an axial force from it.
-    B, B1, _ = bending_factor(law, h)
+    B, B1, _ = bending_factor_and_derivatives(law, h)
     return Stress(q1 * _neo_hookean_secant(material.nu, h) + B1 * material.c3 * q3 * q3 / 2, B * q3)
 
 
@@ -103,7 +103,7 @@ def stress_tangent(law: int, material: LocalSection, q1: float, q3: float) -> Ta
     if law == LINEAR_LAW_NUMBER:
         return TangentMatrix(1.0, 0.0, 0.0, 1.0)
     h = material.nu + material.c1 * q1
-    B, B1, B2 = bending_factor(law, h)
+    B, B1, B2 = bending_factor_and_derivatives(law, h)
     stiffness = (1 + 2 / h**3) / 3  # W''(h)
     coupling = B1 * q3
     return TangentMatrix(
@@ -129,7 +129,7 @@ def stress_parameter_derivative(
     # Derivatives of the secant [W'(h) - W'(nu)]/(h - nu) with respect to nu and h.
     secant_nu = -a * a * b * (2 * a + b) / 3
     secant_h = -a * b * b * (a + 2 * b) / 3
-    _, B1, B2 = bending_factor(law, h)
+    _, B1, B2 = bending_factor_and_derivatives(law, h)
     bending_part = q3 * q3 / 2 * (B2 * h_derivative * material.c3 + B1 * change.c3)
     return Stress(
         q1 * (secant_nu * change.nu + secant_h * h_derivative) + bending_part, B1 * h_derivative * q3

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 from ...errors import EnvironmentIncomplete, InputError
 from ...results.file.view import ResultView
-from .arm.map import can_draw_arm_map, draw_arm_map
+from .arm.arm_figure import can_draw_arm_figure, draw_arm_figure
 from .branch import draw_branch
 from .criticality import draw_criticality
 from .limit_cycle import draw_limit_cycle
@@ -25,7 +25,7 @@ from .spectrum import draw_spectrum
 from .style import FIGURE_STYLE, PRINT_STYLE
 from .thresholds import draw_thresholds
 
-FIGURES: dict[str, Callable[[FigureRequest], str]] = {
+DRAW_FUNCTION_BY_TASK: dict[str, Callable[[FigureRequest], str]] = {
     "spectrum": draw_spectrum,
     "thresholds": draw_thresholds,
     "phase_diagram": draw_phase_diagram,
@@ -74,14 +74,14 @@ def _draw_and_describe(request: FigureRequest) -> str:
     """Writes the figure and returns a description of the figure. If quantities of an arm vary and no other
     kind of figure is requested, the figure shows results over these quantities. InputError if roots are
     requested for another task than spectrum."""
-    if can_draw_arm_map(request):
-        return draw_arm_map(request)
+    if can_draw_arm_figure(request):
+        return draw_arm_figure(request)
     first = request.views[0]
-    if request.roots and FIGURES[first.task] != draw_spectrum:
+    if request.roots and DRAW_FUNCTION_BY_TASK[first.task] != draw_spectrum:
         raise InputError(
             f"{first.path}: --roots is for results of spectrum, and this is a result of {first.task}"
         )
-    return FIGURES[first.task](replace(request, views=[view.as_list for view in request.views]))
+    return DRAW_FUNCTION_BY_TASK[first.task](replace(request, views=[view.as_list for view in request.views]))
 
 
 def draw(
@@ -112,9 +112,9 @@ def draw(
     request = FigureRequest(
         views,
         output,
-        is_protected=is_protected,
+        is_output_protected=is_protected,
         look=look,
-        shapes=shapes,
+        shape_solver=shapes,
         figure_callback=figure_callback,
         **choices,
     )

@@ -14,10 +14,11 @@ from matplotlib.ticker import NullFormatter
 
 from ...results.layouts.variables import MISSING_STATUS
 from ...wording import count_of_total, counted, has_or_have, is_or_are
-from ..branch_curves import RodBranches, StoredBranch, followed_parameter, stability_runs
+from ..branch_curves import RodBranches, followed_parameter, runs_of_equal_stability
 from ..crushing import uncrushed_ranges
+from ..stored_branches import StoredBranch
 from . import style
-from .cycle.selection import shared_and_own_of_points
+from .cycle.selection import shared_and_own_texts_of_points
 from .request import FigureRequest
 from .smooth_branch import smooth_curve_of_branch
 
@@ -35,7 +36,7 @@ SPECIAL_POINT_MARKS = {
 }
 """(marker, legend entry) of a special point, by kind, or by reason for the end of a branch. Other ends are
 not marked."""
-PREDICTION_LOOK: dict[str, Any] = {"ls": (0, (4, 1, 1, 1)), "label": "predicted by the normal form"}
+PREDICTED_AMPLITUDE_LOOK: dict[str, Any] = {"ls": (0, (4, 1, 1, 1)), "label": "predicted by the normal form"}
 """Line style and legend entry of the amplitude predicted by the normal form near a Hopf point."""
 BRANCH_COLOURS = (
     style.BLUE,
@@ -54,9 +55,9 @@ def draw_branch(request: FigureRequest) -> str:
     """Draws the largest y of the tip and the period of cycles against the followed parameter, for one or
     several rods; returns a sentence. Raises InputError for options that the task does not have, and if
     nothing can be drawn."""
-    view = request.only_view()
+    view = request.require_single_view()
     rods = [RodBranches(view, number) for number in range(view.variables["status"].size)]
-    rods_with_cycles = [rod for rod in rods if any(curve.cycles.any() for curve in rod.curves)]
+    rods_with_cycles = [rod for rod in rods if any(curve.is_cycle.any() for curve in rod.curves)]
     style.require_content(view, rods_with_cycles, "branch with cycles")
     drawn_rods = rods_with_cycles[: len(BRANCH_COLOURS)]
     curves = [curve for rod in drawn_rods for curve in rod.curves]
@@ -72,14 +73,14 @@ def draw_branch(request: FigureRequest) -> str:
     lower.sharex(upper)
     upper.tick_params(labelbottom=False)
     add_stability_entries(upper, curves)
-    common_text, rod_texts = shared_and_own_of_points(view, [rod.index + 1 for rod in drawn_rods])
+    common_text, rod_texts = shared_and_own_texts_of_points(view, [rod.index + 1 for rod in drawn_rods])
     for colour, text in zip(BRANCH_COLOURS, rod_texts, strict=False):
         upper.plot([], [], color=colour, lw=2, label=text or None)
     draw_branch_curves(upper, lower, curves, colours)
     if is_single:
         draw_straight_rod(upper, drawn_rods[0])
     upper.set_ylabel("largest $y/L$ of the tip")
-    lower.set(ylabel=r"period$/\tau_2$", xlabel=style.LABELS[parameter], yscale="log")
+    lower.set(ylabel=r"period$/\tau_2$", xlabel=style.AXIS_LABELS[parameter], yscale="log")
     for axes in hopf_panel:
         _draw_predicted_amplitudes(axes, curves, colours, parameter)
     style.draw_shared_legend(figure, column_count=3)
@@ -95,9 +96,9 @@ def draw_branch_curves(
     lower: panel of the period. colours: colours of the branches, used cyclically."""
     for curve, colour in zip(curves, cycle(colours), strict=False):
         parameter_values, y, period, stable = smooth_curve_of_branch(curve)
-        _draw_pieces(upper, parameter_values, y, stable, colour)
-        _draw_pieces(lower, parameter_values, period, stable, colour)
-        for special in curve.special:
+        _draw_curve_by_stability(upper, parameter_values, y, stable, colour)
+        _draw_curve_by_stability(lower, parameter_values, period, stable, colour)
+        for special in curve.special_points:
             kind_or_reason = special.reason if special.kind == "end" else special.kind
             if kind_or_reason in SPECIAL_POINT_MARKS:
                 marker, label = SPECIAL_POINT_MARKS[kind_or_reason]
@@ -111,7 +112,7 @@ def draw_straight_rod(axes: Axes, rod: RodBranches) -> None:
     [(start, end)] = uncrushed_ranges(rod.view, [rod.index])
     if rod.curves:
         end = min(end, 1.1 * max(float(np.nanmax(curve.parameter)) for curve in rod.curves))
-    for stable, ranges in zip((1, 0), rod.straight_ranges((start, end)), strict=True):
+    for stable, ranges in zip((1, 0), rod.straight_rod_stability_ranges((start, end)), strict=True):
         for low, high in ranges:
             axes.plot([low, high], [0, 0], STABILITY_LOOKS[stable][0], color=style.text_colour(), lw=1.4)
 
@@ -119,7 +120,7 @@ def draw_straight_rod(axes: Axes, rod: RodBranches) -> None:
 def add_stability_entries(axes: Axes, curves: Sequence[StoredBranch]) -> None:
     """Adds legend entries for the line styles of stable and unstable parts of branches, and of parts of
     unknown stability if there are any."""
-    stabilities = {int(stability) for curve in curves for stability in curve.stable} | {1, 0}
+    stabilities = {int(stability) for curve in curves for stability in curve.stability} | {1, 0}
     for stability in sorted(stabilities, reverse=True):
         line_style, label = STABILITY_LOOKS[stability]
         axes.plot([], [], color=style.text_colour(), ls=line_style, label=label)
@@ -140,12 +141,12 @@ def _omissions_clause(rods: Sequence[RodBranches], cycling: int, drawn_count: in
     return clause
 
 
-def _draw_pieces(
+def _draw_curve_by_stability(
     axes: Axes, x: np.ndarray, y: np.ndarray, stable: np.ndarray, colour: str, marker: str = ""
 ) -> None:
     """Draws a curve with line styles by stability. x, y: vertices, (n,) each. stable: stability between
     neighbouring vertices, (n - 1,). colour, marker: colour and marker of the curve, for matplotlib."""
-    for vertices, kind in stability_runs(stable):
+    for vertices, kind in runs_of_equal_stability(stable):
         axes.plot(x[vertices], y[vertices], ls=STABILITY_LOOKS[kind][0], marker=marker, color=colour, lw=1.4)
 
 
@@ -157,9 +158,9 @@ def _draw_predicted_amplitudes(
     valid."""
     for curve, colour in zip(curves, cycle(colours), strict=False):
         for relative_distance, y, stable in curve.scaled_curves_near_hopf_points():
-            _draw_pieces(axes, relative_distance, y, stable, colour, marker=".")
+            _draw_curve_by_stability(axes, relative_distance, y, stable, colour, marker=".")
     ends = axes.dataLim.intervalx
-    axes.plot(ends, ends**0.5, color="0.4", lw=1.4, zorder=0, **PREDICTION_LOOK)
+    axes.plot(ends, ends**0.5, color="0.4", lw=1.4, zorder=0, **PREDICTED_AMPLITUDE_LOOK)
     symbol = style.TEX_SYMBOLS[parameter_name]
     axes.set(xscale="log", yscale="log", ylabel="largest $y/|a|$")
     symbol = f"({symbol})" if "/" in symbol else symbol

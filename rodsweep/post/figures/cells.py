@@ -17,7 +17,7 @@ from ...errors import InputError
 from ...results.file.view import ResultView
 from ..summary.selection import varied_parameters_at_points
 from .grid_slices import infinite_values_clause
-from .style import LABELS, is_logarithmic, label_few_decades, label_outer, scale_axis
+from .style import AXIS_LABELS, is_logarithmic, label_few_decades, label_outer_panels, scale_axis
 
 LOGARITHMIC_COLOUR_RATIO = 10
 """The colours of a map are logarithmic if the ratio of the largest to the smallest value exceeds this
@@ -38,7 +38,7 @@ class PointGrid:
     """Index in the file of the point in each cell, (ny, nx)."""
     common_parameters: dict[str, float]
     """Parameters that are equal at all points, by name."""
-    omissions: str
+    omissions_clause: str
     """Clause on infinite values, which an axis cannot show; empty if all values are finite."""
 
     @property
@@ -47,7 +47,7 @@ class PointGrid:
         return cell_edges(self.x), cell_edges(self.y)
 
 
-def point_map(view: ResultView) -> PointGrid:
+def point_grid(view: ResultView) -> PointGrid:
     """Points of a file as a map, without infinite values of the parameters. Raises InputError if the points
     do not form a grid over two parameters with at least two finite values each."""
     names = list(varied_parameters_at_points(view))
@@ -78,7 +78,7 @@ def point_map(view: ResultView) -> PointGrid:
 def varies_two_parameters_on_grid(view: ResultView) -> bool:
     """Whether the points of a file form a grid over two parameters."""
     try:
-        point_map(view)
+        point_grid(view)
     except InputError:
         return False
     return True
@@ -157,7 +157,7 @@ def fill_cells(axes: Axes, edges: tuple[Array, Array], is_filled: NDArray[np.boo
         axes.add_collection(PolyCollection(list(cells), lw=0, **look), autolim=False)
 
 
-def map_panels(panel_count: int, is_stacked: bool, shares_y: bool = True) -> tuple[Figure, list[Axes]]:
+def new_map_panels(panel_count: int, is_stacked: bool, shares_y: bool = True) -> tuple[Figure, list[Axes]]:
     """Returns (figure, panels) with `panel_count` panels that share axes, stacked or side by side. shares_y:
     whether the panels share the vertical axis, too."""
     # Side by side, the label of the first colour bar needs room.
@@ -174,4 +174,4 @@ def label_maps(panels: Sequence[Axes], points: PointGrid) -> None:
     for axes in panels:
         scale_axis(axes, "x", points.x)
         scale_axis(axes, "y", points.y)
-        label_outer(axes, *(LABELS[name] for name in points.names))
+        label_outer_panels(axes, *(AXIS_LABELS[name] for name in points.names))

@@ -18,16 +18,16 @@ from .cells import (
     PointGrid,
     draw_coloured_cells,
     label_maps,
-    map_panels,
-    point_map,
+    new_map_panels,
+    point_grid,
     varies_two_parameters_on_grid,
 )
-from .cycle.selection import shared_and_own_of_points
+from .cycle.selection import shared_and_own_texts_of_points
 from .grid_slices import infinite_values_clause
-from .layout.fitting import MAP_ASPECT
+from .layout.layout_fitting import MAP_ASPECT
 from .request import FigureRequest
 
-MAX_DRAWN_DISTANCE = 0.1
+MAX_DRAWN_HOPF_DISTANCE = 0.1
 """Predicted amplitudes are drawn up to this value of |F/F_H - 1| (F_H: Hopf point). At larger distances
 cycles deviate from the leading-order law."""
 PREDICTED_CYCLE_LOOKS = {
@@ -64,22 +64,24 @@ def draw_criticality(request: FigureRequest) -> str:
     """Draws a map of the first Hopf points over two parameters, or the coefficients a and Re c against one
     parameter, or else predicted amplitudes against F; returns a sentence. Raises InputError for options that
     the task does not have, and if nothing can be drawn."""
-    view = request.only_view()
+    view = request.require_single_view()
     has_normal_form = np.isfinite(view.variables["criticality"]).any()
     style.require_content(view, has_normal_form, "Hopf point with a normal form")
     names = list(varied_parameters_at_points(view))
     if len(names) == 1 and np.isfinite(np.unique(view.point_columns[names[0]])).sum() > 1:
         omissions_clause = infinite_values_clause(view.point_columns, names)
         caption = f"the normal forms of Hopf points along {names[0]}{omissions_clause}"
-        return request.write(_curves_figure(view, names[0]), caption)
+        return request.write(_coefficient_curves_figure(view, names[0]), caption)
     if not varies_two_parameters_on_grid(view):
-        return request.write(*draw_predictions(view))
-    points = point_map(view)
-    caption = f"the normal form of the first Hopf point over {' and '.join(points.names)}{points.omissions}"
-    return request.write(_maps_figure(view, points, request.look.is_narrow), caption, MAP_ASPECT)
+        return request.write(*draw_predicted_amplitudes(view))
+    points = point_grid(view)
+    caption = (
+        f"the normal form of the first Hopf point over {' and '.join(points.names)}{points.omissions_clause}"
+    )
+    return request.write(_criticality_maps_figure(view, points, request.look.is_narrow), caption, MAP_ASPECT)
 
 
-def _curves_figure(view: ResultView, name: str) -> Figure:
+def _coefficient_curves_figure(view: ResultView, name: str) -> Figure:
     """Figure of the amplitude coefficient a (upper panel) and of Re c (lower panel) against the parameter
     `name`. Markers show the criticality. Raises InputError if nothing can be drawn."""
     x = view.point_columns[name]
@@ -87,7 +89,9 @@ def _curves_figure(view: ResultView, name: str) -> Figure:
     figure = Figure(figsize=(5.6, 5.4), layout="constrained")
     upper, lower = figure.subplots(2, 1, sharex=True)
     keys = ("criticality", "amplitude_coefficient", "landau_real")
-    criticality, amplitude_coefficient, landau_real = (view.by_point(key)[is_finite] for key in keys)
+    criticality, amplitude_coefficient, landau_real = (
+        view.flattened_by_point(key)[is_finite] for key in keys
+    )
     style.require_content(view, np.isfinite(landau_real).any(), f"Hopf point with a finite {name}")
     linear_limit = float(np.nanquantile(np.abs(landau_real), LINEAR_RANGE_QUANTILE))
     lower.set_yscale("symlog", linthresh=10.0 ** floor(log10(linear_limit)))
@@ -96,7 +100,7 @@ def _curves_figure(view: ResultView, name: str) -> Figure:
         axes.axhline(0, color="0.6", lw=0.8, zorder=0)
         style.scale_axis(axes, "x", np.sort(x[is_finite]))
     upper.set_ylabel("amplitude coefficient $a/L$")
-    lower.set(ylabel=r"$\mathrm{Re}\,c$ in $1/(\tau_2 L^2)$", xlabel=style.LABELS[name])
+    lower.set(ylabel=r"$\mathrm{Re}\,c$ in $1/(\tau_2 L^2)$", xlabel=style.AXIS_LABELS[name])
     style.draw_shared_legend(figure, column_count=3)
     set_heading(figure, view, style.constant_parameters_text(view, name))
     return figure
@@ -111,16 +115,18 @@ def _draw_hopf_markers(axes: Axes, x: Array, values: Array, criticality: Array) 
             axes.plot(x[rods], values[rods, crossings], marker, color=colour, ms=3.5, label=label)
 
 
-def _maps_figure(view: ResultView, points: PointGrid, is_narrow: bool) -> Figure:
+def _criticality_maps_figure(view: ResultView, points: PointGrid, is_narrow: bool) -> Figure:
     """Figure with two maps: criticality of the first Hopf points, and amplitude coefficient |a|. Raises
     InputError if nothing can be drawn."""
-    criticality = view.by_point("criticality")[points.point_indices]
-    amplitude_coefficient = np.abs(view.by_point("amplitude_coefficient")[:, 0][points.point_indices])
+    criticality = view.flattened_by_point("criticality")[points.point_indices]
+    amplitude_coefficient = np.abs(
+        view.flattened_by_point("amplitude_coefficient")[:, 0][points.point_indices]
+    )
     style.require_content(
         view, np.isfinite(amplitude_coefficient).any(), "first Hopf point with a normal form"
     )
-    figure, panels = map_panels(2, is_narrow)
-    classes = _class_indices(criticality)
+    figure, panels = new_map_panels(2, is_narrow)
+    classes = _criticality_class_indices(criticality)
     norm = BoundaryNorm(np.arange(len(CRITICALITY_CLASSES) + 1) - 0.5, len(CRITICALITY_CLASSES))
     colours = ListedColormap([colour for _, colour in CRITICALITY_CLASSES])
     panels[0].pcolormesh(*points.edges, classes, cmap=colours, norm=norm, rasterized=True)
@@ -133,7 +139,7 @@ def _maps_figure(view: ResultView, points: PointGrid, is_narrow: bool) -> Figure
     return figure
 
 
-def _class_indices(criticality: Array) -> Array:
+def _criticality_class_indices(criticality: Array) -> Array:
     """Index in CRITICALITY_CLASSES for each rod, (ny, nx). criticality: signs of Re c at the Hopf points of
     the rods, (ny, nx, crossings); NaN for a missing Hopf point."""
     first = criticality[..., 0]
@@ -143,11 +149,11 @@ def _class_indices(criticality: Array) -> Array:
     return np.select(cases, [2.0, 1.0, 3.0, 4.0], 0.0)
 
 
-def draw_predictions(view: ResultView) -> tuple[Figure, str]:
+def draw_predicted_amplitudes(view: ResultView) -> tuple[Figure, str]:
     """Returns (figure, description). The figure shows predicted amplitudes near all Hopf points of the first
     rods. Raises InputError if nothing can be drawn."""
     kinds, F, amplitude_coefficient = map(
-        view.by_point, ("criticality", "crossing_F", "amplitude_coefficient")
+        view.flattened_by_point, ("criticality", "crossing_F", "amplitude_coefficient")
     )
     rods_with_prediction = np.flatnonzero(
         (np.isfinite(kinds) & np.isfinite(amplitude_coefficient)).any(axis=1)
@@ -156,8 +162,8 @@ def draw_predictions(view: ResultView) -> tuple[Figure, str]:
     drawn_rods = rods_with_prediction[: len(style.LINE_COLOURS)]
     figure = Figure(figsize=(5.6, 3.8), layout="constrained")
     axes = figure.subplots()
-    common_text, rod_texts = shared_and_own_of_points(view, [int(rod) + 1 for rod in drawn_rods])
-    distance = MAX_DRAWN_DISTANCE * np.linspace(0, 1, PREDICTION_POINT_COUNT) ** 2
+    common_text, rod_texts = shared_and_own_texts_of_points(view, [int(rod) + 1 for rod in drawn_rods])
+    distance = MAX_DRAWN_HOPF_DISTANCE * np.linspace(0, 1, PREDICTION_POINT_COUNT) ** 2
     for rod, colour in zip(drawn_rods, style.LINE_COLOURS, strict=False):
         for kind, hopf_force, size in zip(kinds[rod], F[rod], amplitude_coefficient[rod], strict=True):
             if np.isfinite(kind) and np.isfinite(size):
@@ -167,7 +173,7 @@ def draw_predictions(view: ResultView) -> tuple[Figure, str]:
                 axes.plot(forces, abs(size) * np.sqrt(distance), line_style, color=colour, lw=1.4)
                 axes.plot(hopf_force, 0, "o", color=colour, ms=4, clip_on=False, zorder=3)
     axes.axhline(0, color="0.8", lw=0.6, zorder=0)
-    axes.set(xlabel=style.LABELS["F"], ylabel="predicted largest $y/L$ of the tip")
+    axes.set(xlabel=style.AXIS_LABELS["F"], ylabel="predicted largest $y/L$ of the tip")
     axes.set_ylim(bottom=0)
     for kind, (line_style, label) in PREDICTED_CYCLE_LOOKS.items():
         if (kinds[drawn_rods] == kind).any():
@@ -177,7 +183,7 @@ def draw_predictions(view: ResultView) -> tuple[Figure, str]:
         axes.plot([], [], color=colour, lw=2, label=text or None)
     style.draw_shared_legend(figure, column_count=3)
     figure.suptitle(style.heading_text(view, common_text))
-    caption = f"the cycles that normal forms predict within {MAX_DRAWN_DISTANCE:.0%} of every Hopf point"
+    caption = f"the cycles that normal forms predict within {MAX_DRAWN_HOPF_DISTANCE:.0%} of every Hopf point"
     if len(drawn_rods) < rods_with_prediction.size:
         caption += f", of the first {len(drawn_rods)} of {rods_with_prediction.size} rods with Hopf points"
     return figure, caption

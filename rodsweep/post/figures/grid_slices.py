@@ -6,19 +6,19 @@ from math import inf
 
 import numpy as np
 
-from ...config.arm.axes import STORAGE_AXIS_OF_QUANTITY
+from ...config.arm.axes import FILE_AXIS_OF_QUANTITY
 from ...config.document.refusals import similar_keys
 from ...errors import InputError, short_repr
 from ...model.arm.drag import DRAG_ESTIMATE_NAMES
-from ...model.arm.quantities import ALL_QUANTITIES
-from ...model.parameters import NONLINEAR_PARAMETERS
+from ...model.arm.quantities import ARM_FILE_VARIABLES
+from ...model.parameters import NONLINEAR_ROD_PARAMETER_NAMES
 from ...model.units import quantity_in_si
 from ...results.file.view import ResultView
-from .point_lists import DIMENSIONS_OF_ITEMS
+from .point_lists import DIMENSIONS_OTHER_THAN_POINTS
 
 TYPED_VALUE_TOLERANCE = 1e-6
 """A value typed by the user selects the values of the file that differ by at most this relative amount."""
-ARM_SCALE_NAMES = ("tau2", "force_scale", "pressure_scale")
+ARM_UNIT_VARIABLE_NAMES = ("tau2", "force_scale", "pressure_scale")
 """Names of the units of an arm, which a file stores beside its quantities; no axes."""
 MAX_LISTED_VALUES = 8
 """Largest number of values that an error message lists."""
@@ -48,8 +48,8 @@ def _number_in_si(name: str, value: float | str) -> float:
             raise InputError(
                 f"--at drag={value}: the drag must be one of {', '.join(DRAG_ESTIMATE_NAMES)}"
             ) from None
-        if name in ALL_QUANTITIES:
-            return quantity_in_si(f"--at {name}", value, ALL_QUANTITIES[name].unit, "12 cm")
+        if name in ARM_FILE_VARIABLES:
+            return quantity_in_si(f"--at {name}", value, ARM_FILE_VARIABLES[name].unit, "12 cm")
         raise InputError(f"--at {name}={value} must be a parameter with a number, such as k1=150") from None
 
 
@@ -58,17 +58,17 @@ def _slice_at_value(view: ResultView, name: str, value: float) -> ResultView:
     quantity_names = [
         quantity_name
         for quantity_name, quantity_values in view.quantities.items()
-        if np.ndim(quantity_values) and quantity_name not in ARM_SCALE_NAMES
+        if np.ndim(quantity_values) and quantity_name not in ARM_UNIT_VARIABLE_NAMES
     ]
     if view.is_grid:  # quantities that are stored along an axis of a parameter
         quantity_names = [
             quantity_name
             for quantity_name in quantity_names
-            if STORAGE_AXIS_OF_QUANTITY.get(quantity_name) in view.parameters
+            if FILE_AXIS_OF_QUANTITY.get(quantity_name) in view.parameters
         ]
     axes = view.arm_axes or (*view.parameters, *quantity_names)
     if name not in axes:
-        raise InputError(f"--at {name}={value:.15g}: {view.path} {_axes_sentence(view, name, axes)}")
+        raise InputError(f"--at {name}={value:.15g}: {view.path} {_not_an_axis_predicate(view, name, axes)}")
     values = view.variables[name]
     is_chosen = np.isclose(values, value, rtol=TYPED_VALUE_TOLERANCE, atol=0.0)
     if not is_chosen.any():
@@ -77,16 +77,18 @@ def _slice_at_value(view: ResultView, name: str, value: float) -> ResultView:
             f"{_values_text(np.unique(values), value)}"
         )
     if view.is_grid or view.arm_axes:
-        axis_name = name if name in (*view.arm_axes, *view.parameters) else STORAGE_AXIS_OF_QUANTITY[name]
-        return _grid_at(view, axis_name, is_chosen)
+        axis_name = name if name in (*view.arm_axes, *view.parameters) else FILE_AXIS_OF_QUANTITY[name]
+        return _grid_restricted_to_values(view, axis_name, is_chosen)
     variables = {
-        key: data[is_chosen] if data.shape[:1] == is_chosen.shape and key not in DIMENSIONS_OF_ITEMS else data
+        key: data[is_chosen]
+        if data.shape[:1] == is_chosen.shape and key not in DIMENSIONS_OTHER_THAN_POINTS
+        else data
         for key, data in view.variables.items()
     }
     return replace(view, variables=variables)
 
 
-def _axes_sentence(view: ResultView, name: str, axes: Sequence[str]) -> str:
+def _not_an_axis_predicate(view: ResultView, name: str, axes: Sequence[str]) -> str:
     """Predicate that says that `name` is none of the axes `axes`, with a similar name, or with the names of
     the axes that have several values."""
     similar = similar_keys(name, list(axes))
@@ -95,7 +97,7 @@ def _axes_sentence(view: ResultView, name: str, axes: Sequence[str]) -> str:
         f"did you mean {similar[0]}?" if similar else f"the points differ in {', '.join(varied_axes or axes)}"
     )
     followed_clause = (
-        f"; {name} is not an axis of points in this file" if name in NONLINEAR_PARAMETERS else ""
+        f"; {name} is not an axis of points in this file" if name in NONLINEAR_ROD_PARAMETER_NAMES else ""
     )
     return f"has no such axis{followed_clause}; {hint}"
 
@@ -110,20 +112,20 @@ def _values_text(values: np.ndarray, requested: float) -> str:
     return f"{values[0]:.15g} to {values[-1]:.15g}; the nearest values are {nearest_text}"
 
 
-def _grid_at(view: ResultView, name: str, is_chosen: np.ndarray) -> ResultView:
+def _grid_restricted_to_values(view: ResultView, name: str, is_chosen: np.ndarray) -> ResultView:
     """View of a grid restricted to some values of the axis `name`. is_chosen: mask of these values."""
     names = view.arm_axes or view.parameters
     shape = view.variables["status"].shape
     axis = names.index(name)
     sliced_names = {
         name,
-        *(quantity for quantity, changed_name in STORAGE_AXIS_OF_QUANTITY.items() if changed_name == name),
+        *(quantity for quantity, changed_name in FILE_AXIS_OF_QUANTITY.items() if changed_name == name),
     }
     variables = {}
     for key, data in view.variables.items():
         if key in sliced_names and np.ndim(data):
             variables[key] = data[is_chosen]
-        elif data.shape[: len(shape)] == shape and key not in (*names, *DIMENSIONS_OF_ITEMS):
+        elif data.shape[: len(shape)] == shape and key not in (*names, *DIMENSIONS_OTHER_THAN_POINTS):
             variables[key] = np.compress(is_chosen, data, axis=axis)
         else:
             variables[key] = data
@@ -135,7 +137,7 @@ def without_infinite_values(view: ResultView) -> ResultView:
     for name, values in view.parameter_values.items():
         finite = np.isfinite(values)
         if len(values) > 1 and not finite.all():
-            view = _grid_at(view, name, finite)
+            view = _grid_restricted_to_values(view, name, finite)
     return view
 
 

@@ -6,13 +6,12 @@ import numpy as np
 from ...errors import InputError
 from ...results.file.view import ResultView
 from ..summary.selection import varied_parameters_at_points
-from .cells import point_map, varies_two_parameters_on_grid
+from .cells import point_grid, varies_two_parameters_on_grid
 from .cycle.amplitudes.amplitude import SERIES_LOOKS, draw_amplitude
 from .cycle.amplitudes.amplitude_series import abscissa_parameter
 from .cycle.animation import FILM_SUFFIXES, write_animation
 from .cycle.energy import draw_energy
 from .cycle.maps import draw_maps
-from .cycle.portrait import draw_portrait
 from .cycle.selection import (
     ENERGY_BUDGET_VARIABLE_NAMES,
     MAX_CYCLES,
@@ -20,8 +19,9 @@ from .cycle.selection import (
     TRANSIENT_VARIABLE_NAMES,
     chosen_cycles,
 )
+from .cycle.shapes_and_tip_motion import draw_shapes_and_tip_motion
 from .cycle.transient import draw_transients
-from .layout.fitting import MAP_ASPECT, MIN_TIME_PANEL_ASPECT
+from .layout.layout_fitting import MAP_ASPECT, MIN_TIME_PANEL_ASPECT
 from .request import FIGURE_KINDS_BY_TASK, FigureRequest
 
 ALL_POINT_FIGURE_NOUNS = {"amplitude": "amplitudes", "maps": "maps"}
@@ -32,7 +32,7 @@ NEEDED_VARIABLES = {
     "energy": ENERGY_BUDGET_VARIABLE_NAMES,
 }
 """Variables of a cycle that are necessary for a figure, by kind of figure."""
-FEW_POINT_FIGURES = {"cycle": draw_portrait, "energy": draw_energy, "transient": draw_transients}
+FEW_POINT_FIGURES = {"cycle": draw_shapes_and_tip_motion, "energy": draw_energy, "transient": draw_transients}
 """For each kind of figure that shows a few points, the function that draws the figure."""
 
 
@@ -62,11 +62,11 @@ def _with_needed_variables(request: FigureRequest, name: str) -> ResultView:
     """View of the file with the variables that the figure `name` needs. If variables are missing,
     `request.shapes`, if given, computes them."""
     view = request.views[0]
-    if request.shapes is None or view.variables.keys() >= set(NEEDED_VARIABLES.get(name, ())):
+    if request.shape_solver is None or view.variables.keys() >= set(NEEDED_VARIABLES.get(name, ())):
         return view
     numbers = request.points or [int(index) + 1 for index in np.flatnonzero(view.status_names == "cycle")]
     chosen_cycles(view, request.points, ())  # refuses points without a cycle
-    return request.shapes(view, numbers[:MAX_CYCLES])
+    return request.shape_solver(view, numbers[:MAX_CYCLES])
 
 
 def chosen_figure_kind(request: FigureRequest) -> str:
@@ -75,7 +75,7 @@ def chosen_figure_kind(request: FigureRequest) -> str:
     first_view, *other_views = request.views
     for view in other_views:
         if view.task != first_view.task:
-            request.refuse_choices(view)
+            request.refuse_figure_options(view)
     name = request.what or _default_figure_kind(request)
     if name not in FIGURE_KINDS_BY_TASK["limit_cycle"]:
         request.refuse_points(first_view)
@@ -120,5 +120,5 @@ def _has_many_lines(view: ResultView) -> bool:
     """Whether the points form a map that has more lines than a figure of amplitudes can show."""
     if not varies_two_parameters_on_grid(view):
         return False
-    other_name = next(name for name in point_map(view).names if name != abscissa_parameter(view))
+    other_name = next(name for name in point_grid(view).names if name != abscissa_parameter(view))
     return len(np.unique(view.point_columns[other_name])) > len(SERIES_LOOKS)

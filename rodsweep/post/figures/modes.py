@@ -10,7 +10,7 @@ from .arm.quantities import set_heading
 from .request import FigureRequest
 from .style import BLUE, VERMILION, draw_shared_legend, number_in_tex, parameter_text, require_content
 
-MAX_RODS = 4
+MAX_DRAWN_POINTS = 4
 """Largest number of points in one figure; a narrow figure shows one point."""
 MODE_PANELS = (
     ("mode", (("Y", r"$Y_1$"), ("Theta", r"$\Theta_1$"))),
@@ -24,12 +24,12 @@ def draw_modes(request: FigureRequest) -> str:
     """Draws a row of panels for each point: leading mode, deformations of this mode, and adjoint mode;
     returns a sentence. Raises InputError for options that the task does not have, and if nothing can be
     drawn."""
-    view = request.only_view()
+    view = request.require_single_view()
     growth = view.variables["growth_rate"][..., 0].ravel()
     point_indices = np.flatnonzero(np.isfinite(growth))
     require_content(view, point_indices.size, "computed point")
     is_narrow = request.look.is_narrow
-    drawn_points = point_indices[: 1 if is_narrow else MAX_RODS]
+    drawn_points = point_indices[: 1 if is_narrow else MAX_DRAWN_POINTS]
     point_count = len(drawn_points)
     row_count, column_count = (
         (point_count * len(MODE_PANELS), 1) if is_narrow else (point_count, len(MODE_PANELS))
@@ -86,7 +86,7 @@ def _draw_mode_fields(panel: Axes, view: ResultView, point: int, fields: tuple[t
 def _parameters_and_eigenvalue_texts(view: ResultView, point: int) -> tuple[str, str]:
     """Returns (parameters, leading eigenvalue), as TeX, of the point with the index `point`."""
     parameters = {name: values[point] for name, values in view.point_columns.items()}
-    eigenvalue = [float(view.by_point(name)[point, 0]) for name in ("growth_rate", "frequency")]
+    eigenvalue = [float(view.flattened_by_point(name)[point, 0]) for name in ("growth_rate", "frequency")]
     imaginary_text = rf" + {number_in_tex(eigenvalue[1])}\,\mathrm{{i}}" if eigenvalue[1] else ""
     eigenvalue_text = rf"$\omega_1\tau_2 = {number_in_tex(eigenvalue[0])}{imaginary_text}$"
     return parameter_text(parameters, digits=4), eigenvalue_text

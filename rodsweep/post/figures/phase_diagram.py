@@ -11,20 +11,20 @@ from ...arrays import Array
 from ...config.parameters_section import DEFAULT_VALUES_OF_PARAMETERS
 from ...results.file.view import ResultView
 from ...results.layouts import lacks_sweep_wide_variables
-from ...results.layouts.variables import flag_number
+from ...results.layouts.variables import stored_number_of_word
 from ..crushing import crushing_ratio
-from ..plane_curves import PlaneParameters, curve_paths, plane_parameters
+from ..plane_curves import PlaneParameters, plane_parameters, points_by_curve
 from . import style
 from .arm.quantities import set_heading
 from .arm.validity_hatches import hatch_compressed
 from .grid_slices import infinite_values_clause
-from .layout.fitting import MAP_ASPECT
+from .layout.layout_fitting import MAP_ASPECT
 from .request import FigureRequest
-from .stability.class_bars import BAR_ASPECT, CLASS_PALETTE, STATE_PALETTE, Palette
+from .stability.class_bars import BAR_ASPECT, CLASS_PALETTE, STABLE_STATE_PALETTE, Palette
 from .stability.diagram_curves import (
     draw_boundary_curves,
     draw_cycle_curves,
-    mark_cycles_on_rows,
+    mark_special_points_on_rows,
     unstored_crossings_text,
 )
 from .stability.regions import PIXEL_COUNT, ClassifiedPoints, DrawnPlane, pixel_classes
@@ -40,10 +40,10 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     boundary curves; as one bar per row if fewer than two rows have a finite value of the row parameter.
     Returns a sentence. Raises InputError for options that the task does not have, and if nothing can be
     drawn."""
-    view = request.only_view()
+    view = request.require_single_view()
     parameters = plane_parameters(view)
     line, row = parameters
-    palette = STATE_PALETTE if STATE_PALETTE.variable in view.variables else CLASS_PALETTE
+    palette = STABLE_STATE_PALETTE if STABLE_STATE_PALETTE.variable in view.variables else CLASS_PALETTE
     values = view.variables[palette.variable]
     style.require_content(view, (values >= 0).any(), "computed row")
     x = view.variables[line]
@@ -52,7 +52,7 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     if is_finite.sum() < 2:
         rows = f", for each {row}" if len(y) > 1 else ""
         caption = f"behaviour of the rod over {line}{rows}"
-        return request.write(_draw_rows(view, palette, parameters), caption, BAR_ASPECT * len(y))
+        return request.write(_bars_of_rows_figure(view, palette, parameters), caption, BAR_ASPECT * len(y))
     table = values.reshape(len(y), len(x))[is_finite]
     y = y[is_finite]
     plane = DrawnPlane(x, y)
@@ -67,7 +67,9 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     style.scale_axis(axes, "y", y)
     _draw_crushing(axes, ratio, *pixel_coordinates)
     areas = [*palette.legend_entries(pixels), *hatch_compressed(axes, view, ratio, *pixel_coordinates)]
-    axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), xlabel=style.LABELS[line], ylabel=style.LABELS[row])
+    axes.set(
+        xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), xlabel=style.AXIS_LABELS[line], ylabel=style.AXIS_LABELS[row]
+    )
     _draw_stored_curves(axes, view, palette, parameters)
     style.draw_shared_legend(figure, 2 if "bautin_curve" in view.variables else 3, areas)
     set_heading(figure, view, _constant_parameters_text(view, parameters), unstored_crossings_text(view))
@@ -82,11 +84,11 @@ def draw_phase_diagram(request: FigureRequest) -> str:
 def _draw_stored_curves(axes: Axes, view: ResultView, palette: Palette, parameters: PlaneParameters) -> None:
     """Draws the boundary curves, curves of cycles and special points of rows that a file contains."""
     if "curve_number" in view.variables:
-        draw_boundary_curves(axes, view, parameters, hopf_only=palette is STATE_PALETTE)
+        draw_boundary_curves(axes, view, parameters, hopf_only=palette is STABLE_STATE_PALETTE)
     if "cycle_curve_number" in view.variables:
         draw_cycle_curves(axes, view, parameters)
     if "cycle_special_kind" in view.variables:
-        mark_cycles_on_rows(axes, view, parameters)
+        mark_special_points_on_rows(axes, view, parameters)
 
 
 def _constant_parameters_text(view: ResultView, parameters: PlaneParameters) -> str:
@@ -108,14 +110,14 @@ def _draw_crushing(axes: Axes, ratio: Array, x: Array, y: Array) -> None:
         axes.plot([], [], color="0.4", lw=1.2, label="crushing force")
 
 
-def _draw_rows(view: ResultView, palette: Palette, parameters: PlaneParameters) -> Figure:
+def _bars_of_rows_figure(view: ResultView, palette: Palette, parameters: PlaneParameters) -> Figure:
     """Figure with a bar for each row of a diagram, used if fewer than two rows have a finite value of the row
     parameter."""
-    x = view.variables[parameters.line]
-    y = view.parameter_values[parameters.row]
+    x = view.variables[parameters.line_parameter]
+    y = view.parameter_values[parameters.row_parameter]
     figure = Figure(figsize=(5.8, 1.6 + 0.5 * len(y)), layout="constrained")
     axes = figure.subplots()
-    edges = DrawnPlane.positions(x, np.linspace(0, 1, PIXEL_COUNT + 1))
+    edges = DrawnPlane.coordinates_at_fractions(x, np.linspace(0, 1, PIXEL_COUNT + 1))
     rows = [
         pixel_classes_of_row(view, palette.variable, parameters, row_index, edges)
         for row_index in range(len(y))
@@ -126,10 +128,10 @@ def _draw_rows(view: ResultView, palette: Palette, parameters: PlaneParameters) 
     for separator in np.arange(len(y) - 1) + 0.5:
         axes.axhline(separator, color="white", lw=4)
     style.scale_axis(axes, "x", x)
-    texts = [f"${style.TEX_SYMBOLS[parameters.row]} = {style.number_in_tex(value)}$" for value in y]
+    texts = [f"${style.TEX_SYMBOLS[parameters.row_parameter]} = {style.number_in_tex(value)}$" for value in y]
     axes.set_yticks(np.arange(len(y)), texts)
     axes.tick_params("y", length=0)
-    axes.set(xlim=(x[0], x[-1]), xlabel=style.LABELS[parameters.line])
+    axes.set(xlim=(x[0], x[-1]), xlabel=style.AXIS_LABELS[parameters.line_parameter])
     style.draw_shared_legend(figure, 3, palette.legend_entries(table))
     set_heading(figure, view, _constant_parameters_text(view, parameters))
     return figure
@@ -142,7 +144,7 @@ def _class_of_pixels(
     curves of the file and by the crushing force. classes: class at each computed point, (rows, columns).
     ratio: force divided by the crushing force (zero stretch), at every pixel, (pixels, pixels)."""
     parameters = plane_parameters(view)
-    crushed_class = flag_number("crushed", palette.words)
+    crushed_class = stored_number_of_word("crushed", palette.words)
     columns, rows = np.meshgrid(plane.x, plane.y)
     is_known = classes != crushed_class
     places = plane.fractions_of_axes(columns[is_known], rows[is_known])
@@ -155,8 +157,8 @@ def _class_of_pixels(
     for kind in (kind for kind in ("curve", "cycle_curve") if f"{kind}_number" in view.variables):
         # Double eigenvalues bound no stable state.
         code = 1 if kind == "curve" and palette is not CLASS_PALETTE else None
-        paths = curve_paths(view, parameters, kind, code).values()
+        paths = points_by_curve(view, parameters, kind, code).values()
         curves += [plane.fractions_of_axes(*path.T) for path in paths]
-    undecided = flag_number("undecided", palette.words)
+    undecided = stored_number_of_word("undecided", palette.words)
     pixels = pixel_classes(computed, row_points, curves, ratio > CURVE_END_CRUSHING_RATIO, undecided)
     return np.where(ratio < 1, pixels, crushed_class)

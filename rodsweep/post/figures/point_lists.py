@@ -8,10 +8,10 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
 from ...results.file.view import ResultView
-from ..summary.arm.arm import varied_columns
+from ..summary.arm.arm_texts import varied_arm_quantities
 from .arm.quantities import quantity_label_and_texts
 
-DIMENSIONS_OF_ITEMS = ("mode", "u", "crossing")
+DIMENSIONS_OTHER_THAN_POINTS = ("mode", "u", "crossing")
 """Names of dimensions that are not dimensions of points; their length may equal the length of the list."""
 MAX_LABELLED_POINTS = 12
 """With at most this number of points, every point has a tick label."""
@@ -35,7 +35,7 @@ def as_grid_if_possible(view: ResultView) -> ResultView:
     order = np.argsort(flat_indices)
     variables = {name: data for name, data in view.variables.items() if name != "point"}
     for name, data in variables.items():
-        if data.shape[:1] == (count,) and name not in DIMENSIONS_OF_ITEMS:
+        if data.shape[:1] == (count,) and name not in DIMENSIONS_OTHER_THAN_POINTS:
             variables[name] = data[order].reshape(*sizes, *data.shape[1:])
     variables |= {name: unique for name, (unique, _) in values.items()}
     return replace(view, variables=variables)
@@ -58,7 +58,7 @@ def label_point_numbers(axes: Axes, view: ResultView, point_count: int) -> None:
         MaxNLocator(min(point_count, MAX_LABELLED_POINTS), integer=True, min_n_ticks=1)
     )
     labels_and_texts = [
-        quantity_label_and_texts(view, name, column) for name, column in varied_columns(view).items()
+        quantity_label_and_texts(view, name, column) for name, column in varied_arm_quantities(view).items()
     ]
     if labels_and_texts and point_count <= MAX_LABELLED_POINTS:
         columns = zip(*(texts for _, texts in labels_and_texts), strict=True)

@@ -11,9 +11,9 @@ from ...errors import InputError, short_repr
 from ...model.units import quantity_in_si
 from ...results.file.view import ResultView
 from ..output_files import save_figure
-from .arm.second_scales import add_arm_scales
+from .arm.second_axis_scales import add_arm_scales
 from .arm.validity_hatches import hatch_invalid_points
-from .layout.fitting import MIN_ASPECT, fit_layout
+from .layout.layout_fitting import MIN_ASPECT, fit_layout
 
 CycleShapeSolver = Callable[[ResultView, Sequence[int]], ResultView]
 """Function that computes the shapes of cycles. Arguments: view of a file, and numbers of points, from 1.
@@ -32,7 +32,7 @@ FIGURE_KINDS_BY_TASK = {
 """Names of the kinds of figures of each task that has several kinds."""
 FIGURE_KINDS = tuple(kind for kinds in FIGURE_KINDS_BY_TASK.values() for kind in kinds)
 """Names of the kinds of figures of all tasks."""
-HEIGHT_EXPONENT = 0.5
+HEIGHT_TO_WIDTH_EXPONENT = 0.5
 """The height of a figure scales as the width to this power. The power is below 1, because the size of the
 text does not change."""
 METRES_PER_INCH = 0.0254
@@ -75,7 +75,7 @@ class FigureLook:
         if self.width_in_inches is not None:
             natural_width, natural_height = figure.get_size_inches()
             shrinkage = min(1.0, self.width_in_inches / natural_width)
-            figure.set_size_inches(self.width_in_inches, natural_height * shrinkage**HEIGHT_EXPONENT)
+            figure.set_size_inches(self.width_in_inches, natural_height * shrinkage**HEIGHT_TO_WIDTH_EXPONENT)
         fit_layout(figure, min_aspect)
 
 
@@ -108,22 +108,22 @@ class FigureRequest:
     roots: str | None = None
     what: str | None = None
     points: Sequence[int] = ()
-    is_protected: bool = False
+    is_output_protected: bool = False
     """Whether `output` is one of the files to draw, or exists and is not a regular file."""
     look: FigureLook = FigureLook()
-    shapes: CycleShapeSolver | None = None
+    shape_solver: CycleShapeSolver | None = None
     """Function that computes the shapes of cycles if the file has no shapes."""
     figure_callback: Callable[[Figure], None] | None = None
     """Callback for the finished figure; if given, no file is written."""
 
-    def only_view(self, *kinds: str) -> ResultView:
+    def require_single_view(self, *kinds: str) -> ResultView:
         """View of the only file to draw. Raises InputError for several files, for chosen points, for a value
         of --what that is not in `kinds`, and for an invalid output name."""
-        self.refuse_choices(self.views[0], kinds)
+        self.refuse_figure_options(self.views[0], kinds)
         self.require_output()
         return self.views[0]
 
-    def refuse_choices(self, view: ResultView, kinds: Sequence[str] = ()) -> None:
+    def refuse_figure_options(self, view: ResultView, kinds: Sequence[str] = ()) -> None:
         """Raises InputError for options that the task of `view` does not have, and for several files."""
         self.refuse_points(view, kinds)
         if self.views[1:]:
@@ -147,11 +147,11 @@ class FigureRequest:
 
     def require_output(self, *suffixes: str) -> None:
         """Raises InputError if the name of the output file has none of the suffixes (by default suffixes of
-        images), or if `is_protected` is true."""
+        images), or if `is_output_protected` is true."""
         suffixes = suffixes or (".png", ".pdf", ".svg")
         if self.output.suffix not in suffixes:
             raise InputError(f"--output {self.output}: the name must end in {', '.join(suffixes)}")
-        if self.is_protected:
+        if self.is_output_protected:
             raise InputError(
                 f"--output {self.output} is one of the results of this figure, or not a regular file, so it "
                 "is not overwritten; choose another name"

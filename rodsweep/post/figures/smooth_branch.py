@@ -8,7 +8,7 @@ from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
 from ...arrays import Array, list_of
-from ..branch_curves import StoredBranch
+from ..stored_branches import StoredBranch
 
 MIRRORED_CYCLE_COUNT = 3
 """Number of cycles next to a Hopf point whose mirror images (y to -y) continue the branch beyond the Hopf
@@ -38,26 +38,26 @@ similar."""
 BRANCH_ROUNDING_TOLERANCE = 1e-9
 """Rounding tolerance for distances divided by the range of the branch, and for imaginary parts of roots
 divided by the step between cycles."""
-SEGMENT_COUNT = 12
+SEGMENTS_BETWEEN_CYCLES = 12
 """Number of straight segments that are drawn between two cycles."""
 
 
 def smooth_curve_of_branch(curve: StoredBranch) -> tuple[Array, Array, Array, NDArray[np.integer]]:
     """Returns (parameter, y, period, stable) of the smooth curve through the cycles of a branch; (n,) each,
-    `stable` (n - 1,).
+    `stability` (n - 1,).
 
     The branch has a corner where a different maximum of y(t) becomes the largest maximum; the curve is smooth
     between corners.
     """
-    vertices = np.column_stack([curve.parameter, curve.y, np.log(curve.period)])
+    vertices = np.column_stack([curve.parameter, curve.tip_y_max, np.log(curve.period)])
     extent = np.ptp(vertices, axis=0)
     extent[extent == 0] = 1.0
     # The end of the range is stored as a cycle and as a special point.
     is_distinct = (np.abs(np.diff(vertices, axis=0)) > BRANCH_ROUNDING_TOLERANCE * extent).any(axis=1)
     cycles = vertices[np.append(True, is_distinct)]
-    stable = curve.stable[is_distinct]
+    stable = curve.stability[is_distinct]
     if len(cycles) <= MIRRORED_CYCLE_COUNT:
-        return curve.parameter, curve.y, curve.period, curve.stable
+        return curve.parameter, curve.tip_y_max, curve.period, curve.stability
     corners = corners_by_previous_cycle(cycles, extent)
     for i in sorted(corners, reverse=True):
         cycles = np.insert(cycles, i + 1, corners[i], axis=0)
@@ -66,14 +66,14 @@ def smooth_curve_of_branch(curve: StoredBranch) -> tuple[Array, Array, Array, ND
     ends = pairwise([0, *corner_indices, len(cycles) - 1])
     parts = [_smooth_vertices(cycles[low : high + 1], extent) for low, high in ends]
     values, y, log_period = np.concatenate([*(part[:-1] for part in parts), parts[-1][-1:]]).T
-    return values, y, np.exp(log_period), np.repeat(stable, SEGMENT_COUNT)
+    return values, y, np.exp(log_period), np.repeat(stable, SEGMENTS_BETWEEN_CYCLES)
 
 
 def _smooth_vertices(cycles: Array, extent: Array) -> Array:
-    """Vertices, (m, 3), of a smooth curve through the cycles `cycles`, (n, 3), with SEGMENT_COUNT segments
-    between two cycles. Columns: parameter, y, log period. extent: ranges of the branch, (3,). At a Hopf point
-    the branch is symmetric under y to -y. Mirror images of cycles, beyond the Hopf point, therefore give the
-    curve a square-root shape."""
+    """Vertices, (m, 3), of a smooth curve through the cycles `cycles`, (n, 3), with SEGMENTS_BETWEEN_CYCLES
+    segments between two cycles. Columns: parameter, y, log period. extent: ranges of the branch, (3,). At a
+    Hopf point the branch is symmetric under y to -y. Mirror images of cycles, beyond the Hopf point,
+    therefore give the curve a square-root shape."""
     cycles_before = cycles[MIRRORED_CYCLE_COUNT:0:-1] * MIRROR_FACTORS
     cycles_after = cycles[-2 : -MIRRORED_CYCLE_COUNT - 2 : -1] * MIRROR_FACTORS
     first_index = len(cycles_before) if cycles[0, 1] == 0 else 0
@@ -82,7 +82,7 @@ def _smooth_vertices(cycles: Array, extent: Array) -> Array:
     variables = [_cumulative_chord_lengths(extended, extent, *choice) for choice in CHORD_LENGTH_CANDIDATES]
     abscissa = min(variables, key=lambda variable: _largest_cubic_deviation(variable, extended / extent))
     ends = abscissa[first_index : first_index + len(cycles)]
-    drawn = np.linspace(ends[:-1], ends[1:], SEGMENT_COUNT, endpoint=False, axis=1).ravel()
+    drawn = np.linspace(ends[:-1], ends[1:], SEGMENTS_BETWEEN_CYCLES, endpoint=False, axis=1).ravel()
     spline = scipy.interpolate.CubicSpline(abscissa, extended)
     return np.asarray(spline(np.append(drawn, ends[-1])))
 

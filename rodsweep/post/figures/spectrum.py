@@ -13,16 +13,16 @@ from ...results.file.view import ResultView
 from . import style
 from .arm.quantities import set_heading
 from .grid_slices import infinite_values_clause, slice_at_values, without_infinite_values
-from .layout.fitting import MAP_ASPECT
+from .layout.layout_fitting import MAP_ASPECT
 from .point_lists import as_grid_if_possible
 from .request import FigureRequest
 from .spectra.eigenvalues import draw_eigenvalues, draw_list_of_spectra
-from .spectra.line import (
+from .spectra.spectra_along_line import (
     ROOT_CHOICE_TEXTS,
-    draw_line,
+    choice_of_followed_roots,
     draw_roots_against_parameter,
+    draw_spectra_along_line,
     mark_thresholds,
-    roots_to_follow,
     threshold_text,
 )
 
@@ -39,7 +39,7 @@ SHADES_PER_SIGN = 40
 MAX_LINE_PANELS = 6
 """If a second parameter has at most this number of values, each value has a panel; otherwise a map is
 drawn."""
-LINEAR_SHADE_FRACTION = 1e-4
+LINEAR_COLOUR_RANGE_FRACTION = 1e-4
 """The colour scale of a map is linear up to this fraction of the largest |growth rate|, but at least up
 to 1."""
 GROWTH_LABEL = r"largest growth rate $\mathrm{Re}\,\omega_1\,\tau_2$"
@@ -51,7 +51,7 @@ def draw_spectrum(request: FigureRequest) -> str:
     a sentence. Raises InputError for options that the task does not have, and if nothing can be drawn."""
     if len(request.views) > 1:
         return _draw_files(request)
-    view = as_grid_if_possible(request.only_view())
+    view = as_grid_if_possible(request.require_single_view())
     style.require_content(view, np.isfinite(view.variables["growth_rate"]).any(), "computed point")
     if view.variables["status"].size == 1 or not view.is_grid:
         _refuse_roots(view, request.roots, "single points, each with all stored eigenvalues", ("all",))
@@ -62,14 +62,14 @@ def draw_spectrum(request: FigureRequest) -> str:
     varied_names = style.varied_axes(view)
     shortest = min(varied_names, key=lambda name: len(view.parameter_values[name]))
     if len(varied_names) > 1 and len(view.parameter_values[shortest]) <= MAX_LINE_PANELS:
-        return _draw_line_per_value(view, shortest, request)
+        return _draw_panel_per_value(view, shortest, request)
     omissions_clause = infinite_values_clause(view.parameter_values, varied_names)
     view = without_infinite_values(view)
     varied_names = style.varied_axes(view)
     if len(varied_names) == 1:
-        roots = roots_to_follow([view], request.roots)
+        roots = choice_of_followed_roots([view], request.roots)
         return request.write(
-            draw_line(view, varied_names[0], roots), ROOT_CHOICE_TEXTS[roots] + omissions_clause
+            draw_spectra_along_line(view, varied_names[0], roots), ROOT_CHOICE_TEXTS[roots] + omissions_clause
         )
     _refuse_roots(view, request.roots, "a map of the leading growth rate; --at draws one of its lines")
     return request.write(
@@ -86,7 +86,7 @@ def _refuse_roots(view: ResultView, roots: str | None, figure: str, allowed: Seq
         )
 
 
-def _draw_line_per_value(view: ResultView, curve_parameter: str, request: FigureRequest) -> str:
+def _draw_panel_per_value(view: ResultView, curve_parameter: str, request: FigureRequest) -> str:
     """Draws a panel of spectra for each value of the parameter `curve_parameter`, which has too few values
     for a map; returns a sentence."""
     values = view.parameter_values[curve_parameter].tolist()
@@ -101,7 +101,7 @@ def _draw_line_per_value(view: ResultView, curve_parameter: str, request: Figure
 def _draw_line_panels(views: Sequence[ResultView], request: FigureRequest, panel_noun: str) -> str:
     """Draws a panel for each view, a line of spectra; returns a sentence. panel_noun: noun for a view, and a
     clause on what is left out."""
-    roots = roots_to_follow(views, request.roots)
+    roots = choice_of_followed_roots(views, request.roots)
     figure = draw_panels(views, roots, request.look.is_narrow)
     return request.write(figure, f"{ROOT_CHOICE_TEXTS[roots]}, in a panel for each {panel_noun}")
 
@@ -148,7 +148,7 @@ def _growth_map(view: ResultView, names: list[str]) -> Figure:
     figure = Figure(figsize=(5.6, 4.4), layout="constrained")
     axes = figure.subplots()
     max_rate = float(np.nanmax(np.abs(growth)))
-    linear = max(1.0, max_rate * LINEAR_SHADE_FRACTION)
+    linear = max(1.0, max_rate * LINEAR_COLOUR_RANGE_FRACTION)
     norm = matplotlib.colors.SymLogNorm(linear, vmin=-max_rate, vmax=max_rate)
     # Zero is a level of the filled contours, so that the line of zero growth and the colours agree.
     shades = norm.inverse(np.linspace(0.0, 1.0, 2 * SHADES_PER_SIGN + 1))
@@ -160,7 +160,7 @@ def _growth_map(view: ResultView, names: list[str]) -> Figure:
         axes.contour(x, y, masked_growth, levels=[0.0], colors="k", linewidths=1.2)
     style.scale_axis(axes, "x", x)
     style.scale_axis(axes, "y", y)
-    axes.set(xlabel=style.LABELS[horizontal], ylabel=style.LABELS[vertical])
+    axes.set(xlabel=style.AXIS_LABELS[horizontal], ylabel=style.AXIS_LABELS[vertical])
     colours = matplotlib.cm.ScalarMappable(norm, MAP_COLOURS)
     figure.colorbar(colours, ax=axes, label=GROWTH_LABEL)
     # Invisible points, from which `rodsweep report` reads the values.

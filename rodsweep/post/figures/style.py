@@ -18,11 +18,11 @@ from ...model.parameters import PARAMETERS
 from ...results.file.view import ResultView
 from ...results.layouts.variables import MISSING_STATUS
 from ..material_texts import material_words
-from .layout.fitting import place_legend
+from .layout.layout_fitting import place_legend
 
 TEX_SYMBOLS = {name: parameter.symbol for name, parameter in PARAMETERS.items()}
 """Symbols of the parameters in TeX, by name."""
-LABELS = {name: f"{p.meaning} ${p.symbol}$" for name, p in PARAMETERS.items()}
+AXIS_LABELS = {name: f"{p.meaning} ${p.symbol}$" for name, p in PARAMETERS.items()}
 """Labels of axes, by parameter. A tilde marks a dimensionless symbol, which needs no unit."""
 CRITICAL_FORCE_LABEL = f"critical force ${TEX_SYMBOLS['F']}$"
 """Label of an axis of critical forces."""
@@ -45,9 +45,9 @@ labels."""
 SHORT_AXIS_RATIO = 6
 """If the ratio of the ends of a logarithmic axis is below this number, further numbers of each decade have
 tick labels, because 1, 2 and 5 could all lie outside the axis."""
-MIN_POWER = 2
+MIN_ABS_EXPONENT_OF_BARE_POWER = 2
 """Smallest |n| for which a power of ten is written as 10^n."""
-MAX_PLAIN_POWER = 4
+MIN_EXPONENT_OF_POWER_NOTATION = 4
 """Numbers below 10 to this power are written without a power of ten."""
 FIGURE_STYLE = {
     "font.size": 10,
@@ -112,9 +112,9 @@ def number_in_tex(value: float, digits: int = 6) -> str:
     mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
     power = int(exponent)
     factor = float(mantissa)
-    if abs(factor) == 1 and abs(power) >= MIN_POWER:
+    if abs(factor) == 1 and abs(power) >= MIN_ABS_EXPONENT_OF_BARE_POWER:
         return f"{'-' * (factor < 0)}10^{{{power}}}"
-    if -MIN_POWER <= power < min(MAX_PLAIN_POWER, digits):
+    if -MIN_ABS_EXPONENT_OF_BARE_POWER <= power < min(MIN_EXPONENT_OF_POWER_NOTATION, digits):
         return f"{value:.{digits}g}"
     return rf"{factor:g}\times10^{{{power}}}"
 
@@ -202,14 +202,16 @@ def label_few_decades(axis: Axis, low: float, high: float) -> None:
     if high < FEW_DECADES_RATIO * low:
         multiples = (1, 2, 5) if high > SHORT_AXIS_RATIO * low else (1, 1.5, 2, 3, 4, 6, 8)
         axis.set_major_locator(LogLocator(subs=multiples))
-        is_plain = low >= 10.0**-MIN_POWER and high < 10.0 ** (MAX_PLAIN_POWER + 1)
+        is_plain = low >= 10.0**-MIN_ABS_EXPONENT_OF_BARE_POWER and high < 10.0 ** (
+            MIN_EXPONENT_OF_POWER_NOTATION + 1
+        )
         axis.set_major_formatter(
             FuncFormatter(lambda value, _: f"{value:g}" if is_plain else f"${number_in_tex(value)}$")
         )
         axis.set_minor_formatter(NullFormatter())
 
 
-def label_outer(axes: Axes, xlabel: str, ylabel: str) -> None:
+def label_outer_panels(axes: Axes, xlabel: str, ylabel: str) -> None:
     """Labels the axes of a panel in a grid of panels that share axes. Only panels at the left and at the
     bottom have labels."""
     grid_cell = axes.get_subplotspec()

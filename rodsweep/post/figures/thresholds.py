@@ -9,18 +9,18 @@ from ...errors import InputError
 from ...results.file.view import ResultView
 from . import style
 from .arm.quantities import set_heading
-from .cells import draw_coloured_cells, label_maps, map_panels, point_map
-from .layout.fitting import MAP_ASPECT, MIN_ASPECT
+from .cells import draw_coloured_cells, label_maps, new_map_panels, point_grid
+from .layout.layout_fitting import MAP_ASPECT, MIN_ASPECT
 from .point_lists import as_grid_if_possible
 from .request import FigureRequest
 from .stability.class_bars import BAR_ASPECT, draw_class_bars
 from .stability.threshold_lines import (
     CRITICAL_FORCE_LOOKS,
     FILE_COLOURS,
-    MAX_LINES,
+    MAX_COLOURED_LINES,
     draw_lines_of_files,
     draw_lines_of_grid,
-    draw_selected_lines,
+    draw_lines_of_three_values,
 )
 
 NO_THRESHOLD_COLOUR = "#DDDDDD"
@@ -35,7 +35,7 @@ def draw_thresholds(request: FigureRequest) -> str:
     drawn."""
     if request.views[1:]:
         return _draw_files(request)
-    view = as_grid_if_possible(request.only_view("lines", "map"))
+    view = as_grid_if_possible(request.require_single_view("lines", "map"))
     if not view.is_grid or view.variables["status"].size == 1:
         if request.what:
             reason = "needs one or two varied parameters; remove --what"
@@ -50,7 +50,7 @@ def draw_thresholds(request: FigureRequest) -> str:
     varied_names = style.varied_axes(view)
     drawable_names = [name for name, *_ in CRITICAL_FORCE_LOOKS if np.isfinite(view.variables[name]).any()]
     style.require_content(view, drawable_names, "threshold")
-    has_few_lines = min(len(view.parameter_values[name]) for name in varied_names) <= MAX_LINES
+    has_few_lines = min(len(view.parameter_values[name]) for name in varied_names) <= MAX_COLOURED_LINES
     if request.what == "map" or (len(varied_names) == 2 and not has_few_lines and request.what != "lines"):
         figure, omissions = _threshold_maps(view, drawable_names, request.look.is_narrow)
         return request.write(
@@ -59,7 +59,9 @@ def draw_thresholds(request: FigureRequest) -> str:
     search_clause = searched_range_clause(view)
     if len(varied_names) == 1 or has_few_lines:
         return request.write(*draw_lines_of_grid(view, varied_names, search_clause))
-    return request.write(*draw_selected_lines(view, varied_names, request.look.is_narrow, search_clause))
+    return request.write(
+        *draw_lines_of_three_values(view, varied_names, request.look.is_narrow, search_clause)
+    )
 
 
 def _draw_files(request: FigureRequest) -> str:
@@ -101,8 +103,8 @@ def _threshold_maps(view: ResultView, names: list[str], is_narrow: bool) -> tupl
     """Returns (figure, omissions). The figure has a map over two parameters for each kind of threshold in
     `names`. omissions: clause on infinite values of the parameters. Raises InputError if nothing can be
     drawn."""
-    points = point_map(view)
-    figure, panels = map_panels(len(names), is_narrow)
+    points = point_grid(view)
+    figure, panels = new_map_panels(len(names), is_narrow)
     lacking = False
     forces = [force for force in CRITICAL_FORCE_LOOKS if force[0] in names]
     for axes, (name, word, *_) in zip(panels, forces, strict=True):
@@ -116,4 +118,4 @@ def _threshold_maps(view: ResultView, names: list[str], is_narrow: bool) -> tupl
         style.draw_shared_legend(figure, 1, [Patch(fc=NO_THRESHOLD_COLOUR, label="none found")])
     constants_text = style.parameter_text(points.common_parameters)
     set_heading(figure, view, constants_text, searched_range_clause(view))
-    return figure, points.omissions
+    return figure, points.omissions_clause

@@ -8,15 +8,15 @@ from ...arrays import Array
 from ...results.file.view import ResultView
 from ...results.layouts import layout_of
 from ...results.layouts.si_variables import si_variables_of
-from ..summary.errors import ABSOLUTE_ERROR_NAMES, RELATIVE_ERROR_NAMES, absolute_errors
-from ..summary.number_texts import error_text, number_and_error, rounded_text
+from ..summary.number_texts import error_text, number_and_error_texts, rounded_text
+from ..summary.variable_errors import ABSOLUTE_ERROR_NAMES, RELATIVE_ERROR_NAMES, absolute_errors
 from ..tables.column import Column
 from ..tables.table_names import POINTS_TABLE
 from ..tables.tables import Tables
 
 BOOLEAN_WORDS = ("no", "yes")
 """Words for the boolean values 0 and 1."""
-EXACT_VARIABLES = ("F_end",)
+VARIABLES_WITHOUT_ERROR = ("F_end",)
 """Variables without an error, because their values come from an option of the config."""
 
 
@@ -40,7 +40,7 @@ class ColumnTexts:
 
     @staticmethod
     def _numbers(column: Column) -> Array:
-        return np.where(column.absent, np.nan, column.values.astype(float))
+        return np.where(column.missing_mask, np.nan, column.values.astype(float))
 
     def absolute_error(self, name: str) -> Array:
         """Absolute error of the variable `name`, (rows,); NaN where the error is unknown."""
@@ -48,7 +48,7 @@ class ColumnTexts:
         if error_text in self.columns:
             with np.errstate(divide="ignore", invalid="ignore"):
                 return self.absolute_error(error_text) * np.abs(self._values[name] / self._values[error_text])
-        if name in EXACT_VARIABLES:
+        if name in VARIABLES_WITHOUT_ERROR:
             return np.zeros_like(self._values[name])
         if name in self._other_errors:
             return self._other_errors[name]
@@ -67,15 +67,19 @@ class ColumnTexts:
         if column.flag_meanings or column.values.dtype.kind != "f":
             return [(text, "") for text in column.texts()]
         if column.is_estimate:
-            stated_error = self._values[name] + self._rounding(name)
+            stated_error = self._values[name] + self._rounding_errors(name)
             texts = (error_text(float(value)) if value else "0" for value in stated_error)
-            return [("" if no_text else text, "") for text, no_text in zip(texts, column.absent, strict=True)]
-        rows = zip(self._values[name], self.absolute_error(name), column.absent, strict=True)
+            return [
+                ("" if no_text else text, "")
+                for text, no_text in zip(texts, column.missing_mask, strict=True)
+            ]
+        rows = zip(self._values[name], self.absolute_error(name), column.missing_mask, strict=True)
         return [
-            ("", "") if no_text else number_and_error(float(x), float(error)) for x, error, no_text in rows
+            ("", "") if no_text else number_and_error_texts(float(x), float(error))
+            for x, error, no_text in rows
         ]
 
-    def _rounding(self, error: str) -> Array:
+    def _rounding_errors(self, error: str) -> Array:
         """Rounding errors, (rows,), of the printed values to which the error variable `error` belongs;
         relative if `error` is relative. If `error` belongs to several variables, the largest rounding error.
         """
@@ -125,7 +129,7 @@ class SingleRodResult:
         answer_columns = [column for column in self.tables.table(POINTS_TABLE).columns if not column.is_input]
         self.list_texts: dict[str, ColumnTexts] = {
             name: ColumnTexts(self.tables.list_columns(name), self.si_names)
-            for name in self.tables.contents.tables[1:]
+            for name in self.tables.contents.table_names[1:]
         }
         self.point_texts = ColumnTexts(answer_columns, self.si_names, self._threshold_errors())
 
@@ -147,7 +151,7 @@ class SingleRodResult:
                 errors[f"F_{event}"] = error[:1] if error.size else np.array([np.nan])
         return errors
 
-    def preferred_name(self, digits: ColumnTexts, name: str) -> str:
+    def si_name_or_name(self, digits: ColumnTexts, name: str) -> str:
         """Name of the variable that is printed for the variable `name`: the corresponding SI variable if
         `digits` has such a column, else `name`."""
         return self.si_names.get(name, name) if self.si_names.get(name) in digits.columns else name
@@ -155,19 +159,19 @@ class SingleRodResult:
     def column(self, name: str) -> Column | None:
         """The variable `name` of the rod as a column of one row; None if the variable or its value is
         missing."""
-        column = self.point_texts.columns.get(self.preferred_name(self.point_texts, name))
-        return None if column is None or column.absent[0] else column
+        column = self.point_texts.columns.get(self.si_name_or_name(self.point_texts, name))
+        return None if column is None or column.missing_mask[0] else column
 
     def text(self, name: str) -> str:
         """The variable `name` of the rod as text with its unit; empty for a missing value."""
         column = self.column(name)
         return "" if column is None else self.point_texts.short_text(column.name)
 
-    def count(self, name: str) -> int | None:
+    def integer_value(self, name: str) -> int | None:
         """The integer variable `name` of the rod; None if its value is missing."""
         column = self.point_texts.columns.get(name)
-        return None if column is None or column.absent[0] else int(column.values[0])
+        return None if column is None or column.missing_mask[0] else int(column.values[0])
 
-    def words(self, table: str, name: str) -> list[str]:
+    def column_words(self, table: str, name: str) -> list[str]:
         """Words in the column `name` of the table `table`, one for each row."""
         return self.list_texts[table].columns[name].texts()

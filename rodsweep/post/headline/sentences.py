@@ -12,8 +12,8 @@ from ..branch_curves import RodBranches
 from ..summary.thresholds import (
     FIRST_CROSSING_WORDS,
     LATER_CROSSING_WORDS,
-    later_flutter_changes,
-    oscillation_end,
+    later_flutter_change_indices,
+    oscillation_end_index,
 )
 from .one_rod import SingleRodResult
 
@@ -23,20 +23,20 @@ class Headline:
     """First lines printed about the result of a task for one rod.
 
     sentence: function that returns the sentence with the answer, or an empty text if there is no answer.
-    numbers: variables of the rod to print. table: name of the list to print; empty if no list is printed.
-    columns: columns of this list. The most important numbers and columns come first.
+    number_variables: variables of the rod to print. list_name: name of the list to print; empty if no list is
+    printed. columns: columns of this list. The most important numbers and columns come first.
     """
 
     sentence: Callable[[SingleRodResult], str]
-    numbers: tuple[str, ...]
-    table: str = ""
+    number_variables: tuple[str, ...]
+    list_name: str = ""
     columns: tuple[str, ...] = ()
 
 
 def eigenvalue_sentence(rod: SingleRodResult) -> str:
     """Sentence on the number of unstable modes and the leading eigenvalue; empty if no eigenvalue is
     stored."""
-    unstable_count = rod.count("unstable_count")
+    unstable_count = rod.integer_value("unstable_count")
     stability_text = (
         "the straight rod is stable"
         if unstable_count == 0
@@ -44,7 +44,7 @@ def eigenvalue_sentence(rod: SingleRodResult) -> str:
     )
     stability_text = "number of unstable modes not known" if unstable_count is None else stability_text
     mode_texts = rod.list_texts["modes"]
-    rate, frequency = (rod.preferred_name(mode_texts, name) for name in ("growth_rate", "frequency"))
+    rate, frequency = (rod.si_name_or_name(mode_texts, name) for name in ("growth_rate", "frequency"))
     if not len(mode_texts.columns[rate].values):
         return ""
     return (
@@ -55,7 +55,7 @@ def eigenvalue_sentence(rod: SingleRodResult) -> str:
 
 def threshold_sentence(rod: SingleRodResult) -> str:
     """Sentence on the first force of each kind of threshold; empty if the count of crossings is unknown."""
-    if rod.count("crossing_count") is None:
+    if rod.integer_value("crossing_count") is None:
         return ""
     clauses = []
     for event, phrase in FIRST_CROSSING_WORDS.items():
@@ -65,66 +65,68 @@ def threshold_sentence(rod: SingleRodResult) -> str:
             end_text = _oscillation_end_clause(rod) if event == "onset" else ""
             clauses.append(f"{phrase} {name} = {rod.text(f'F_{event}')}{end_text}")
     clauses += _later_flutter_clauses(rod)
-    none_text = "" if rod.count("crossing_count") else f"no threshold up to {_search_end_text(rod)}"
-    return (", ".join(clauses) or none_text) + _early_end_clause(rod)
+    none_text = "" if rod.integer_value("crossing_count") else f"no threshold up to {_search_end_text(rod)}"
+    return (", ".join(clauses) or none_text) + _early_search_end_clause(rod)
 
 
 def _oscillation_end_clause(rod: SingleRodResult) -> str:
     """Clause on the force at which the first oscillation ends without flutter; empty if it does not."""
-    end = oscillation_end(rod.words("crossings", "crossing_kind"))
+    end = oscillation_end_index(rod.column_words("crossings", "crossing_kind"))
     if end is None:
         return ""
     crossings = rod.list_texts["crossings"]
-    return f" to {crossings.short_text(rod.preferred_name(crossings, 'crossing_F'), end)}"
+    return f" to {crossings.short_text(rod.si_name_or_name(crossings, 'crossing_F'), end)}"
 
 
 def _later_flutter_clauses(rod: SingleRodResult) -> list[str]:
     """Clauses on the starts and ends of all windows of flutter after the first."""
     crossings = rod.list_texts["crossings"]
-    kinds = rod.words("crossings", "crossing_kind")
-    name = rod.preferred_name(crossings, "crossing_F")
+    kinds = rod.column_words("crossings", "crossing_kind")
+    name = rod.si_name_or_name(crossings, "crossing_F")
     load = name.removeprefix("crossing_")
     return [
         f"{LATER_CROSSING_WORDS[kinds[i]]} {load} = {crossings.short_text(name, i)}"
-        for i in later_flutter_changes(kinds)
+        for i in later_flutter_change_indices(kinds)
     ]
 
 
 def hopf_count_sentence(rod: SingleRodResult) -> str:
     """Sentence on the numbers of supercritical, subcritical and undecided Hopf points; empty if the count is
     unknown."""
-    hopf_count = rod.count("crossing_count")
+    hopf_count = rod.integer_value("crossing_count")
     if hopf_count is None:
         return ""
     if hopf_count == 0:
-        return f"no Hopf point up to {_search_end_text(rod)}{_early_end_clause(rod)}"
+        return f"no Hopf point up to {_search_end_text(rod)}{_early_search_end_clause(rod)}"
     criticality_counts = Counter(
-        word or "of unknown criticality" for word in rod.words("crossings", "criticality")
+        word or "of unknown criticality" for word in rod.column_words("crossings", "criticality")
     )
     kinds_text = ", ".join(f"{number} {word}" for word, number in criticality_counts.items())
-    return f"{counted(hopf_count, 'Hopf point')}: {kinds_text}{_early_end_clause(rod)}"
+    return f"{counted(hopf_count, 'Hopf point')}: {kinds_text}{_early_search_end_clause(rod)}"
 
 
 def branch_sentence(rod: SingleRodResult) -> str:
     """Sentence on the numbers of branches and cycles, and the largest y of the tip. If no branch exists, the
     sentence states the searched range of the parameter. Empty if the number of branches is unknown."""
-    branches = rod.count("branch_count")
+    branches = rod.integer_value("branch_count")
     if branches is None:
         return ""
     parameter, start, stop = (rod.view.config["branch"][key] for key in ("along", "start", "stop"))
     if not branches:
         return f"no branch of cycles: no Hopf point for {parameter} from {start:g} to {stop:g}"
     cycles = rod.list_texts["cycles"]
-    hopfs = rod.count("hopf_count") or 0
+    hopfs = rod.integer_value("hopf_count") or 0
     start_texts = [counted(hopfs, "Hopf point")] if hopfs else []
-    if any(curve.enters_range for curve in RodBranches(rod.view).curves):
+    if any(curve.starts_outside_range for curve in RodBranches(rod.view).curves):
         start_texts.append("from beyond the range" if hopfs else "beyond the range")
     text = f"{counted(branches, 'branch')} of cycles from {' and '.join(start_texts)}"
-    y_name = rod.preferred_name(cycles, "tip_y_max")
+    y_name = rod.si_name_or_name(cycles, "tip_y_max")
     if not len(cycles.columns[y_name].values):
         return f"{text}, no cycle is stored"
     largest_y_text = cycles.short_text(y_name, int(np.nanargmax(cycles.columns[y_name].values)))
-    return f"{text}: {counted(rod.count('point_count') or 0, 'cycle')}, largest tip y {largest_y_text}"
+    return (
+        f"{text}: {counted(rod.integer_value('point_count') or 0, 'cycle')}, largest tip y {largest_y_text}"
+    )
 
 
 def cycle_sentence(rod: SingleRodResult) -> str:
@@ -142,7 +144,7 @@ def _search_end_text(rod: SingleRodResult) -> str:
     return "" if column is None else f"{column.name.removesuffix('_end')} = {rod.text('F_end')}"
 
 
-def _early_end_clause(rod: SingleRodResult) -> str:
+def _early_search_end_clause(rod: SingleRodResult) -> str:
     """Clause that says at which load a search ended early; empty for a complete search."""
     clause_format = "; not known beyond {}, where the search ended early"
     return clause_format.format(_search_end_text(rod)) if rod.view.has_status("ended_early").all() else ""

@@ -22,16 +22,16 @@ from matplotlib.patches import Patch
 
 from ...arrays import Array
 from ..figures.cells import cell_centres
-from .label_text import label_text
+from .plain_label_text import plain_text_of_label
 
-MAX_POINTS = 2500
+MAX_HOVER_TEXTS = 2500
 """Approximate largest number of texts in a figure; with more values, only every n-th value of long curves has
 a text. A text takes some 100 bytes."""
 MAX_UNTHINNED_POINTS = 24
 """Every point of a curve with at most this number of points has a text."""
-POINTER_VALUE_DIGITS = 8
+HOVER_VALUE_DIGITS = 8
 """Number of significant digits of a value under the pointer."""
-POINTS_PER_INCH = 72
+TYPOGRAPHIC_POINTS_PER_INCH = 72
 """Points per inch; a point is the length unit of matplotlib's SVG files."""
 FRAME_MARGIN = 1.0
 """Values outside the frame of a panel, up to this distance, in pixels, also have texts."""
@@ -58,15 +58,15 @@ class HoverSeries:
 
 def hover_points(figure: Figure) -> list[HoverPoint]:
     """Texts for the values in a figure, in the order of drawing; series of more than MAX_UNTHINNED_POINTS
-    values are thinned, to about MAX_POINTS values together. The layout of the figure must be final."""
+    values are thinned, to about MAX_HOVER_TEXTS values together. The layout of the figure must be final."""
     meanings = _legend_words(figure)
-    series_list = [series for axes in figure.axes for series in _panel_series(axes, meanings)]
+    series_list = [series for axes in figure.axes for series in _hover_series_of_panel(axes, meanings)]
     long_text_count = sum(
         len(series.texts) for series in series_list if len(series.texts) > MAX_UNTHINNED_POINTS
     )
-    step = max(1, ceil(long_text_count / MAX_POINTS))
-    height = figure.get_size_inches()[1] * POINTS_PER_INCH
-    scale = POINTS_PER_INCH / figure.dpi
+    step = max(1, ceil(long_text_count / MAX_HOVER_TEXTS))
+    height = figure.get_size_inches()[1] * TYPOGRAPHIC_POINTS_PER_INCH
+    scale = TYPOGRAPHIC_POINTS_PER_INCH / figure.dpi
     points = []
     for series in series_list:
         stride = step if len(series.texts) > MAX_UNTHINNED_POINTS else 1
@@ -75,7 +75,7 @@ def hover_points(figure: Figure) -> list[HoverPoint]:
     return points
 
 
-def _panel_series(axes: Axes, meanings: dict[str, str]) -> Iterator[HoverSeries]:
+def _hover_series_of_panel(axes: Axes, meanings: dict[str, str]) -> Iterator[HoverSeries]:
     """Yields the texts for all values inside the frame of a panel. meanings: legend entries by colour."""
     if axes.get_label() == "<colorbar>" or not axes.get_visible():
         return
@@ -113,7 +113,7 @@ def _scatter_series(dots: PathCollection, names: tuple[str, str]) -> HoverSeries
     values = dots.get_array()
     if values is None:
         return HoverSeries(pixels, texts)
-    name = "" if dots.colorbar is None else label_text(dots.colorbar.ax.get_ylabel())
+    name = "" if dots.colorbar is None else plain_text_of_label(dots.colorbar.ax.get_ylabel())
     if name := name or _series_name(dots.get_label()):
         rows = zip(np.ma.filled(values, np.nan), data, strict=True)
         texts = [
@@ -135,7 +135,7 @@ def _cell_series(axes: Axes, names: tuple[str, str], meanings: dict[str, str]) -
         y = cell_centres(edges[:, 0, 1])
         pixels = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
         values: np.ndarray = np.ma.masked_invalid(np.ma.asarray(mesh.get_array())).ravel()
-        name = "" if mesh.colorbar is None else label_text(mesh.colorbar.ax.get_ylabel())
+        name = "" if mesh.colorbar is None else plain_text_of_label(mesh.colorbar.ax.get_ylabel())
         drawn_indices = np.flatnonzero(~np.ma.getmaskarray(values))
         centres = axes.transData.inverted().transform(pixels[drawn_indices]).reshape(-1, 2)
         texts = []
@@ -169,7 +169,7 @@ def axis_label_text(axes: Axes, letter: Literal["x", "y"]) -> str:
     for panel in (axes, *shared_axes.get_siblings(axes), *_panels_with_same_axis(axes, letter)):
         label = panel.get_xlabel() if letter == "x" else panel.get_ylabel()
         if label:
-            return label_text(label)
+            return plain_text_of_label(label)
     return letter
 
 
@@ -198,14 +198,14 @@ def _legend_words(figure: Figure) -> dict[str, str]:
     for legend in legends:
         for handle, text in zip(legend.legend_handles, legend.get_texts(), strict=True):
             if isinstance(handle, Patch):
-                meanings[to_hex(handle.get_facecolor())] = label_text(text.get_text())
+                meanings[to_hex(handle.get_facecolor())] = plain_text_of_label(text.get_text())
     return meanings
 
 
 def _series_name(label: object) -> str:
     """Legend entry of a curve; empty for a curve that is not in the legend."""
     text = str(label)
-    return "" if text.startswith("_") else label_text(text)
+    return "" if text.startswith("_") else plain_text_of_label(text)
 
 
 def _curve_point_texts(names: tuple[str, str], data: Array, series: str) -> list[str]:
@@ -220,4 +220,4 @@ def _coordinates_text(names: tuple[str, str], point: Array) -> str:
 
 
 def _coordinate_text(value: float) -> str:
-    return f"{value:.{POINTER_VALUE_DIGITS}g}"
+    return f"{value:.{HOVER_VALUE_DIGITS}g}"

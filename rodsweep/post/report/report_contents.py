@@ -25,7 +25,7 @@ from .vector_picture import VectorPicture, vector_picture
 
 ANIMATION_KIND = "animation"
 """Kind of figure that the page leaves out, because it is an animation."""
-SVG_REQUEST_NAME = Path("figure.svg")
+PLACEHOLDER_SVG_NAME = Path("figure.svg")
 """Output name with which figures for the page are requested; no file with this name is written."""
 
 
@@ -39,11 +39,11 @@ class CaptionedPicture:
 
 @dataclass(frozen=True, slots=True)
 class Pictures:
-    """Pictures of a result. shown: pictures in their order on the page. refusal: reason for which there is no
-    picture; empty if there are pictures."""
+    """Pictures of a result. captioned_pictures: pictures in their order on the page. reason_without_pictures:
+    reason for which there is no picture; empty if there are pictures."""
 
-    shown: tuple[CaptionedPicture, ...]
-    refusal: str = ""
+    captioned_pictures: tuple[CaptionedPicture, ...]
+    reason_without_pictures: str = ""
 
 
 def pictures_of(
@@ -67,17 +67,17 @@ def pictures_of(
             figures.append(figure)
 
         try:
-            sentence = draw(views, SVG_REQUEST_NAME, what=kind, shapes=drawn_shapes, figure_callback=keep)
+            sentence = draw(views, PLACEHOLDER_SVG_NAME, what=kind, shapes=drawn_shapes, figure_callback=keep)
         except InputError as error:
             first_refusal_text = first_refusal_text or str(error)
             continue
-        caption = sentence.removeprefix(f"wrote {SVG_REQUEST_NAME}: ")
+        caption = sentence.removeprefix(f"wrote {PLACEHOLDER_SVG_NAME}: ")
         if caption not in by_kind:
             by_kind[caption] = CaptionedPicture(caption, vector_picture(figures[0], next(numbers), caption))
     return Pictures(tuple(by_kind.values()), "" if by_kind else first_refusal_text)
 
 
-MAX_ROWS = 60
+MAX_TABLE_ROWS = 60
 """Largest number of rows of a table on the page. `rodsweep export` writes all rows."""
 CELL_DIGITS = 6
 """Number of significant digits of a number in a table; all digits are shown under the pointer."""
@@ -94,43 +94,46 @@ class Cell:
 
 @dataclass(frozen=True, slots=True)
 class PageTable:
-    """Table on the page: columns, and cells of the shown rows. total_rows: number of rows of the result, of
-    which at most MAX_ROWS are shown. constants: (column, cell) for each column with equal values in all rows;
-    these columns are listed outside the table."""
+    """Table on the page: columns, and cells of the shown rows. result_row_count: number of rows of the
+    result, of which at most MAX_TABLE_ROWS are shown. constant_columns: (column, cell) for each column with
+    equal values in all rows; these columns are listed outside the table."""
 
     name: str
+    """Name of the table, as in `rodsweep export --table`."""
     columns: Sequence[Column]
     rows: Sequence[tuple[Cell, ...]]
-    total_rows: int
-    constants: Sequence[tuple[Column, Cell]]
+    result_row_count: int
+    constant_columns: Sequence[tuple[Column, Cell]]
 
 
 def page_tables(view: ResultView) -> Iterator[PageTable]:
     """Yields all nonempty tables of a result: first the default table of the task, then the table of points,
     then the other tables."""
     tables = Tables(view)
-    for name in dict.fromkeys((DEFAULT_TABLE[view.task], POINTS_TABLE, *tables.contents.tables)):
-        if name in tables.contents.tables and (table := tables.table(name)).rows:
+    for name in dict.fromkeys((DEFAULT_TABLE[view.task], POINTS_TABLE, *tables.contents.table_names)):
+        if name in tables.contents.table_names and (table := tables.table(name)).row_count:
             yield _table_for_page(table)
 
 
 def _table_for_page(table: Table) -> PageTable:
     """The table in a form for the page: without empty columns; columns with equal values in all rows are
     listed separately."""
-    filled_columns = [column for column in table.columns if not column.absent.all()]
+    filled_columns = [column for column in table.columns if not column.missing_mask.all()]
     is_constant = {
-        column.name: table.rows > 1
+        column.name: table.row_count > 1
         and column.name != "status"
-        and not column.absent.any()
+        and not column.missing_mask.any()
         and len(np.unique(column.values)) == 1
         for column in filled_columns
     }
     columns = [column for column in filled_columns if not is_constant[column.name]]
-    cells = [_cells(column.rows(slice(0, MAX_ROWS))) for column in columns]
+    cells = [_cells(column.with_rows(slice(0, MAX_TABLE_ROWS))) for column in columns]
     constants = [
-        (column, _cells(column.rows(slice(0, 1)))[0]) for column in filled_columns if is_constant[column.name]
+        (column, _cells(column.with_rows(slice(0, 1)))[0])
+        for column in filled_columns
+        if is_constant[column.name]
     ]
-    return PageTable(table.name, columns, list(zip(*cells, strict=True)), table.rows, constants)
+    return PageTable(table.name, columns, list(zip(*cells, strict=True)), table.row_count, constants)
 
 
 def _cells(column: Column) -> list[Cell]:
@@ -145,7 +148,7 @@ def _cells(column: Column) -> list[Cell]:
     ]
 
 
-PAGE_ATTRIBUTES = ("git_commit", "format", "petsc_options", "started", "finished", "fingerprint")
+FILE_ATTRIBUTES_ON_PAGE = ("git_commit", "format", "petsc_options", "started", "finished", "fingerprint")
 """Attributes of the result file that the page lists below the versions of the software. None contains the
 name of a machine or a user."""
 VERSION_SUFFIX = "_version"
@@ -161,17 +164,23 @@ class ReportContents:
     title: str
     """Title in the config; the name of the result file if there is no title."""
     task: str
+    """Name of the task."""
     summary: Summary
+    """Lines and tables that `rodsweep show` prints about the result."""
     statuses: TextTable
+    """Table of statuses, numbers of points and meanings; with several statuses also the parameter ranges of
+    each."""
     pictures: Pictures
     """Figures of the result."""
     tables: Sequence[PageTable]
-    config: str
+    """All nonempty tables of the result, the default table of the task first."""
+    given_config: str
     """Config as the user typed it."""
     complete_config: str
     """Config with the defaults of all keys filled in."""
     versions: Sequence[tuple[str, str]]
-    """(printed name, value) of the versions of the software and of the attributes in PAGE_ATTRIBUTES."""
+    """(printed name, value) of the versions of the software and of the attributes in
+    FILE_ATTRIBUTES_ON_PAGE."""
 
 
 def report_contents(view: ResultView, pictures: Pictures) -> ReportContents:
@@ -185,20 +194,20 @@ def report_contents(view: ResultView, pictures: Pictures) -> ReportContents:
         title=str(attributes.get("title", "")) or name,
         task=view.task,
         summary=summary,
-        statuses=_with_parameter_ranges(view, summary.statuses),
+        statuses=_statuses_with_parameter_ranges(view, summary.statuses),
         pictures=pictures,
         tables=list(page_tables(view)),
-        config=str(attributes.get("config", "")).strip("\n"),
+        given_config=str(attributes.get("config", "")).strip("\n"),
         complete_config=tree_yaml(view.config).strip("\n"),
         versions=[
             (key.removesuffix(VERSION_SUFFIX).replace("_", " "), str(attributes[key]))
-            for key in (*version_keys, *PAGE_ATTRIBUTES)
+            for key in (*version_keys, *FILE_ATTRIBUTES_ON_PAGE)
             if str(attributes.get(key, ""))
         ],
     )
 
 
-def _with_parameter_ranges(view: ResultView, statuses: TextTable) -> TextTable:
+def _statuses_with_parameter_ranges(view: ResultView, statuses: TextTable) -> TextTable:
     """Table of statuses. If there are several statuses, a column with the parameter ranges of each status is
     added."""
     if len(statuses.rows) == 1:
@@ -207,7 +216,9 @@ def _with_parameter_ranges(view: ResultView, statuses: TextTable) -> TextTable:
     rows = []
     for word, count_text, meaning in statuses.rows:
         ranges_text = (
-            Selection(list_view, list_view.has_status(word)).region() if word in view.flags.values() else ""
+            Selection(list_view, list_view.has_status(word)).parameter_ranges_text()
+            if word in view.status_flags.values()
+            else ""
         )
         rows.append((word, count_text, ranges_text, meaning))
     status_heading, count_heading, meaning_heading = statuses.headings

@@ -9,14 +9,14 @@ from matplotlib.figure import Figure
 
 from .hover_points import hover_points
 
-SVG = "http://www.w3.org/2000/svg"
-XLINK = "http://www.w3.org/1999/xlink"
+SVG_NAMESPACE = "http://www.w3.org/2000/svg"
+XLINK_NAMESPACE = "http://www.w3.org/1999/xlink"
 HOVER_RADIUS = "4"
 """Radius, in points, of the invisible circle around a value. The browser shows the title of the circle under
 the pointer."""
 
-ElementTree.register_namespace("", SVG)
-ElementTree.register_namespace("xlink", XLINK)
+ElementTree.register_namespace("", SVG_NAMESPACE)
+ElementTree.register_namespace("xlink", XLINK_NAMESPACE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,8 +29,8 @@ class VectorPicture:
 
 
 def vector_picture(figure: Figure, number: int, caption: str) -> VectorPicture:
-    """The figure as an SVG element. number: number of the picture on the page. caption: description for
-    readers who cannot see the picture."""
+    """The figure as an SVG element. number: number of the picture on the page. caption: description
+    for readers who cannot see the picture."""
     written = BytesIO()
     # Pictures of a page must not share the names of their clipping paths.
     with matplotlib.rc_context({"svg.hashsalt": f"picture {number}", "svg.fonttype": "path"}):
@@ -50,16 +50,16 @@ def _remove_element(root: ElementTree.Element, element_path: str) -> None:
     """Removes the first element at a path below `root`. element_path: path of element names, such as
     "defs/style"."""
     *parents, name = element_path.split("/")
-    parent = root.find("/".join(f"{{{SVG}}}{tag}" for tag in parents)) if parents else root
-    if parent is not None and (found := parent.find(f"{{{SVG}}}{name}")) is not None:
+    parent = root.find("/".join(f"{{{SVG_NAMESPACE}}}{tag}" for tag in parents)) if parents else root
+    if parent is not None and (found := parent.find(f"{{{SVG_NAMESPACE}}}{name}")) is not None:
         parent.remove(found)
 
 
 def _add_hover_texts(root: ElementTree.Element, figure: Figure) -> None:
-    """Adds to the SVG element `root` an invisible circle for each value of the figure; the title of the
-    circle is the text under the pointer."""
-    group = ElementTree.SubElement(root, f"{{{SVG}}}g", {"class": "values"})
+    """Adds to the SVG element `root` an invisible circle for each value of the figure; the title of
+    the circle is the text under the pointer."""
+    group = ElementTree.SubElement(root, f"{{{SVG_NAMESPACE}}}g", {"class": "values"})
     for point in hover_points(figure):
         circle_attributes = {"cx": f"{point.x:.1f}", "cy": f"{point.y:.1f}", "r": HOVER_RADIUS}
-        circle = ElementTree.SubElement(group, f"{{{SVG}}}circle", circle_attributes)
-        ElementTree.SubElement(circle, f"{{{SVG}}}title").text = point.text
+        circle = ElementTree.SubElement(group, f"{{{SVG_NAMESPACE}}}circle", circle_attributes)
+        ElementTree.SubElement(circle, f"{{{SVG_NAMESPACE}}}title").text = point.text

@@ -9,16 +9,16 @@ import numpy as np
 from ...results.layouts.limit_cycle import CYCLE_STATUSES
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...wording import counted, is_or_are
-from ..branch_curves import StoredBranch
+from ..stored_branches import StoredBranch
 from ..summary.branch import SPECIAL_POINT_WORDS
 from ..summary.criticality import CRITICALITY_WORDS
 from ..summary.number_texts import rounded_text
-from ..summary.thresholds import ENDED_EARLY
-from .arm_sentences import arm_sentences, cycle_caveat
+from ..summary.thresholds import ENDED_EARLY_STATUS
+from .arm_sentences import arm_sentences, cycle_validity_caveat
 from .portrait_units import PortraitUnits
 from .results import RodResults
 
-SAME_FORCE_TOLERANCE = 1e-6
+SAME_HOPF_POINT_TOLERANCE = 1e-6
 """Hopf points of two tasks are the same Hopf point if their forces differ by at most this relative amount."""
 THRESHOLD_CLAUSES = {
     "onset": "decaying disturbances start to oscillate at {F}",
@@ -30,7 +30,7 @@ THRESHOLD_CLAUSES = {
     "pair_leads": "a complex pair overtakes the leading real eigenvalue at {F}",
 }
 """Clause on the straight rod at a threshold, by kind of threshold."""
-SEARCH_TASKS = ("thresholds", "criticality", "branch")
+TASKS_WITH_STATED_STATUS = ("thresholds", "criticality", "branch")
 """Tasks whose status the paragraph states unless the status is `SUCCESS_STATUS`."""
 SUCCESS_STATUS = "ok"
 """Status of a search for thresholds, criticality or branches that is complete."""
@@ -55,7 +55,7 @@ def _rod_sentence(results: RodResults) -> Iterator[str]:
         search_text = "could not be searched"
     elif end_text != requested_force_text:
         reason = f"just above {end_text} the {kind} is crushed"
-        if results.views["thresholds"].has_status(ENDED_EARLY).all():
+        if results.views["thresholds"].has_status(ENDED_EARLY_STATUS).all():
             reason = "the search ended early: the list was full, or modes could not be counted"
         search_text += f", not to {requested_force_text}: {reason}"
     yield f"The {kind} with {results.rod.description} {search_text}."
@@ -85,7 +85,7 @@ def _threshold_sentences(results: RodResults) -> Iterator[str]:
     elif variables["crossing_count"] == 0:
         yield f"The straight {results.rod.kind} has no threshold up to {end_text}."
     if variables["crossing_count"] >= 0:
-        range_clause = f" up to {end_text}" if view.has_status(ENDED_EARLY).all() else ""
+        range_clause = f" up to {end_text}" if view.has_status(ENDED_EARLY_STATUS).all() else ""
         proof_text = "proved complete" if variables["certified"] else "not proved complete"
         yield f"This list of thresholds{range_clause} is {proof_text}."
 
@@ -96,7 +96,7 @@ def _criticality_clause(results: RodResults, F: float) -> str:
     if view is None:
         return ""
     variables = view.point_values(0)
-    is_same_crossing = np.abs(variables["crossing_F"] - F) <= SAME_FORCE_TOLERANCE * abs(F)
+    is_same_crossing = np.abs(variables["crossing_F"] - F) <= SAME_HOPF_POINT_TOLERANCE * abs(F)
     criticalities = variables["criticality"][is_same_crossing & np.isfinite(variables["criticality"])]
     if not criticalities.size:
         return ""
@@ -120,11 +120,11 @@ def _branch_sentences(results: RodResults) -> Iterator[str]:
         yield "No branch of cycles begins at a Hopf point in this range."
         return
     units = results.units
-    cycles = sum(int(curve.cycles.sum()) for curve in curves)
+    cycles = sum(int(curve.is_cycle.sum()) for curve in curves)
     texts = [
         f"{counted(len(loads), word)} at {units.load_phrase(', '.join(loads))}"
         for kind, word in SPECIAL_POINT_WORDS.items()
-        if (loads := _special_point_loads(curves, kind, units.force.factor))
+        if (loads := _special_point_loads(curves, kind, units.force.factor_from_dimensionless))
     ]
     accuracy = results.views["branch"].config["accuracy"]
     branches_phrase = f"{counted(len(curves), 'branch')} of cycles ({cycles} solved to {accuracy:g})"
@@ -132,44 +132,44 @@ def _branch_sentences(results: RodResults) -> Iterator[str]:
         f"with {' and '.join(texts)}" if texts else "without a fold or another change of stability"
     )
     yield f"{branches_phrase} {_beginnings_phrase(curves)}, {special_points_phrase}."
-    yield from _work_limit_sentence(curves, units)
+    yield from _incomplete_branches_sentence(curves, units)
     stable = [stable_range for curve in curves for stable_range in curve.stable_ranges]
-    is_decided = all(curve.is_decided for curve in curves)
+    is_decided = all(curve.is_fully_known for curve in curves)
     no_cycle_text = "none" if is_decided and not rod.hidden_count else "none is known"
-    stable_text = units.load_ranges_text(stable, rod.parameter_errors) if stable else no_cycle_text
-    yield f"Stable cycles: {stable_text}."
+    errors = rod.special_point_errors
+    yield f"Stable cycles: {units.load_ranges_text(stable, errors) if stable else no_cycle_text}."
     if not rod.hidden_count:
-        coexistence_ranges = rod.coexistence_ranges
-        ranges_text = (
-            units.load_ranges_text(coexistence_ranges, rod.parameter_errors) if coexistence_ranges else ""
-        )
-        yield _coexistence_sentence(ranges_text, rod.coexistence_is_decided, results.rod.kind)
-        if pairs := rod.two_cycle_ranges:
-            yield f"Two different cycles are stable at {units.load_ranges_text(pairs, rod.parameter_errors)}."
+        ranges = rod.coexistence_ranges
+        ranges_text = units.load_ranges_text(ranges, errors) if ranges else ""
+        yield _coexistence_sentence(ranges_text, rod.is_coexistence_known, results.rod.kind)
+        if pairs := rod.two_stable_cycle_ranges:
+            yield f"Two different cycles are stable at {units.load_ranges_text(pairs, errors)}."
 
 
 def _beginnings_phrase(curves: Sequence[StoredBranch]) -> str:
     """Phrase for the places where branches begin, such as "begin at its Hopf points"."""
-    kinds = [curve.special[0].kind for curve in curves]
+    kinds = [curve.special_points[0].kind for curve in curves]
     is_single_curve = len(curves) == 1
     place_texts = []
     if "hopf" in kinds:
         place_texts.append("at a Hopf point" if is_single_curve else "at its Hopf points")
     if breakings := kinds.count("symmetry_breaking"):
         place_texts.append(f"at {counted(breakings, 'symmetry breaking')}")
-    if any(curve.enters_range for curve in curves):
+    if any(curve.starts_outside_range for curve in curves):
         place_texts.append("beyond the range")
     verb = "begins" if is_single_curve else "begin"
     return f"{verb} {' and '.join(place_texts)}".replace(" and at ", " and ")
 
 
-def _work_limit_sentence(curves: Sequence[StoredBranch], units: PortraitUnits) -> Iterator[str]:
+def _incomplete_branches_sentence(curves: Sequence[StoredBranch], units: PortraitUnits) -> Iterator[str]:
     """Yields a sentence on the branches that are not drawn to their ends, because the portrait's limit of the
     work, or of the number of cycles, is reached."""
-    limited_curves = [curve for curve in curves if curve.special[-1].reason == "list_full"]
+    limited_curves = [curve for curve in curves if curve.special_points[-1].reason == "list_full"]
     if not limited_curves:
         return
-    end_texts = [units.load_text(curve.special[-1].at) for curve in limited_curves if curve.cycles.any()]
+    end_texts = [
+        units.load_text(curve.special_points[-1].at) for curve in limited_curves if curve.is_cycle.any()
+    ]
     clauses = (
         [f"{len(end_texts)} of them {is_or_are(len(end_texts))} drawn only to {', '.join(end_texts)}"]
         if end_texts
@@ -196,7 +196,7 @@ def _coexistence_sentence(ranges: str, is_decided: bool, kind: str) -> str:
 
 def _special_point_loads(curves: Sequence[StoredBranch], kind: str, factor: float) -> list[str]:
     """Distinct loads, as text, at the special points of the given kind. factor: load at F = 1."""
-    points = [special for curve in curves for special in curve.special if special.kind == kind]
+    points = [special for curve in curves for special in curve.special_points if special.kind == kind]
     return list(dict.fromkeys(rounded_text(factor * point.at, factor * point.error) for point in points))
 
 
@@ -221,7 +221,8 @@ def _cycle_sentences(results: RodResults) -> Iterator[str]:
         )
         place_text = f"at {units.load_text(F)}{', unstable,' if word == 'unstable' else ''}"
         clauses.append(
-            f"{place_text} the period is {period} and the largest y of the tip {y_text}{cycle_caveat(view)}"
+            f"{place_text} the period is {period} and the largest y of the tip {y_text}"
+            f"{cycle_validity_caveat(view)}"
         )
     if clauses:
         yield f"Cycles: {'; '.join(clauses)}."
@@ -229,8 +230,8 @@ def _cycle_sentences(results: RodResults) -> Iterator[str]:
 
 def _missing_result_sentences(results: RodResults) -> Iterator[str]:
     """Yields sentences on missing results, and on results whose status is not `SUCCESS_STATUS`."""
-    for task, reason in results.missing.items():
+    for task, reason in results.missing_result_reasons.items():
         yield f"Not solved, {task.replace('_', ' ')}: {reason}."
-    for task in SEARCH_TASKS:
+    for task in TASKS_WITH_STATED_STATUS:
         if (view := results.views.get(task)) and (word := str(view.status_names[0])) != SUCCESS_STATUS:
-            yield f"About {task}, {word.replace('_', ' ')}: {view.sentences.get(word, word)}."
+            yield f"About {task}, {word.replace('_', ' ')}: {view.status_sentences.get(word, word)}."

@@ -20,7 +20,7 @@ class DescribedRod:
     """Section `material` of a config; empty for a uniform rod of linear material."""
     arm: Mapping[str, Any] = field(default_factory=dict)
     """Section `parameters.arm` of a config, without the load; empty for a rod."""
-    load: str = "pressure"
+    load_kind: str = "pressure"
     """Kind of load on the arm: "pressure" or "force"."""
 
     @property
@@ -58,14 +58,14 @@ class RodResults:
     """(force, modes at this force) at the first threshold of a kind, by kind of threshold."""
     cycles: Sequence[tuple[float, ResultView]]
     """(force, limit cycle at this force), in increasing order of the force."""
-    missing: Mapping[str, str]
+    missing_result_reasons: Mapping[str, str]
     """Reason, as a sentence, for every task of which a result is missing, by task."""
 
     @property
     def units(self) -> PortraitUnits:
         """Units of the portrait, with prefixes suitable for the largest force of the search."""
         view = self.views["thresholds"]
-        return portrait_units(view, self.rod.load, float(view.variables["F_end"].ravel()[0]))
+        return portrait_units(view, self.rod.load_kind, float(view.variables["F_end"].ravel()[0]))
 
     @property
     def branches(self) -> RodBranches | None:

@@ -12,18 +12,19 @@ from rich.text import Text
 from ...config.arm.status import NOT_SLENDER
 from ...config.values import printable
 from ...model.arm.drag import DRAG_ESTIMATE_NAMES
-from ...model.arm.quantities import ALL_QUANTITIES
+from ...model.arm.quantities import ARM_FILE_VARIABLES
 from ...model.units import value_in_unit
 from ...results.file.provenance import FAILURE_REASONS_ATTRIBUTE, example_failure_sentence
 from ...results.file.view import ResultView
 from ...results.layouts import lacks_sweep_wide_variables
-from ...results.layouts.variables import DIMENSIONS, MISSING_STATUS
+from ...results.layouts.dimensions import UNIT_AND_LONG_NAME_OF_DIMENSION
+from ...results.layouts.variables import MISSING_STATUS
 from ...wording import counted, is_or_are, plural
 from ..cost_and_provenance import provenance_lines, rank_lines, time_lines
 from ..material_texts import material_lines
-from ..tables.alignment import column_cells, point_aligned, rewrap_line, table_blocks
-from .arm.answer import arm_answer
-from .arm.arm import arm_lines
+from ..tables.alignment import aligned_at_decimal_points, aligned_column_cells, rewrap_line, table_blocks
+from .arm.arm_answer_lines import arm_answer
+from .arm.arm_texts import arm_variable_lines
 from .branch import branch_summary
 from .criticality import criticality_summary
 from .limit_cycle import limit_cycle_summary
@@ -34,7 +35,7 @@ from .spectrum import spectrum_summary
 from .summary_lines import Summary, SummaryLines, TextTable
 from .thresholds import thresholds_summary
 
-SUMMARIES: dict[str, Callable[[Selection], SummaryLines]] = {
+SUMMARY_FUNCTION_BY_TASK: dict[str, Callable[[Selection], SummaryLines]] = {
     "spectrum": spectrum_summary,
     "thresholds": thresholds_summary,
     "phase_diagram": phase_diagram_summary,
@@ -46,9 +47,9 @@ SUMMARIES: dict[str, Callable[[Selection], SummaryLines]] = {
 """For each task, the function of the computed points that returns the lines of the summary."""
 MAX_TABLE_WIDTH = 1000
 """Largest width, in characters, of a table of numbers that is printed into a pipe or a file."""
-ARM_DIGITS = 6
+ARM_QUANTITY_DIGITS = 6
 """Significant digits of the quantities of an arm, and of the parameters computed from them."""
-DISTINCT_DIGITS = 12
+DIGITS_OF_EQUAL_PARAMETERS = 12
 """Parameters that agree to this number of significant digits are equal: values computed from an arm differ by
 rounding."""
 POINT_NOUNS = {"thresholds": "rod", "criticality": "rod", "branch": "rod", "phase_diagram": "row"}
@@ -64,7 +65,7 @@ def summary_of(view: ResultView, every_status: bool = False) -> Summary:
     noun = POINT_NOUNS.get(view.task, "point")
     rods = computed & (status < NOT_SLENDER)
     no_points_lines = SummaryLines([] if computed.any() else [f"no {noun} is computed yet"])
-    lines = SUMMARIES[view.task](Selection(view, rods)) if rods.any() else no_points_lines
+    lines = SUMMARY_FUNCTION_BY_TASK[view.task](Selection(view, rods)) if rods.any() else no_points_lines
     attributes = view.attributes
     return Summary(
         answer=_answer_lines(view, computed, lines),
@@ -76,9 +77,9 @@ def summary_of(view: ResultView, every_status: bool = False) -> Summary:
         statuses=_status_table(view, status, every_status, noun),
         details=lines.details,
         material=material_lines(view),
-        axes=_axes_table(view),
-        numbers=lines.numbers,
-        provenance=[
+        axes_table=_axes_table(view),
+        numbers_table=lines.numbers_table,
+        cost_and_provenance_lines=[
             *time_lines(view, computed, noun),
             *rank_lines(attributes, noun),
             *provenance_lines(attributes),
@@ -99,13 +100,13 @@ def show_summary(view: ResultView, every_status: bool = False) -> None:
     title = view.attributes.get("title", "")
     console.print(f"{printable(str(view.path))}: {title}, task {view.task}", soft_wrap=True)
     print_lines(console, summary.answer)
-    if summary.numbers is not None:
-        _print_numbers(console, summary.numbers)
+    if summary.numbers_table is not None:
+        _print_numbers(console, summary.numbers_table)
     groups: tuple[tuple[str, Sequence[str], TextTable | None], ...] = (
         ("Reliability", summary.reliability, summary.statuses),
         ("Further results", summary.details, None),
-        ("Parameters", summary.material, summary.axes),
-        ("Provenance", summary.provenance, None),
+        ("Parameters", summary.material, summary.axes_table),
+        ("Provenance", summary.cost_and_provenance_lines, None),
     )
     for heading, lines, table in groups:
         if not lines and table is None:
@@ -133,7 +134,7 @@ def _print_numbers(console: Console, table: TextTable) -> None:
     """Prints a table of numbers in blocks of columns that fit into the window, each after an empty line."""
     heading_lines = [(*heading.split("\n"), "")[:2] for heading in table.headings]
     cells = zip(heading_lines, zip(*table.rows, strict=True), strict=True)
-    columns = [column_cells(heading_pair, column) for heading_pair, column in cells]
+    columns = [aligned_column_cells(heading_pair, column) for heading_pair, column in cells]
     for block in table_blocks(columns, console.width if wraps_lines(console) else MAX_TABLE_WIDTH):
         for line in ("", *block):
             console.print(line, soft_wrap=True)
@@ -145,7 +146,7 @@ def _answer_lines(view: ResultView, computed: np.ndarray, summary: SummaryLines)
     if not view.quantities or not computed.any():
         return [*summary.answer]
     points = Selection(view, computed)
-    lines = [*arm_answer(points), *summary.arm_sentences, *arm_lines(points)]
+    lines = [*arm_answer(points), *summary.arm_sentences, *arm_variable_lines(points)]
     return [*lines, "", "the same in dimensionless numbers:", *summary.answer] if summary.answer else lines
 
 
@@ -191,7 +192,7 @@ def _terminal_table(table: TextTable) -> Table:
     """The table in a form for the terminal: without borders, numbers aligned at their decimal points."""
     rich_table = Table(*table.headings, box=None, pad_edge=False)
     if table.rows:
-        for row in zip(*map(point_aligned, zip(*table.rows, strict=True)), strict=True):
+        for row in zip(*map(aligned_at_decimal_points, zip(*table.rows, strict=True)), strict=True):
             rich_table.add_row(*(Text(cell.rstrip()) for cell in row))
     return rich_table
 
@@ -205,23 +206,23 @@ def _axes_table(view: ResultView) -> TextTable:
             names = [DRAG_ESTIMATE_NAMES[int(value)] for value in np.unique(values[~np.isnan(values)])]
             rows.append((name, str(len(names)), names[0], names[-1] if names[1:] else "", ""))
             continue
-        si = ALL_QUANTITIES[name].unit
+        si = ARM_FILE_VARIABLES[name].unit
         unit = view.typed_units.get(name, si)
         rows.append((name, *_count_and_range(np.vectorize(value_in_unit)(values, unit, si)), unit))
     # The parameters of an arm are computed; those of a rod are typed, and may differ in a late digit.
-    digits = ARM_DIGITS if view.quantities else DISTINCT_DIGITS
+    digits = ARM_QUANTITY_DIGITS if view.quantities else DIGITS_OF_EQUAL_PARAMETERS
     for name, values in view.parameter_values.items():
-        rows.append((name, *_count_and_range(values, digits), DIMENSIONS[name][0]))
+        rows.append((name, *_count_and_range(values, digits), UNIT_AND_LONG_NAME_OF_DIMENSION[name][0]))
     if all(row[1] == "1" for row in rows):
         return TextTable(("parameter", "value", "unit"), tuple((row[0], row[2], row[4]) for row in rows))
     return TextTable(("parameter", "values", "from", "to", "unit"), tuple(rows))
 
 
-def _count_and_range(values: np.ndarray, digits: int = ARM_DIGITS) -> tuple[str, str, str]:
+def _count_and_range(values: np.ndarray, digits: int = ARM_QUANTITY_DIGITS) -> tuple[str, str, str]:
     """Returns (count, smallest, largest) of `values`, of any shape, as text. count: number of distinct
     values. NaN is ignored. `largest` is empty if all values are equal. digits: significant digits of the
     texts."""
-    distinct = {f"{value:.{DISTINCT_DIGITS}g}" for value in values[~np.isnan(values)]}
+    distinct = {f"{value:.{DIGITS_OF_EQUAL_PARAMETERS}g}" for value in values[~np.isnan(values)]}
     range_ends = sorted(map(float, distinct))
     texts = [f"{end:.{digits}g}" for end in range_ends]
     return str(len(range_ends)), texts[0] if texts else "", texts[-1] if len(texts) > 1 else ""
@@ -230,10 +231,10 @@ def _count_and_range(values: np.ndarray, digits: int = ARM_DIGITS) -> tuple[str,
 def _status_table(view: ResultView, status: np.ndarray, is_every_shown: bool, noun: str) -> TextTable:
     """Table of statuses, numbers of points, and meanings. is_every_shown: whether statuses that no point has
     are included."""
-    sentences = view.sentences | {"missing": "not computed yet"}
+    sentences = view.status_sentences | {"missing": "not computed yet"}
     rows = []
     counts = dict(zip(*(array.tolist() for array in np.unique(status, return_counts=True)), strict=True))
-    for value in sorted(view.flags.keys() | counts.keys()) if is_every_shown else counts:
-        name = view.flags.get(value, f"unknown ({value})")
+    for value in sorted(view.status_flags.keys() | counts.keys()) if is_every_shown else counts:
+        name = view.status_flags.get(value, f"unknown ({value})")
         rows.append((name, str(counts.get(value, 0)), sentences.get(name, "")))
     return TextTable(("status", plural(noun), "meaning"), tuple(rows))

@@ -7,20 +7,20 @@ import numpy as np
 
 from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import counted
-from .arm.arm import crossings_of_arm
-from .errors import absolute_errors
-from .number_texts import rounded_text, span_text
-from .selection import Selection, counts_by_word, in_brackets
+from .arm.arm_texts import single_arm_threshold_lines
+from .number_texts import rounded_text, value_range_text
+from .selection import Selection, counts_by_word_text, in_brackets
 from .summary_lines import MAX_LISTED_ITEMS, SummaryLines, TextTable, number_table
 from .thresholds import (
-    ENDED_EARLY,
-    proved_for_text,
+    ENDED_EARLY_STATUS,
+    early_search_end_clause,
+    failed_search_count_clause,
+    proved_rod_count_text,
     stored_crossing_kinds,
-    unknown_beyond_clause,
-    unknown_clause,
     unstored_crossing_count,
     unstored_crossings_clause,
 )
+from .variable_errors import absolute_errors
 
 CRITICALITY_WORDS = {-1: "supercritical", 1: "subcritical", 0: "undecided"}
 """Word for the criticality of a Hopf point, by sign of Re c (c: cubic coefficient of the normal form)."""
@@ -35,7 +35,7 @@ HOPF_SYMBOLS_AND_UNITS = {
     "frequency_slope": "b, L^2/(k3 tau2)",
 }
 """Symbol and unit of each number of a Hopf point, by variable."""
-ERROR_SYMBOLS = {
+COEFFICIENT_SYMBOL_BY_ERROR = {
     "landau_error": "c",
     "growth_slope_error": "dw/dF",
     "amplitude_coefficient_error": "a",
@@ -56,22 +56,29 @@ def criticality_summary(points: Selection) -> SummaryLines:
     variables = points.variables
     with_hopf = points.where(variables["crossing_count"] > 0)
     unknown = points.where(
-        (variables["crossing_count"] < 0) | (points.view.has_status(ENDED_EARLY) & ~with_hopf.mask)
+        (variables["crossing_count"] < 0) | (points.view.has_status(ENDED_EARLY_STATUS) & ~with_hopf.mask)
     )
-    place_text = in_brackets(with_hopf.region()) if with_hopf.count else ""
+    place_text = in_brackets(with_hopf.parameter_ranges_text()) if with_hopf.count else ""
     answer = [
-        f"Hopf points at {with_hopf.of_total(points, 'rod')}{place_text}{unknown_clause(unknown.count)}"
+        f"Hopf points at {with_hopf.count_of_total_text(points, 'rod')}{place_text}"
+        f"{failed_search_count_clause(unknown.count)}"
     ]
     criticality = points.values("criticality")
     known_counts = np.isfinite(criticality).sum(axis=-1)
     if not known_counts.any():
         return SummaryLines(answer, reliability)
-    first_text = f"{_count_text(criticality[:, 0])}; {points.sentence(FIRST_HOPF_POINTS_SENTENCE)}"
-    answer += [f"first Hopf point of each rod: {first_text}", *_subcritical_lines(points)]
-    worst = [f"{symbol} {_maximum_text(points.values(name))}" for name, symbol in ERROR_SYMBOLS.items()]
+    first_text = _criticality_counts_text(criticality[:, 0])
+    ranges_text = points.sentence_with_ranges(FIRST_HOPF_POINTS_SENTENCE)
+    answer += [f"first Hopf point of each rod: {first_text}; {ranges_text}", *_subcritical_lines(points)]
+    worst = [
+        f"{symbol} {_maximum_text(points.values(name))}"
+        for name, symbol in COEFFICIENT_SYMBOL_BY_ERROR.items()
+    ]
     reliability.append(f"worst relative errors: {', '.join(worst)}")
     scope = "stored" if (points.values("crossing_count") > known_counts).any() else "all"
-    all_text = f"{_count_text(criticality)}; {points.sentence(ALL_HOPF_POINTS_SENTENCE)}"
+    all_text = (
+        f"{_criticality_counts_text(criticality)}; {points.sentence_with_ranges(ALL_HOPF_POINTS_SENTENCE)}"
+    )
     return SummaryLines(answer, reliability, [f"{scope} Hopf points: {all_text}"])
 
 
@@ -83,10 +90,13 @@ def _single_rod_summary(points: Selection, reliability: list[str]) -> SummaryLin
     if not lines and variables["crossing_count"] < 0:
         lines = ["the Hopf points of this rod are not known"]
     elif not lines:
-        lines = [f"no Hopf point up to F = {span_text(variables['F_end'])}"]
-    lines[0] += unknown_beyond_clause(view, float(variables["F_end"]))
+        lines = [f"no Hopf point up to F = {value_range_text(variables['F_end'])}"]
+    lines[0] += early_search_end_clause(view, float(variables["F_end"]))
     return SummaryLines(
-        lines, reliability, arm_sentences=crossings_of_arm(view), numbers=_hopf_table(variables)
+        lines,
+        reliability,
+        arm_sentences=single_arm_threshold_lines(view),
+        numbers_table=_hopf_table(variables),
     )
 
 
@@ -137,7 +147,7 @@ def _subcritical_lines(points: Selection) -> Iterator[str]:
     """Yields lines on rods with subcritical Hopf points; rods whose first Hopf point is subcritical come
     first."""
     view = points.view
-    criticality = view.by_point("criticality")
+    criticality = view.flattened_by_point("criticality")
     rods = np.flatnonzero((criticality == 1).any(axis=-1))
     rods = rods[np.argsort(criticality[rods, 0] != 1, kind="stable")]
     for rod in rods[:MAX_LISTED_ITEMS]:
@@ -154,18 +164,18 @@ def _subcritical_lines(points: Selection) -> Iterator[str]:
         yield f"and subcritical Hopf points for {counted(len(rods) - MAX_LISTED_ITEMS, 'rod')} more"
 
 
-def _count_text(signs: np.ndarray) -> str:
+def _criticality_counts_text(signs: np.ndarray) -> str:
     """Numbers of supercritical, subcritical and undecided Hopf points, as text. signs: signs of Re c, of any
     shape."""
-    return counts_by_word(signs, CRITICALITY_WORDS) or "none known"
+    return counts_by_word_text(signs, CRITICALITY_WORDS) or "none known"
 
 
 def _searched_range_line(points: Selection) -> str:
     """Line on the searched range of F, and on the completeness of the list of Hopf points."""
     is_searched = np.isfinite(points.values("F_end")).any()
-    search_clause = points.sentence("searched up to F = {F_end}; ") if is_searched else ""
+    search_clause = points.sentence_with_ranges("searched up to F = {F_end}; ") if is_searched else ""
     unlisted_clause = unstored_crossings_clause(unstored_crossing_count(points))
-    return f"{search_clause}the list of Hopf points {proved_for_text(points, 'rod')}{unlisted_clause}"
+    return f"{search_clause}the list of Hopf points {proved_rod_count_text(points, 'rod')}{unlisted_clause}"
 
 
 def _maximum_text(values: np.ndarray) -> str:

@@ -4,16 +4,17 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ...model.parameters import NON_OPTIONAL_LINEAR_PARAMETERS
+from ...model.parameters import NON_OPTIONAL_LINEAR_PARAMETER_NAMES
 from ...results.file.view import ResultView
-from ...results.layouts.phase_diagram import BAUTIN_ENDS, CURVE_ENDS
+from ...results.layouts.bautin_points import BAUTIN_CURVE_END_REASONS
+from ...results.layouts.phase_diagram import BOUNDARY_CURVE_END_REASONS
 from ...wording import counted, is_or_are
 from ..plane_curves import PlaneParameters
 from .criticality import CRITICALITY_WORDS
-from .cycle_curves import cycle_curve_lines, position_text
-from .number_texts import error_text, span_text
+from .cycle_curves import cycle_curve_lines, plane_position_text
+from .number_texts import error_text, value_range_text
 
-CURVE_NOUNS = ("double eigenvalues", "Hopf points")
+BOUNDARY_CURVE_NOUNS = ("double eigenvalues", "Hopf points")
 """Noun for the points of a boundary curve, by stored number of the kind of the curve."""
 BAUTIN_END_WORDS = {
     "none": "not an end",
@@ -64,7 +65,7 @@ def curve_count_lines(view: ResultView, parameters: PlaneParameters) -> list[str
         clauses = [subject.format(count)]
         if count:
             distance_text = error_text(float(variables[f"{prefix}_agreement"]))
-            range_text = f"{distance_text} of the range of {parameters.line}"
+            range_text = f"{distance_text} of the range of {parameters.line_parameter}"
             clauses.append(f"the {plural_noun} located on rows lie within {range_text} from the curves")
         if on_no_curve:
             clauses.append(f"{counted(on_no_curve, noun)} {is_or_are(on_no_curve)} on no curve")
@@ -80,11 +81,14 @@ def incomplete_curve_lines(view: ResultView, parameters: PlaneParameters) -> lis
     variables = view.variables
     lines = []
     for end in INCOMPLETE_CURVE_ENDS:
-        reason = list(CURVE_ENDS).index(end)
+        reason = list(BOUNDARY_CURVE_END_REASONS).index(end)
         for i in np.flatnonzero((variables["curve_start"] == reason) | (variables["curve_end"] == reason)):
             place = ", ".join(f"{name} = {variables[f'curve_{name}'][i]:.6g}" for name in parameters[::-1])
-            curve = f"curve {int(variables['curve_number'][i])}, of {CURVE_NOUNS[variables['curve_kind'][i]]}"
-            lines.append(f"{curve}, is incomplete: it stops at {place}: {CURVE_ENDS[end]}")
+            number, noun = variables["curve_number"][i], BOUNDARY_CURVE_NOUNS[variables["curve_kind"][i]]
+            lines.append(
+                f"curve {int(number)}, of {noun}, is incomplete: it stops at {place}: "
+                f"{BOUNDARY_CURVE_END_REASONS[end]}"
+            )
     return lines
 
 
@@ -93,8 +97,10 @@ def _curve_fold_lines(view: ResultView, parameters: PlaneParameters) -> list[str
     variables = view.variables
     lines = []
     for i, (kind, name) in enumerate(zip(variables["fold_kind"], variables["fold_of"], strict=True)):
-        subject = f"fold of the curve of {CURVE_NOUNS[kind]}, where {parameters[int(name)]} is extremal"
-        lines.append(f"{subject}: {position_text(view, 'fold', i, parameters)}")
+        subject = (
+            f"fold of the curve of {BOUNDARY_CURVE_NOUNS[kind]}, where {parameters[int(name)]} is extremal"
+        )
+        lines.append(f"{subject}: {plane_position_text(view, 'fold', i, parameters)}")
     if "partial_beam_k1" in variables:
         k1, F = (float(variables[f"partial_beam_{name}"]) for name in ("k1", "F"))
         lines.append(
@@ -120,7 +126,7 @@ def _bautin_lines(view: ResultView, parameters: PlaneParameters) -> list[str]:
     located."""
     lines = [
         f"generalised Hopf point (Re c = 0) on curve {int(curve)}: "
-        f"{position_text(view, 'bautin', i, parameters)}"
+        f"{plane_position_text(view, 'bautin', i, parameters)}"
         for i, curve in enumerate(view.variables["bautin_curve"])
     ]
     if unlocated := int(view.variables["bautin_unlocated"]):
@@ -132,13 +138,15 @@ def _bautin_curve_lines(variables: Mapping[str, np.ndarray]) -> list[str]:
     """Lines about curves of generalised Hopf points along a third parameter, with the reasons for their
     ends."""
     numbers = variables["bautin_along_curve"]
-    names = [name for name in NON_OPTIONAL_LINEAR_PARAMETERS if f"bautin_along_{name}" in variables]
+    names = [name for name in NON_OPTIONAL_LINEAR_PARAMETER_NAMES if f"bautin_along_{name}" in variables]
     lines = []
     for number in np.unique(numbers):
         mask = numbers == number
-        spans = ", ".join(f"{name} = {span_text(variables[f'bautin_along_{name}'][mask])}" for name in names)
+        spans = ", ".join(
+            f"{name} = {value_range_text(variables[f'bautin_along_{name}'][mask])}" for name in names
+        )
         start, end = (
-            BAUTIN_END_WORDS[BAUTIN_ENDS[int(variables[f"bautin_along_{side}"][mask].max())]]
+            BAUTIN_END_WORDS[BAUTIN_CURVE_END_REASONS[int(variables[f"bautin_along_{side}"][mask].max())]]
             for side in ("start", "end")
         )
         ends_text = f"both ends lie at {start}" if start == end else f"it begins at {start} and ends at {end}"

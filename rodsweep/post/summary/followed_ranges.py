@@ -3,11 +3,11 @@
 import numpy as np
 
 from ...arrays import list_of
-from ..branch_curves import branch_ends, followed_parameter
+from ..branch_curves import followed_parameter, followed_range
 from ..crushing import uncrushed_ranges
-from .number_texts import span_text
+from .number_texts import value_range_text
 from .selection import Selection
-from .thresholds import proved_for_text
+from .thresholds import proved_rod_count_text
 
 MISSED_CYCLES_TEXT = (
     "cycles are missed if their branch comes from farther away, moves away from the range stable or with "
@@ -24,7 +24,7 @@ def followed_beyond_range_text(points: Selection, parameter_name: str, prefix: s
     limits = [points.values(f"{prefix}{end}") for end in ("from", "to")]
     if not all(np.isfinite(values).any() for values in limits):
         return MISSED_CYCLES_TEXT
-    low_text, high_text = map(span_text, limits)
+    low_text, high_text = map(value_range_text, limits)
     return (
         f"branches that may enter the range are followed down to {parameter_name} = {low_text} and up to "
         f"{high_text}; {MISSED_CYCLES_TEXT}"
@@ -35,12 +35,13 @@ def searched_range_line(points: Selection) -> str:
     """Line on the range of the followed parameter, and on the completeness of the list of Hopf points."""
     view = points.view
     parameter = followed_parameter(view)
-    start, end = branch_ends(view)
+    start, end = followed_range(view)
     ranges = uncrushed_ranges(view, list_of(np.flatnonzero(points.mask.ravel())))
     if all(last <= first for first, last in ranges):
         return "no branch is followed"
     note = "" if set(ranges) <= {(start, end)} else ", where the force does not crush the rod"
     return (
         f"followed in {parameter} from {start:g} to {end:g}{note}; the list of Hopf points "
-        f"{proved_for_text(points, 'rod')}; {followed_beyond_range_text(points, parameter, 'followed_')}"
+        f"{proved_rod_count_text(points, 'rod')}; "
+        f"{followed_beyond_range_text(points, parameter, 'followed_')}"
     )

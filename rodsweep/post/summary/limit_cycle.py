@@ -4,16 +4,16 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ...model.parameters import NON_OPTIONAL_LINEAR_PARAMETERS
-from ...results.layouts.limit_cycle import CYCLE_STATUSES, SECOND_STATES
+from ...model.parameters import NON_OPTIONAL_LINEAR_PARAMETER_NAMES
+from ...results.layouts.limit_cycle import CYCLE_STATUSES, SECOND_STABLE_STATES
 from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import count_of_total, counted
 from ..located_thresholds import StoredThresholds
-from .arm.arm import region_of_arms
-from .number_texts import error_text, span_text
-from .selection import Selection, counts_at_places, varied_parameters_at_points
+from .arm.arm_texts import arm_quantity_ranges_text
+from .number_texts import error_text, value_range_text
+from .selection import Selection, counts_and_ranges_text, varied_parameters_at_points
 from .stability import rod_and_arm_stability_lines
-from .summary_lines import SummaryLines, TextTable, number_table, proof_clause
+from .summary_lines import SummaryLines, TextTable, completeness_predicate, number_table
 
 OUTCOME_WORDS = {
     "cycle": "beats",
@@ -25,7 +25,7 @@ OUTCOME_WORDS = {
     "failed": "is not solved",
 }
 """Predicate for the rod at a point, by status; for other statuses the name of the status is used."""
-CYCLE_NUMBERS = (
+SINGLE_CYCLE_TABLE_ROWS = (
     ("period", "period", "tau2"),
     ("frequency", "frequency", ANGULAR_UNIT),
     ("largest y of the tip", "tip_y_max", "L"),
@@ -43,19 +43,19 @@ TORUS_SENTENCE = (
 """Sentence on the motions on tori."""
 CYCLES_SENTENCE = "period: {period} tau2; largest y of the tip: {tip_y_max} L"
 """Sentence of the answer on the cycles of several points."""
-CYCLE_DETAILS = (
+CYCLE_DETAIL_SENTENCES = (
     "tip: least x {tip_x_min} L, largest x {tip_x_max} L, largest |theta| {tip_theta_max} rad",
     "mean power of the force: {injection_mean} k3/(L tau2)",
     "largest |Floquet multiplier|: {multiplier}; returns of the tip in the integration: {periods}; smallest "
     "stretch h1: {least_stretch}",
 )
 """Sentences on further results about the cycles."""
-SUBCRITICAL_SENTENCE = (
+POSSIBLE_CYCLE_REASON = (
     "the Hopf point at F = {subcritical_F} is subcritical, so a larger initial deflection may lead to a "
     "cycle; `task: branch` follows the branch of these cycles"
 )
 """Reason why a stable cycle may exist beside the stable straight rod."""
-ERROR_VARIABLES = {
+VARIABLES_OF_LARGEST_ERRORS = {
     "period": "period_error",
     "largest y of the tip": "amplitude_error",
     "other extrema of the tip": "extrema_error",
@@ -73,7 +73,7 @@ def limit_cycle_summary(points: Selection) -> SummaryLines:
     is_single = points.mask.size == 1
     stability_lines, arm_sentences = _threshold_lines(points)
     if view.quantities and not is_single and cycles.count < points.count:
-        arm_sentences.insert(0, outcome_count_line(points, region_of_arms))
+        arm_sentences.insert(0, outcome_count_line(points, arm_quantity_ranges_text))
     answer = [outcome_count_line(points)]
     reliability = _hopf_completeness_lines(points)
     numbers = None
@@ -81,16 +81,18 @@ def limit_cycle_summary(points: Selection) -> SummaryLines:
         answer.append(single_cycle_stability_line(points))
         numbers = single_cycle_table(points)
     elif cycles.count:
-        answer.append(cycles.sentence(CYCLES_SENTENCE))
+        answer.append(cycles.sentence_with_ranges(CYCLES_SENTENCE))
         reliability.insert(0, _error_line(cycles))
-    details = [points.sentence(STRAIGHT_ROD_SENTENCE)]
-    details += [tori.sentence(TORUS_SENTENCE)] if tori.count else []
+    details = [points.sentence_with_ranges(STRAIGHT_ROD_SENTENCE)]
+    details += [tori.sentence_with_ranges(TORUS_SENTENCE)] if tori.count else []
     details += _cycle_lines(cycles) if cycles.count else []
     answer += [*stability_lines, *_second_state_lines(points)]
     return SummaryLines(answer, reliability, details, arm_sentences, numbers)
 
 
-def outcome_count_line(points: Selection, region: Callable[[Selection], str] = Selection.region) -> str:
+def outcome_count_line(
+    points: Selection, region: Callable[[Selection], str] = Selection.parameter_ranges_text
+) -> str:
     """Line on the number of points with each outcome, and on their regions of parameters.
 
     region: function that describes the place of points.
@@ -99,12 +101,12 @@ def outcome_count_line(points: Selection, region: Callable[[Selection], str] = S
     points_text = counted(points.count, "point")
     names = {
         name: OUTCOME_WORDS.get(name, name.replace("_", " "))
-        for value, name in view.flags.items()
+        for value, name in view.status_flags.items()
         if value >= 0
     }
-    outcomes = points.parts({word: view.has_status(name) for name, word in names.items()})
+    outcomes = points.parts_by_word({word: view.has_status(name) for name, word in names.items()})
     if len(outcomes) > 1:
-        return f"of {points_text}: {counts_at_places(outcomes, region)}"
+        return f"of {points_text}: {counts_and_ranges_text(outcomes, region)}"
     (word,) = outcomes
     outcome_text = f"the rod {word}" if word in OUTCOME_WORDS.values() else word
     place_text = f"at all {points_text}" if points.count > 1 else "at the only solved point"
@@ -115,7 +117,9 @@ def _threshold_lines(points: Selection) -> tuple[list[str], list[str]]:
     """Returns (lines, lines in an arm's units) about thresholds of the straight rod along F, or along all
     varied parameters if F is not varied."""
     view = points.view
-    names = [name for name in NON_OPTIONAL_LINEAR_PARAMETERS if name in varied_parameters_at_points(view)]
+    names = [
+        name for name in NON_OPTIONAL_LINEAR_PARAMETER_NAMES if name in varied_parameters_at_points(view)
+    ]
     lines = list[str]()
     arm_sentences = list[str]()
     for name in names[:1] if "F" in names else names:
@@ -135,7 +139,7 @@ def _hopf_completeness_lines(points: Selection) -> list[str]:
         return []
     proved_text = count_of_total(int(variables["hopf_lines_proved"]), line_count, "line")
     subject = "the list of Hopf points between neighbouring points"
-    return [f"{subject} {proof_clause(points.view)} for {proved_text}"]
+    return [f"{subject} {completeness_predicate(points.view)} for {proved_text}"]
 
 
 def single_cycle_stability_line(points: Selection) -> str:
@@ -150,9 +154,9 @@ def single_cycle_stability_line(points: Selection) -> str:
 
 def single_cycle_table(points: Selection) -> TextTable | None:
     """Table of the numbers of the only cycle in a file, with errors; None if no number is known."""
-    known = [row for row in CYCLE_NUMBERS if np.isfinite(points.values(row[1])).all()]
+    known = [row for row in SINGLE_CYCLE_TABLE_ROWS if np.isfinite(points.values(row[1])).all()]
     numbers = [points.values(name).max() for _, name, _ in known]
-    errors = np.array([points.errors(name).max() for _, name, _ in known])
+    errors = np.array([points.absolute_errors(name).max() for _, name, _ in known])
     labels = [label for label, _, _ in known]
     units = [unit for _, _, unit in known]
     return number_table(("", labels, None), ("value", numbers, errors), ("unit", units, None))
@@ -162,36 +166,41 @@ def _second_state_lines(points: Selection) -> list[str]:
     """Lines about points at which a second stable state is certain or possible, or at which the straight rod
     is stable but the motion ended in no stable state."""
     states = points.variables["second_state"]
-    numbers = {word: number for number, word in SECOND_STATES}
+    numbers = {word: number for number, word in SECOND_STABLE_STATES}
     straight = points.where(states == numbers["straight"])
     bistable = straight.with_status("cycle", "torus")
     straight_only = straight.where(~bistable.mask)
     possible = points.where(states == numbers["cycle_possible"])
     lines = []
     if bistable.count:
-        lines.append(f"two stable states{_at_points(bistable, points)}: the straight rod is stable as well")
+        lines.append(
+            f"two stable states{_point_count_clause(bistable, points)}: the straight rod is stable as well"
+        )
     if straight_only.count:
-        place_text = _at_points(straight_only, points)
+        place_text = _point_count_clause(straight_only, points)
         lines.append(f"the straight rod is stable{place_text} where the motion reached no stable state")
     if possible.count:
-        place_text = _at_points(possible, points)
-        reason = possible.sentence(SUBCRITICAL_SENTENCE)
+        place_text = _point_count_clause(possible, points)
+        reason = possible.sentence_with_ranges(POSSIBLE_CYCLE_REASON)
         lines.append(f"a stable cycle may exist beside the straight rod{place_text}: {reason}")
     return lines
 
 
-def _at_points(part: Selection, points: Selection) -> str:
+def _point_count_clause(part: Selection, points: Selection) -> str:
     """Clause on the number of points of the part; empty if there is a single point."""
-    return "" if points.count == 1 else f" at {part.of_total(points)}"
+    return "" if points.count == 1 else f" at {part.count_of_total_text(points)}"
 
 
 def _cycle_lines(cycles: Selection) -> list[str]:
     """Lines on frequency, period in tau1, extrema of the tip, power, multiplier, integrated periods and least
     h1 of the cycles."""
-    lines = [cycles.sentence("frequency of the cycle: {frequency} rad/tau2") + _mode_frequency_clause(cycles)]
+    lines = [
+        cycles.sentence_with_ranges("frequency of the cycle: {frequency} rad/tau2")
+        + _mode_frequency_clause(cycles)
+    ]
     if "period_tau1" in cycles.variables:
-        lines.append(cycles.sentence("period: {period_tau1} tau1"))
-    return [*lines, *map(cycles.sentence, CYCLE_DETAILS)]
+        lines.append(cycles.sentence_with_ranges("period: {period_tau1} tau1"))
+    return [*lines, *map(cycles.sentence_with_ranges, CYCLE_DETAIL_SENTENCES)]
 
 
 def _mode_frequency_clause(cycles: Selection) -> str:
@@ -203,17 +212,19 @@ def _mode_frequency_clause(cycles: Selection) -> str:
     clause = ""
     if oscillating.count:
         ratio = oscillating.values("frequency") / oscillating.values("linear_frequency")
-        ratio_text = span_text(ratio, ratio * oscillating.values("period_error"))
+        ratio_text = value_range_text(ratio, ratio * oscillating.values("period_error"))
         clause = f", {ratio_text} times that of the leading mode of the straight rod"
     if steady.count:
-        clause += f"; the leading mode of the straight rod does not oscillate{_at_points(steady, cycles)}"
+        clause += (
+            f"; the leading mode of the straight rod does not oscillate{_point_count_clause(steady, cycles)}"
+        )
     return clause
 
 
 def _error_line(cycles: Selection) -> str:
     """Line on the largest errors of the cycles."""
     errors = []
-    for word, name in ERROR_VARIABLES.items():
+    for word, name in VARIABLES_OF_LARGEST_ERRORS.items():
         values = np.abs(cycles.values(name))
         known_errors = values[np.isfinite(values)]
         largest_text = error_text(float(known_errors.max())) if known_errors.size else "not known"

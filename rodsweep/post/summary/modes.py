@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...wording import count_of_total, counted
-from .number_texts import NONE_TEXT
+from .number_texts import MISSING_VALUE_TEXT
 from .selection import Selection
 from .spectrum import spectrum_summary
 from .summary_lines import SummaryLines
@@ -28,14 +28,16 @@ def modes_summary(points: Selection) -> SummaryLines:
 def transient_growth_lines(points: Selection) -> list[str]:
     """Lines about the condition of the leading eigenvalue, the numerical abscissa and the transient growth;
     fewer if no growth is stored."""
-    lines = [points.sentence("condition number of the leading eigenvalue: {first condition}")]
+    lines = [points.sentence_with_ranges("condition number of the leading eigenvalue: {first condition}")]
     if "transient_growth" not in points.variables:
         return lines
-    lines.append(points.sentence("numerical abscissa: {numerical_abscissa} 1/tau2"))
+    lines.append(points.sentence_with_ranges("numerical abscissa: {numerical_abscissa} 1/tau2"))
     growth = points.variables["transient_growth"]
     if (bounded := points.where(np.isfinite(growth))).count:
         template = "largest transient growth: {transient_growth} times, at t = {transient_time} tau2"
-        lines.append(bounded.sentence(template).removesuffix(f", at t = {NONE_TEXT} tau2"))
+        lines.append(
+            bounded.sentence_with_ranges(template).removesuffix(f", at t = {MISSING_VALUE_TEXT} tau2")
+        )
     if unbounded_count := points.where(np.isinf(growth)).count:
         lines.append(f"growth without bound at {counted(unbounded_count, 'point')}: a mode is unstable")
     return lines

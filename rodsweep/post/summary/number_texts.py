@@ -17,26 +17,26 @@ MAX_LOCATED_END_DIGITS = 9
 """Largest number of significant digits of an end of a range, if the end is a located point such as a fold."""
 PLAIN_EXPONENTS = range(-4, MAX_DIGITS)
 """Numbers with these decimal exponents are written without an exponent."""
-ROUNDING_EXCESS = 1e-9
+MAX_ROUNDING_EXCESS_OF_ERROR = 1e-9
 """An error that exceeds a one-digit number by at most this relative amount (rounding error) is not rounded up
 further."""
 MIN_ROUNDED_UP_ERROR = 1e-300
 """Smaller errors are not rounded up, because the unit of their digit would underflow."""
-NONE_TEXT = "none"
+MISSING_VALUE_TEXT = "none"
 """Text for a missing number or an empty range."""
 
 
-def span_text(
+def value_range_text(
     values: np.ndarray, errors: np.ndarray | None = None, max_digits: int = MAX_RANGE_END_DIGITS
 ) -> str:
-    """Range of the finite `values`, of any shape, as text; NONE_TEXT if no value is finite.
+    """Range of the finite `values`, of any shape, as text; MISSING_VALUE_TEXT if no value is finite.
 
     errors: absolute errors, of the shape of the values, which limit the number of digits.
     """
     values = np.asarray(values, dtype=float)
     is_finite = np.isfinite(values)
     if not is_finite.any():
-        return NONE_TEXT
+        return MISSING_VALUE_TEXT
     known_errors = np.zeros_like(values) if errors is None else np.asarray(errors, dtype=float)
     finite_values = values[is_finite]
     known_errors = np.nan_to_num(known_errors[is_finite], nan=0.0)
@@ -48,31 +48,31 @@ def span_text(
 def axis_values_text(values: np.ndarray) -> str:
     """Range of the values of a parameter, of any shape, as text: "10 to 1000", or "10 to 1000 and inf"."""
     is_finite = np.isfinite(values)
-    finite = [span_text(values)] if is_finite.any() else []
-    return " and ".join([*finite, *(["inf"] if np.isinf(values).any() else [])]) or NONE_TEXT
+    finite = [value_range_text(values)] if is_finite.any() else []
+    return " and ".join([*finite, *(["inf"] if np.isinf(values).any() else [])]) or MISSING_VALUE_TEXT
 
 
-def ranges_text(ranges: Sequence[tuple[float, float]], errors: Mapping[float, float]) -> str:
-    """Ranges of a parameter as text; NONE_TEXT for an empty list. errors: absolute errors of ends of ranges,
-    by end; other ends are exact. Each end is rounded at the decimal place of twice its error, to
+def parameter_ranges_text(ranges: Sequence[tuple[float, float]], errors: Mapping[float, float]) -> str:
+    """Ranges of a parameter as text; MISSING_VALUE_TEXT for an empty list. errors: absolute errors of ends of
+    ranges, by end; other ends are exact. Each end is rounded at the decimal place of twice its error, to
     MAX_LOCATED_END_DIGITS digits at most."""
     ends = [
         [_rounded_to_error(end, 2 * errors.get(end, 0.0), MAX_LOCATED_END_DIGITS) for end in ends]
         for ends in ranges
     ]
-    return ", ".join(" to ".join(pair) for pair in ends) or NONE_TEXT
+    return ", ".join(" to ".join(pair) for pair in ends) or MISSING_VALUE_TEXT
 
 
-def number_with_error(value: float, error: float) -> str:
+def number_with_error_text(value: float, error: float) -> str:
     """A number with its absolute error, as text: "1.234 (+- 2e-03)". The last printed digit of the number has
     the decimal place of the error.
 
-    If the error is not finite, the number has six digits. NaN gives NONE_TEXT, and 0 has no error.
+    If the error is not finite, the number has six digits. NaN gives MISSING_VALUE_TEXT, and 0 has no error.
     """
     value = float(value)
     error = float(error)
     if not isfinite(value):
-        return NONE_TEXT if isnan(value) else f"{value}"
+        return MISSING_VALUE_TEXT if isnan(value) else f"{value}"
     if value == 0:
         return "0"
     if not isfinite(error):
@@ -81,7 +81,7 @@ def number_with_error(value: float, error: float) -> str:
     return f"{text} (+- {error_text(rounded_error)})"
 
 
-def number_and_error(value: float, error: float) -> tuple[str, str]:
+def number_and_error_texts(value: float, error: float) -> tuple[str, str]:
     """Returns (number, error with one digit) as text. The last printed digit of the number has the decimal
     place of the error.
 
@@ -115,13 +115,17 @@ def error_text(error: float) -> str:
     if not MIN_ROUNDED_UP_ERROR < error < inf:
         return f"{error:.0e}"
     unit = 10.0 ** floor(log10(error))
-    return f"{ceil(error / unit * (1 - ROUNDING_EXCESS)) * unit:.0e}"
+    return f"{ceil(error / unit * (1 - MAX_ROUNDING_EXCESS_OF_ERROR)) * unit:.0e}"
 
 
 def rounded_text(value: float, error: float, max_digits: int = MAX_RANGE_END_DIGITS) -> str:
     """A number as text with at most `max_digits` significant digits, chosen such that `error` is at most half
-    a unit of the last digit; NONE_TEXT for a number that is not finite."""
-    return _rounded_to_error(float(value), 2 * float(error), max_digits) if isfinite(value) else NONE_TEXT
+    a unit of the last digit; MISSING_VALUE_TEXT for a number that is not finite."""
+    return (
+        _rounded_to_error(float(value), 2 * float(error), max_digits)
+        if isfinite(value)
+        else MISSING_VALUE_TEXT
+    )
 
 
 def _rounded_to_error(value: float, error: float, max_digits: int) -> str:

@@ -4,10 +4,10 @@ import numpy as np
 
 from ...results.layouts.phase_diagram import STABILITY_CLASSES
 from ...results.layouts.thresholds import CROSSING_KINDS
-from ...results.layouts.variables import flag_number
+from ...results.layouts.variables import stored_number_of_word
 from ...wording import counted
 from ..plane_curves import plane_parameters
-from .arm.arm import load_range_text
+from .arm.arm_texts import load_range_text
 from .diagram_curves import (
     criticality_lines,
     curve_count_lines,
@@ -15,11 +15,11 @@ from .diagram_curves import (
     incomplete_curve_lines,
 )
 from .followed_ranges import followed_beyond_range_text
-from .number_texts import span_text
-from .selection import DiagramRows, Selection, counts_by_word, percents_by_word
+from .number_texts import value_range_text
+from .selection import DiagramRows, Selection, counts_by_word_text, percents_by_word_text
 from .stable_states import stable_state_lines
 from .summary_lines import SummaryLines
-from .thresholds import cost_lines, search_lines
+from .thresholds import search_cost_lines, search_reliability_lines
 
 CROSSING_KIND_REMARKS = {
     "onset": " of oscillations",
@@ -31,7 +31,7 @@ CROSSING_KIND_REMARKS = {
     "pair_leads": " (a complex pair becomes the leading pair)",
 }
 """Explanation printed after the name of a kind of crossing."""
-FLUTTER, UNDECIDED = (flag_number(word, STABILITY_CLASSES) for word in ("flutter", "undecided"))
+FLUTTER, UNDECIDED = (stored_number_of_word(word, STABILITY_CLASSES) for word in ("flutter", "undecided"))
 """Stored numbers of two classes."""
 
 
@@ -40,20 +40,20 @@ def phase_diagram_summary(points: Selection) -> SummaryLines:
     view = points.view
     rows = DiagramRows(view, points.mask, plane_parameters(view))
     classes = rows.values("class")
-    percents_text = percents_by_word(classes, dict(STABILITY_CLASSES))
+    percents_text = percents_by_word_text(classes, dict(STABILITY_CLASSES))
     answer = [
         f"behaviour of the straight rod, in % of the grid points: {percents_text}",
-        *lines_about_rows(rows),
+        *diagram_row_lines(rows),
     ]
-    reliability = search_lines(rows, "row")
+    reliability = search_reliability_lines(rows, "row")
     if "stable_states" in rows.variables:
         answer += stable_state_lines(rows)
-        followed_text = followed_beyond_range_text(rows, rows.parameters.line, "cycle_followed_")
+        followed_text = followed_beyond_range_text(rows, rows.parameters.line_parameter, "cycle_followed_")
         reliability.append(f"{followed_text}, unless a curve of folds or torus points crosses the row there")
-    counts_text = counts_by_word(classes, dict(STABILITY_CLASSES))
+    counts_text = counts_by_word_text(classes, dict(STABILITY_CLASSES))
     details = [
         f"of {counted(classes.size, 'grid point')} on the rows: {counts_text}",
-        *cost_lines(rows),
+        *search_cost_lines(rows),
     ]
     if "curve_number" in rows.variables:
         answer += diagram_curve_lines(view, rows.parameters)
@@ -64,7 +64,7 @@ def phase_diagram_summary(points: Selection) -> SummaryLines:
     return SummaryLines(answer, reliability, details, straight_arm_threshold_lines(rows))
 
 
-def lines_about_rows(rows: DiagramRows) -> list[str]:
+def diagram_row_lines(rows: DiagramRows) -> list[str]:
     """Lines about the classes at the starts of the rows, crossings by kind, undecided ranges, and rows with
     and without flutter."""
     variables = rows.variables
@@ -84,7 +84,7 @@ def _row_start_lines(rows: DiagramRows) -> list[str]:
     words = [(word, int((start_classes == value).sum())) for value, word in STABILITY_CLASSES]
     if ("monotone", rows.count) in words:
         return []
-    line = rows.parameters.line
+    line = rows.parameters.line_parameter
     place_text = f"{line} = {rows.variables[line][0]:.6g}, where the rows begin"
     counts_text = ", ".join(f"{word} on {count}" for word, count in words if count)
     return [f"the straight rod at {place_text}: {counts_text} of {counted(rows.count, 'row')}"]
@@ -95,18 +95,20 @@ def _crossing_lines(rows: DiagramRows, incomplete: np.ndarray) -> list[str]:
     known."""
     lines = []
     for number, word in enumerate(CROSSING_KINDS):
-        of_kind = rows.items(rows.variables["crossing_kind"] == number)
+        of_kind = rows.item_mask(rows.variables["crossing_kind"] == number)
         if number == 0 or not of_kind.any():
             continue
         is_later = of_kind & (of_kind.cumsum(axis=-1) > 1)
         bound = "at least " if (incomplete & ~of_kind.any(axis=-1)).any() else ""
-        first_text = rows.place_text(of_kind & ~is_later, "crossing_at", "crossing_error", bound)
+        first_text = rows.row_count_and_ranges_text(
+            of_kind & ~is_later, "crossing_at", "crossing_error", bound
+        )
         text = f"{word}{CROSSING_KIND_REMARKS.get(word, '')}: on {first_text}"
         if is_later.any():
             bound = "at least " if incomplete.any() else ""
-            rows_text = f"{bound}{rows.with_items(is_later).count} of these rows"
+            rows_text = f"{bound}{rows.rows_with_items(is_later).count} of these rows"
             positions, errors = (rows.variables[name][is_later] for name in ("crossing_at", "crossing_error"))
-            positions_text = f"{rows.parameters.line} = {span_text(positions, errors)}"
+            positions_text = f"{rows.parameters.line_parameter} = {value_range_text(positions, errors)}"
             text += f"; again further along the row on {rows_text}, at {positions_text}"
         lines.append(text)
     return lines
@@ -117,17 +119,18 @@ def _undecided_and_flutter_lines(rows: DiagramRows, incomplete: np.ndarray) -> l
     `_crossing_lines`."""
     classes = rows.variables["class"]
     is_undecided = classes == UNDECIDED
-    undecided = rows.items(is_undecided)
+    undecided = rows.item_mask(is_undecided)
     lines = []
     if undecided.any():
-        lines.append(f"behaviour undecided: on {rows.place_text(undecided, rows.parameters.line)}")
+        ranges_text = rows.row_count_and_ranges_text(undecided, rows.parameters.line_parameter)
+        lines.append(f"behaviour undecided: on {ranges_text}")
     # A window of flutter may lie between two grid points: the located crossings show it.
     has_flutter = (classes == FLUTTER).any(axis=-1) | (rows.variables["unstable_after"] > 0).any(axis=-1)
     flutter = rows.where(has_flutter)
     no_flutter = rows.where(~has_flutter & ~incomplete & ~is_undecided.any(axis=-1))
     if flutter.count and no_flutter.count:
         lines.append(
-            f"flutter: on {flutter.of_total(rows, 'row')}, {flutter.row_values_text}; none on "
+            f"flutter: on {flutter.count_of_total_text(rows, 'row')}, {flutter.row_values_text}; none on "
             f"{no_flutter.count}, {no_flutter.row_values_text}"
         )
     return lines
@@ -141,10 +144,10 @@ def straight_arm_threshold_lines(rows: DiagramRows) -> list[str]:
         return []
     lines = []
     for number, word in list(enumerate(CROSSING_KINDS))[1:]:
-        of_kind = rows.items(rows.variables["crossing_kind"] == number)
+        of_kind = rows.item_mask(rows.variables["crossing_kind"] == number)
         if of_kind.any():
             forces = rows.variables["crossing_at"][of_kind]
-            rows_text = rows.with_items(of_kind).of_total(rows, "row")
+            rows_text = rows.rows_with_items(of_kind).count_of_total_text(rows, "row")
             loads_text = load_range_text(view, forces, np.zeros(len(forces), int))
             lines.append(f"{word}: on {rows_text}, at {loads_text}")
     return lines

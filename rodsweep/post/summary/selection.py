@@ -10,10 +10,10 @@ import numpy as np
 from ...results.file.view import ResultView
 from ...wording import count_of_total
 from ..plane_curves import PlaneParameters
-from .errors import absolute_errors, is_known
-from .number_texts import axis_values_text, span_text
+from .number_texts import axis_values_text, value_range_text
+from .variable_errors import absolute_errors, known_values_mask
 
-RANGE_PATTERN = re.compile(r"\{(first )?(\w+)\}")
+RANGE_PLACEHOLDER_PATTERN = re.compile(r"\{(first )?(\w+)\}")
 """Pattern for the place of a range in a sentence: the name of a variable in braces, for a list of each point
 after the word "first" if only the first items of the lists are meant."""
 
@@ -23,6 +23,7 @@ class Selection:
     """Points of a result file. mask: mask of the selected points, of the shape of the points."""
 
     view: ResultView
+    """Result file with all its points, selected or not."""
     mask: np.ndarray
 
     @property
@@ -43,7 +44,7 @@ class Selection:
         """The selected points whose status has one of the names `statuses`."""
         return self.where(self.view.has_status(*statuses))
 
-    def parts(self, masks: Mapping[str, np.ndarray]) -> dict[str, "Selection"]:
+    def parts_by_word(self, masks: Mapping[str, np.ndarray]) -> dict[str, "Selection"]:
         """The selected points in each of the masks, by word; without words to which no point belongs."""
         parts = {word: self.where(mask) for word, mask in masks.items()}
         return {word: part for word, part in parts.items() if part.count}
@@ -52,34 +53,34 @@ class Selection:
         """Values of a variable at the selected points, (points, ...)."""
         return self.variables[name][self.mask]
 
-    def errors(self, name: str) -> np.ndarray:
+    def absolute_errors(self, name: str) -> np.ndarray:
         """Absolute errors of a variable at the selected points, (points, ...)."""
         return absolute_errors(self.variables, name)[self.mask]
 
-    def of_total(self, total: "Selection", noun: str = "point") -> str:
+    def count_of_total_text(self, total: "Selection", noun: str = "point") -> str:
         """Number of the points out of those in `total`, such as "2 of 4 points"."""
         return count_of_total(self.count, total.count, noun)
 
     def range_text(self, name: str) -> str:
         """Range of a variable as text, rounded according to the errors; unknown values are left out."""
-        known = is_known(self.variables, name)[self.mask]
-        return span_text(self.values(name)[known], self.errors(name)[known])
+        known = known_values_mask(self.variables, name)[self.mask]
+        return value_range_text(self.values(name)[known], self.absolute_errors(name)[known])
 
-    def sentence(self, template: str) -> str:
+    def sentence_with_ranges(self, template: str) -> str:
         """`template` with the ranges of the variables named in braces: "period: {period} tau2" becomes
         "period: 0.1 to 0.2 tau2"."""
 
         def text(place: re.Match[str]) -> str:
             first, name = place.groups()
             return (
-                span_text(self.values(name)[:, 0], self.errors(name)[:, 0])
+                value_range_text(self.values(name)[:, 0], self.absolute_errors(name)[:, 0])
                 if first
                 else self.range_text(name)
             )
 
-        return RANGE_PATTERN.sub(text, template)
+        return RANGE_PLACEHOLDER_PATTERN.sub(text, template)
 
-    def region(self) -> str:
+    def parameter_ranges_text(self) -> str:
         """Ranges of the varied parameters as text; empty if no parameter varies in the file."""
         columns = varied_parameters_at_points(self.view)
         chosen = self.mask.ravel()
@@ -93,32 +94,35 @@ class DiagramRows(Selection):
 
     parameters: PlaneParameters
 
-    def items(self, condition: np.ndarray) -> np.ndarray:
+    def item_mask(self, condition: np.ndarray) -> np.ndarray:
         """Mask of the items on the rows, (..., n), for which the mask `condition`, (..., n), is true."""
         return condition & self.mask[..., np.newaxis]
 
-    def with_items(self, items: np.ndarray) -> Self:
-        """The rows on which the mask `items`, (..., n), is true for an item."""
+    def rows_with_items(self, items: np.ndarray) -> Self:
+        """The rows on which the mask `item_mask`, (..., n), is true for an item."""
         return self.where(np.any(items, axis=-1))
 
     @property
     def row_values_text(self) -> str:
         """Values of the parameter that is constant on a row, as text: "k1 = 100 to 200"."""
-        row = self.parameters.row
+        row = self.parameters.row_parameter
         return f"{row} = {axis_values_text(self.view.point_columns[row][self.mask.ravel()])}"
 
-    def place_text(self, items: np.ndarray, position: str, error: str | None = None, bound: str = "") -> str:
+    def row_count_and_ranges_text(
+        self, items: np.ndarray, position: str, error: str | None = None, bound: str = ""
+    ) -> str:
         """Number of rows with items, and ranges of both parameters of the items: "2 of 4 rows, F = 10 to 20,
         k1 = 100 to 200".
 
         items: mask, (..., n). position, error: variables with positions along the rows, and their absolute
         errors. bound: words before the number of rows.
         """
-        with_items = self.with_items(items)
+        with_items = self.rows_with_items(items)
         positions = np.broadcast_to(self.variables[position], items.shape)[items]
         errors = None if error is None else self.variables[error][items]
-        positions_text = f"{self.parameters.line} = {span_text(positions, errors)}"
-        return f"{bound}{with_items.of_total(self, 'row')}, {positions_text}, {with_items.row_values_text}"
+        positions_text = f"{self.parameters.line_parameter} = {value_range_text(positions, errors)}"
+        count_text = with_items.count_of_total_text(self, "row")
+        return f"{bound}{count_text}, {positions_text}, {with_items.row_values_text}"
 
 
 def varied_parameters_at_points(view: ResultView) -> dict[str, np.ndarray]:
@@ -126,21 +130,21 @@ def varied_parameters_at_points(view: ResultView) -> dict[str, np.ndarray]:
     return {name: column for name, column in view.point_columns.items() if len(np.unique(column)) > 1}
 
 
-def counts_at_places(
-    parts: Mapping[str, Selection], region: Callable[[Selection], str] = Selection.region
+def counts_and_ranges_text(
+    parts: Mapping[str, Selection], region: Callable[[Selection], str] = Selection.parameter_ranges_text
 ) -> str:
     """Number and region of the points of each part: "stable at 2 (F = 1 to 2), unstable at 1 (F = 3)"."""
     return ", ".join(f"{word} at {part.count}{in_brackets(region(part))}" for word, part in parts.items())
 
 
-def counts_by_word(codes: np.ndarray, words: Mapping[int, str]) -> str:
+def counts_by_word_text(codes: np.ndarray, words: Mapping[int, str]) -> str:
     """Number of items with each code that occurs: "3 supercritical, 1 subcritical"; empty if none occurs.
     codes: codes of the items, of any shape."""
     counts = {word: int((codes == code).sum()) for code, word in words.items()}
     return ", ".join(f"{count} {word}" for word, count in counts.items() if count)
 
 
-def percents_by_word(codes: np.ndarray, words: Mapping[int, str]) -> str:
+def percents_by_word_text(codes: np.ndarray, words: Mapping[int, str]) -> str:
     """Percentage of the items with each code that occurs: "75.0 % monotone, 25.0 % flutter". codes: codes of
     the items, of any shape."""
     counts = {word: int((codes == code).sum()) for code, word in words.items()}

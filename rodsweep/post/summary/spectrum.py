@@ -3,27 +3,29 @@
 import numpy as np
 
 from ...results.file.view import ResultView
-from ...results.layouts.rods import estimates_counts, has_standard_rods
+from ...results.layouts.rod_properties import estimates_counts, has_uniform_linear_rods
 from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import count_of_total, counted
 from ..located_thresholds import StoredThresholds
-from .number_texts import span_text
-from .selection import Selection, counts_at_places
+from .number_texts import value_range_text
+from .selection import Selection, counts_and_ranges_text
 from .stability import rod_and_arm_stability_lines
 from .summary_lines import SummaryLines, TextTable, number_table
 
-LOCATION_EXPLANATION = (
+THRESHOLD_LOCATION_EXPLANATION = (
     "located where the leading eigenvalue changes between two forces of the file: F** by a zero of the "
     "characteristic determinant D(i eta; F), F* by a double zero of D; `task: thresholds` proves that none "
     "is missing"
 )
 """Explanation of the method by which thresholds along F are located."""
-NOT_LOCATED_NOTE = "known only to lie between two forces of the file; `task: thresholds` locates them"
+BRACKETED_THRESHOLDS_NOTE = (
+    "known only to lie between two forces of the file; `task: thresholds` locates them"
+)
 """Explanation for arms that are not uniform or not of linear material: the forces are bracketed, not
 located."""
-PROOF_WORDS = {True: "proved by a winding number", False: "not proved"}
+UNSTABLE_COUNT_PROOF_WORDS = {True: "proved by a winding number", False: "not proved"}
 """Phrase that says whether the number of unstable modes is proved, for a file with one point."""
-ESTIMATED_PROOF_WORDS = "proved by D or counted by its winding number, with some bounds estimated"
+UNSTABLE_COUNT_CONFIRMED_WORDS = "proved by D or counted by its winding number, with some bounds estimated"
 """Phrase for a confirmed number of unstable modes of a rod that varies along its length."""
 
 
@@ -31,18 +33,22 @@ def spectrum_summary(points: Selection) -> SummaryLines:
     """Summary of spectra at the computed points."""
     view = points.view
     if points.mask.size == 1:
-        answer = [unstable_count_of_one_point(view)]
-        return SummaryLines(answer, [], [mesh_line(points)], numbers=eigenvalue_table(view))
-    thresholds_on = StoredThresholds(view, "F").thresholds_on
+        answer = [single_point_unstable_count_line(view)]
+        return SummaryLines(answer, [], [mesh_line(points)], numbers_table=eigenvalue_table(view))
+    thresholds_on = StoredThresholds(view, "F").thresholds_on_line
     threshold_lines, arm_sentences = rod_and_arm_stability_lines(view, "F", thresholds_on)
     reliability = [*eigenvalue_error_lines(points), largest_unstable_count_line(points)]
     if threshold_lines:
-        note = LOCATION_EXPLANATION if has_standard_rods(view.config) else NOT_LOCATED_NOTE
+        note = (
+            THRESHOLD_LOCATION_EXPLANATION
+            if has_uniform_linear_rods(view.config)
+            else BRACKETED_THRESHOLDS_NOTE
+        )
         reliability.append(f"thresholds: {note}")
     details = [mesh_line(points)]
     if np.isfinite(points.values("growth_rate")[:, 0]).any():
         rates = "leading growth rate {first growth_rate} 1/tau2, frequency {first frequency} rad/tau2"
-        details.insert(0, points.sentence(rates))
+        details.insert(0, points.sentence_with_ranges(rates))
     return SummaryLines(
         [stable_point_count_line(points), *threshold_lines], reliability, details, arm_sentences
     )
@@ -52,11 +58,13 @@ def stable_point_count_line(points: Selection) -> str:
     """Line on the numbers of points at which the straight rod is stable, unstable, or of unknown
     stability."""
     unstable = points.variables["unstable_count"]
-    parts = points.parts({"stable": unstable == 0, "unstable": unstable > 0, "not known": unstable < 0})
+    parts = points.parts_by_word(
+        {"stable": unstable == 0, "unstable": unstable > 0, "not known": unstable < 0}
+    )
     points_text = counted(points.count, "point")
     if len(parts) == 1:
         return f"straight rod: {next(iter(parts))} at all {points_text}"
-    return f"straight rod, of {points_text}: {counts_at_places(parts)}"
+    return f"straight rod, of {points_text}: {counts_and_ranges_text(parts)}"
 
 
 def eigenvalue_table(view: ResultView) -> TextTable | None:
@@ -72,14 +80,14 @@ def eigenvalue_table(view: ResultView) -> TextTable | None:
     )
 
 
-def unstable_count_of_one_point(view: ResultView) -> str:
+def single_point_unstable_count_line(view: ResultView) -> str:
     """Line on the number of unstable modes at the only point of a file."""
     unstable_count = int(view.variables["unstable_count"].max())
     if unstable_count < 0:
         return "unstable modes: not known"
-    proof = PROOF_WORDS[bool(view.variables["certified"].all())]
+    proof = UNSTABLE_COUNT_PROOF_WORDS[bool(view.variables["certified"].all())]
     if view.variables["certified"].all() and estimates_counts(view.config):
-        proof = ESTIMATED_PROOF_WORDS
+        proof = UNSTABLE_COUNT_CONFIRMED_WORDS
     return f"unstable modes: {unstable_count}, {proof}"
 
 
@@ -99,7 +107,7 @@ def mesh_line(points: Selection) -> str:
     meshless_count = int((unknowns == 0).sum())
     if meshless_count == unknowns.size:
         return "no mesh is stored: eigenvalues were continued from a neighbouring point, or not found"
-    text = f"unknowns of the mesh per point: {span_text(unknowns[unknowns > 0])}"
+    text = f"unknowns of the mesh per point: {value_range_text(unknowns[unknowns > 0])}"
     if meshless_count:
         text += f"; none at {counted(meshless_count, 'point')}, continued from a neighbouring point or failed"
     return text

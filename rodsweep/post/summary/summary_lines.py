@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from ...results.file.view import ResultView
-from ...results.layouts.rods import has_standard_rods
+from ...results.layouts.rod_properties import has_uniform_linear_rods
 from ...wording import counted
-from .number_texts import number_and_error
+from .number_texts import number_and_error_texts
 from .selection import varied_parameters_at_points
 
 MAX_LISTED_ITEMS = 8
@@ -36,7 +36,7 @@ class SummaryLines:
     """Lines about further results."""
     arm_sentences: Sequence[str] = ()
     """Sentences of the answer in the units of an arm."""
-    numbers: TextTable | None = None
+    numbers_table: TextTable | None = None
     """Table of numbers below the answer."""
 
 
@@ -49,9 +49,9 @@ class Summary(SummaryLines):
     """Number of points with each status, and the meaning of the status."""
     material: Sequence[str]
     """Lines about law, profile and segments of the arms; empty for uniform arms of linear material."""
-    axes: TextTable
+    axes_table: TextTable
     """Values or ranges of the parameters."""
-    provenance: Sequence[str]
+    cost_and_provenance_lines: Sequence[str]
     """Lines about computing time, MPI ranks, dates and versions."""
 
 
@@ -68,7 +68,7 @@ def number_table(*columns: tuple[str, Iterable[Any], np.ndarray | None]) -> Text
             cells.append(list(values))
             continue
         headings.append("+-")
-        cells += zip(*map(number_and_error, map(float, values), map(float, errors)), strict=True)
+        cells += zip(*map(number_and_error_texts, map(float, values), map(float, errors)), strict=True)
     rows = tuple(zip(*cells, strict=True))
     return TextTable(tuple(headings), rows) if rows else None
 
@@ -79,7 +79,7 @@ def point_text(view: ResultView, index: int) -> str:
     return ", ".join(f"{name} = {column[index]:.6g}" for name, column in columns.items())
 
 
-def first_lines(lines: Sequence[str], noun: str) -> Iterator[str]:
+def truncated_lines(lines: Sequence[str], noun: str) -> Iterator[str]:
     """Yields the first MAX_LISTED_ITEMS of `lines`, indented, and a line with the number of further lines.
     noun: noun for the subject of a line."""
     yield from (f"  {line}" for line in lines[:MAX_LISTED_ITEMS])
@@ -87,8 +87,8 @@ def first_lines(lines: Sequence[str], noun: str) -> Iterator[str]:
         yield f"  and {counted(len(lines) - MAX_LISTED_ITEMS, noun)} more"
 
 
-def proof_clause(view: ResultView) -> str:
+def completeness_predicate(view: ResultView) -> str:
     """Predicate for the list of crossings in a file: "is proved complete" for uniform rods of linear
     material, else "is confirmed by counts of unstable modes"."""
-    is_proved = has_standard_rods(view.config)
+    is_proved = has_uniform_linear_rods(view.config)
     return "is proved complete" if is_proved else "is confirmed by counts of unstable modes"

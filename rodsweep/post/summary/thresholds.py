@@ -6,15 +6,15 @@ import numpy as np
 
 from ...model.parameters import PARAMETERS
 from ...results.file.view import ResultView
-from ...results.layouts.rods import has_standard_rods
+from ...results.layouts.rod_properties import has_uniform_linear_rods
 from ...results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import counted, is_or_are, plural
-from .arm.arm import crossings_of_arm
-from .number_texts import error_text, rounded_text, span_text
+from .arm.arm_texts import single_arm_threshold_lines
+from .number_texts import error_text, rounded_text, value_range_text
 from .selection import Selection, in_brackets
 from .stability import FORCE_THRESHOLD_WORDS
-from .summary_lines import SummaryLines, TextTable, number_table, point_text, proof_clause
+from .summary_lines import SummaryLines, TextTable, completeness_predicate, number_table, point_text
 from .threshold_trends import monotonicity_lines
 
 RATE_VARIABLE_BY_THRESHOLD_KIND = {
@@ -23,7 +23,7 @@ RATE_VARIABLE_BY_THRESHOLD_KIND = {
     "onset": ("onset_growth_rate", "growth rate", "1/tau2"),
 }
 """(second variable of the first threshold, name and unit of this variable), by kind of threshold."""
-ENDED_EARLY = "ended_early"
+ENDED_EARLY_STATUS = "ended_early"
 """Status of a search that stopped before the requested force."""
 FIRST_CROSSING_WORDS = {
     "onset": "decaying oscillation from",
@@ -33,18 +33,18 @@ FIRST_CROSSING_WORDS = {
 """Phrase before the force of the first crossing of each kind, in the summary of a single rod."""
 LATER_CROSSING_WORDS = {"hopf": "flutter again from", "restabilization": "stable again from"}
 """Phrase before the force of a later window of flutter: of its start and of its end."""
-OSCILLATION_ENDS = ("real_again", "real_leads")
+OSCILLATION_END_KINDS = ("real_again", "real_leads")
 """Kinds of crossings of a stable rod above which a real eigenvalue leads."""
 
 
-def oscillation_end(kinds: Sequence[str]) -> int | None:
+def oscillation_end_index(kinds: Sequence[str]) -> int | None:
     """Index, in a list of crossings, of the crossing at which the oscillation that starts at the first onset
     ends without flutter; None if it does not. kinds: kinds of the crossings, in the order of the force."""
     after_onset = list(kinds).index("onset") + 1 if "onset" in kinds else len(kinds)
-    return after_onset if after_onset < len(kinds) and kinds[after_onset] in OSCILLATION_ENDS else None
+    return after_onset if after_onset < len(kinds) and kinds[after_onset] in OSCILLATION_END_KINDS else None
 
 
-def later_flutter_changes(kinds: Sequence[str]) -> list[int]:
+def later_flutter_change_indices(kinds: Sequence[str]) -> list[int]:
     """Indices, in a list of crossings, of the starts and ends of all windows of flutter after the first
     window. kinds: kinds of the crossings, in the order of the force."""
     indices = []
@@ -59,19 +59,19 @@ def later_flutter_changes(kinds: Sequence[str]) -> list[int]:
 def thresholds_summary(points: Selection) -> SummaryLines:
     """Summary of thresholds at the computed points."""
     view = points.view
-    costs = cost_lines(points)
+    costs = search_cost_lines(points)
     if points.mask.size == 1:
         return SummaryLines(
             single_rod_crossing_lines(view),
             completeness_lines(view),
             costs,
-            crossings_of_arm(view),
+            single_arm_threshold_lines(view),
             crossing_table(view),
         )
     answer = [first_threshold_line(points, event) for event in RATE_VARIABLE_BY_THRESHOLD_KIND]
-    reliability = search_lines(points, "rod")
+    reliability = search_reliability_lines(points, "rod")
     if np.isfinite(points.values("F_end")).any():
-        reliability.append(points.sentence("searched up to F = {F_end}"))
+        reliability.append(points.sentence_with_ranges("searched up to F = {F_end}"))
     return SummaryLines(answer, reliability, [*monotonicity_lines(view), *costs])
 
 
@@ -84,8 +84,8 @@ def first_threshold_line(points: Selection, event: str) -> str:
     rods_text = counted(points.count, "rod")
     with_threshold = points.where(np.isfinite(points.variables[f"F_{event}"]))
     decided = (points.variables["crossing_count"] >= 0) & ~np.isfinite(points.variables["open_from"])
-    decided &= ~view.has_status(ENDED_EARLY)
-    unknown_text = unknown_clause(points.where(~(with_threshold.mask | decided)).count)
+    decided &= ~view.has_status(ENDED_EARLY_STATUS)
+    unknown_text = failed_search_count_clause(points.where(~(with_threshold.mask | decided)).count)
     if not with_threshold.count:
         return f"{phrase}: at none of {rods_text}{unknown_text}"
     F = with_threshold.values(f"F_{event}")
@@ -98,18 +98,18 @@ def first_threshold_line(points: Selection, event: str) -> str:
     ]
     forces_text = " to ".join(dict.fromkeys(extremes))
     if with_threshold.count < points.count:
-        rods_text = with_threshold.of_total(points, "rod")
+        rods_text = with_threshold.count_of_total_text(points, "rod")
     else:
         rods_text = f"all {rods_text}"
-    rates_text = points.sentence(f"{noun} {{{rate_name}}} {unit}")
+    rates_text = points.sentence_with_ranges(f"{noun} {{{rate_name}}} {unit}")
     return f"{phrase}: F = {forces_text}, at {rods_text}{unknown_text}; {rates_text}"
 
 
-def unknown_beyond_clause(view: ResultView, F: float) -> str:
+def early_search_end_clause(view: ResultView, F: float) -> str:
     """Clause that says that the search for a single rod ended early at the force F; empty for a complete
     search."""
     clause = f"; not known beyond F = {F:.6g}, where the search ended early"
-    return clause if view.has_status(ENDED_EARLY).all() else ""
+    return clause if view.has_status(ENDED_EARLY_STATUS).all() else ""
 
 
 def single_rod_crossing_lines(view: ResultView) -> list[str]:
@@ -118,20 +118,20 @@ def single_rod_crossing_lines(view: ResultView) -> list[str]:
     variables = view.point_values(0)
     if variables["crossing_count"] < 0:
         return ["the thresholds of this rod are not known"]
-    end_text = f"F = {variables['F_end']:.15g}{unknown_beyond_clause(view, float(variables['F_end']))}"
+    end_text = f"F = {variables['F_end']:.15g}{early_search_end_clause(view, float(variables['F_end']))}"
     kinds = stored_crossing_kinds(variables)
     if not kinds:
         is_undecided = np.isfinite(variables["open_from"])
         return [f"{'no threshold is located' if is_undecided else 'no threshold'} up to {end_text}"]
     first_forces = {event: f"{variables[f'F_{event}']:.6g}" for event in FIRST_CROSSING_WORDS}
-    if (end := oscillation_end(kinds)) is not None:
+    if (end := oscillation_end_index(kinds)) is not None:
         first_forces["onset"] += f" to {variables['crossing_F'][end]:.6g}"
     changes = [
         f"{word} F = {first_forces[event]}"
         for event, word in FIRST_CROSSING_WORDS.items()
         if np.isfinite(variables[f"F_{event}"])
     ]
-    for i in later_flutter_changes(kinds):
+    for i in later_flutter_change_indices(kinds):
         changes.append(f"{LATER_CROSSING_WORDS[kinds[i]]} F = {variables['crossing_F'][i]:.6g}")
     count_text = f"{counted(int(variables['crossing_count']), 'crossing')} up to {end_text}"
     meanings = (f"{kind}: {CROSSING_MEANINGS[kind]}" for kind in dict.fromkeys(kinds))
@@ -167,7 +167,7 @@ def completeness_lines(view: ResultView) -> list[str]:
     the only rod in a file."""
     variables = view.point_values(0)
     unlisted = int(variables["crossing_count"]) - len(stored_crossing_kinds(variables))
-    proof_text = proof_clause(view)
+    proof_text = completeness_predicate(view)
     if not variables["certified"]:
         proof_text = proof_text.replace("is ", "is not ", 1)
     search_text = f"searched up to F = {variables['F_end']:.15g}; " if np.isfinite(variables["F_end"]) else ""
@@ -180,7 +180,7 @@ def completeness_lines(view: ResultView) -> list[str]:
     return lines
 
 
-def unknown_clause(rod_count: int) -> str:
+def failed_search_count_clause(rod_count: int) -> str:
     """Clause on the number of rods whose search failed or left a range of F unsearched; empty for 0."""
     return f", not known at {counted(rod_count, 'rod')}" if rod_count else ""
 
@@ -192,10 +192,10 @@ def unstored_crossings_clause(crossing_count: int) -> str:
     return text if crossing_count > 0 else ""
 
 
-def proved_for_text(points: Selection, noun: str) -> str:
+def proved_rod_count_text(points: Selection, noun: str) -> str:
     """Predicate for the lists of crossings of the points: "is proved complete for 2 of 4 rods"."""
     certified = points.where(points.variables["certified"] > 0)
-    return f"{proof_clause(points.view)} for {certified.of_total(points, noun)}"
+    return f"{completeness_predicate(points.view)} for {certified.count_of_total_text(points, noun)}"
 
 
 def unstored_crossing_count(points: Selection) -> int:
@@ -204,14 +204,14 @@ def unstored_crossing_count(points: Selection) -> int:
     return int((points.values("crossing_count") - stored_counts).clip(min=0).sum())
 
 
-def search_lines(points: Selection, noun: str) -> list[str]:
+def search_reliability_lines(points: Selection, noun: str) -> list[str]:
     """Lines about completeness, undecided ranges, numbers of stored crossings and errors of the searches."""
     is_crossing = points.values("crossing_kind") > 0
     stored_counts = is_crossing.sum(axis=-1)
     errors = points.values("crossing_error")[is_crossing & np.isfinite(points.values("crossing_error"))]
     undecided = int(np.isfinite(points.values("open_from")).sum())
     window_text = f"; for {counted(undecided, noun)} a narrow window of flutter may be missing"
-    lines = [f"the list of crossings {proved_for_text(points, noun)}{window_text if undecided else ''}"]
+    lines = [f"the list of crossings {proved_rod_count_text(points, noun)}{window_text if undecided else ''}"]
     unlisted = unstored_crossing_count(points)
     if stored_counts.any() or unlisted:
         error_clause = f"; absolute error at most {error_text(float(errors.max()))}" if errors.size else ""
@@ -222,16 +222,16 @@ def search_lines(points: Selection, noun: str) -> list[str]:
     return lines
 
 
-def cost_lines(points: Selection) -> list[str]:
+def search_cost_lines(points: Selection) -> list[str]:
     """List with a line on the cost of the searches; empty for searches that count unstable modes, which store
     no cost."""
-    if not has_standard_rods(points.view.config):
+    if not has_uniform_linear_rods(points.view.config):
         return []
     boxes, solve_counts = (
         f"{text} {noun if text == '1' else plural(noun)}"
         for text, noun in (
-            (span_text(points.values("boxes")), "evaluation"),
-            (span_text(points.values("solves")), "eigenproblem"),
+            (value_range_text(points.values("boxes")), "evaluation"),
+            (value_range_text(points.values("solves")), "eigenproblem"),
         )
     )
     return [f"cost of a search: {boxes} of the determinant D over a box, {solve_counts}"]

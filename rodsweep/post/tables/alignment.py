@@ -41,7 +41,7 @@ def rewrap_line(line: str, width: int = LINE_WIDTH) -> str:
     return "\n".join(lines).replace(NO_BREAK_SPACE, " ")
 
 
-def point_aligned(cells: Sequence[str]) -> list[str]:
+def aligned_at_decimal_points(cells: Sequence[str]) -> list[str]:
     """Cells of a column padded to equal length. Numbers are aligned at their decimal points; if a cell is not
     a number, all cells are aligned at the left."""
     if not all(NUMBER_PATTERN.fullmatch(cell) for cell in cells if cell):
@@ -57,17 +57,17 @@ def point_aligned(cells: Sequence[str]) -> list[str]:
     ]
 
 
-def column_cells(heading_lines: Sequence[str], cells: Sequence[str]) -> list[str]:
+def aligned_column_cells(heading_lines: Sequence[str], cells: Sequence[str]) -> list[str]:
     """Heading lines and cells of a column, padded to equal length. The cells are aligned as in
-    `point_aligned`."""
-    aligned_cells = point_aligned(cells)
+    `aligned_at_decimal_points`."""
+    aligned_cells = aligned_at_decimal_points(cells)
     width = max(map(len, (*heading_lines, *aligned_cells)))
     return [f"{cell:{width}}" for cell in (*heading_lines, *aligned_cells)]
 
 
 def table_blocks(columns: Sequence[Sequence[str]], width: int = LINE_WIDTH) -> Iterator[list[str]]:
     """Yields blocks of lines at most `width` wide: the first column, and as many of the following columns as
-    fit. columns: cells of every column, as from `column_cells`.
+    fit. columns: cells of every column, as from `aligned_column_cells`.
 
     """
     first_column, *other_columns = columns
@@ -93,7 +93,7 @@ def rows_with_prose(rows: Sequence[RowCells], width: int = LINE_WIDTH) -> list[s
     if not rows:
         return []
     *columns, proses = zip(*rows, strict=True)
-    aligned = (point_aligned(column) if any(column) else column for column in columns)
+    aligned = (aligned_at_decimal_points(column) if any(column) else column for column in columns)
     row_starts = [COLUMN_GAP.join(cells) for cells in zip(*aligned, strict=True)]
     prose_width = width - max(map(len, row_starts)) - len(COLUMN_GAP)
     lines = []

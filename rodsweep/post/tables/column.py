@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import list_of
-from ...results.layouts.variables import NOT_KNOWN_SUFFIX, SECONDS_VARIABLE, Variable
+from ...results.layouts.variables import SECONDS_VARIABLE, UNKNOWN_COUNT_LONG_NAME_SUFFIX, Variable
 
-UNUSED_WORDS = ("none", "missing")
+UNUSED_ITEM_WORDS = ("none", "missing")
 """Words of a flag variable that mark unused items of a list."""
 BOOLEAN_TEXTS = {0: "false", 1: "true"}
 """Text in CSV for the boolean values 0 and 1."""
@@ -25,14 +25,14 @@ range."""
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """Column of a table, with its name, unit and meaning. values: (rows,). absent: mask of missing values,
-    (rows,)."""
+    """Column of a table, with its name, unit and meaning. values: (rows,). missing_mask: mask of missing
+    values, (rows,)."""
 
     name: str
     unit: str
     meaning: str
     values: NDArray
-    absent: NDArray[np.bool_]
+    missing_mask: NDArray[np.bool_]
     flag_meanings: Mapping[int, str] = field(default_factory=dict)
     """Words by integer value; empty for a column of numbers."""
     is_input: bool = False
@@ -56,20 +56,20 @@ class Column:
         """Whether the values are estimates: errors, or computing times."""
         return "error" in self.name or self.name == SECONDS_VARIABLE.name
 
-    def rows(self, indices: NDArray[np.int64] | slice) -> "Column":
+    def with_rows(self, indices: NDArray[np.int64] | slice) -> "Column":
         """Column with the rows `indices`: indices, in the order of the new column, or a slice."""
-        return replace(self, values=self.values[indices], absent=self.absent[indices])
+        return replace(self, values=self.values[indices], missing_mask=self.missing_mask[indices])
 
-    def followed_by(self, other: "Column | None", length: int) -> "Column":
+    def extended_by_rows(self, other: "Column | None", length: int) -> "Column":
         """Column of `length` rows: the rows of this column, then those of `other`, or missing values if
         `other` is None."""
         added = length - len(self.values)
         values = np.zeros(added, self.values.dtype) if other is None else other.values
-        absent = np.ones(added, bool) if other is None else other.absent
+        absent = np.ones(added, bool) if other is None else other.missing_mask
         return replace(
             self,
             values=np.concatenate([self.values, values]),
-            absent=np.concatenate([self.absent, absent]),
+            missing_mask=np.concatenate([self.missing_mask, absent]),
         )
 
     def texts(self) -> list[str]:
@@ -80,12 +80,12 @@ class Column:
         elif self.flag_meanings:
             texts = [self.flag_meanings.get(int(v), "") for v in np.nan_to_num(self.values)]
         elif self.values.dtype.kind == "f":
-            texts = self._numbers()
+            texts = self._number_texts()
         else:
             texts = list_of(self.values.astype(str))
-        return ["" if is_absent else text for text, is_absent in zip(texts, self.absent, strict=True)]
+        return ["" if is_absent else text for text, is_absent in zip(texts, self.missing_mask, strict=True)]
 
-    def _numbers(self) -> list[str]:
+    def _number_texts(self) -> list[str]:
         """Real numbers as text: estimates with ESTIMATE_DIGITS digits, coordinates without rounding error,
         other numbers with all digits."""
         if self.is_estimate:
@@ -101,7 +101,7 @@ def column_of(variable: Variable, values: NDArray, flag_meanings: Mapping[int, s
     """Column of a variable. values: (rows,). flag_meanings: words by value, used instead of the flags of the
     variable if given."""
     meanings = dict(variable.flags) if flag_meanings is None else flag_meanings
-    meaning = variable.long_name.removesuffix(NOT_KNOWN_SUFFIX)
+    meaning = variable.long_name.removesuffix(UNKNOWN_COUNT_LONG_NAME_SUFFIX)
     is_absent = missing_values_mask(variable, values)
     boolean = variable.is_boolean
     return Column(variable.name, variable.units, meaning, values, is_absent, meanings, is_boolean=boolean)
@@ -125,15 +125,15 @@ def _without_rounding_error(value: float, text: str) -> str:
 
 def missing_values_mask(variable: Variable, values: NDArray) -> NDArray[np.bool_]:
     """Mask of missing values of a variable, of the shape of `values`. A missing value is NaN, the fill value
-    -1, or a flag with a word in UNUSED_WORDS."""
+    -1, or a flag with a word in UNUSED_ITEM_WORDS."""
     if values.dtype.kind == "f":
         return np.isnan(values)
     if variable.flags:
-        return np.isin(values, [value for value, word in variable.flags if word in UNUSED_WORDS])
-    return values == variable.fill if variable.fill == -1 else np.zeros(values.shape, bool)
+        return np.isin(values, [value for value, word in variable.flags if word in UNUSED_ITEM_WORDS])
+    return values == variable.fill_value if variable.fill_value == -1 else np.zeros(values.shape, bool)
 
 
 def marks_missing_items(variable: Variable) -> bool:
     """Whether the fill value of the variable marks a missing item, because no valid value equals the fill
     value."""
-    return variable.dtype.startswith("<f") or bool(variable.flags) or variable.fill == -1
+    return variable.dtype.startswith("<f") or bool(variable.flags) or variable.fill_value == -1

@@ -62,23 +62,23 @@ DEFAULT_TABLE = {
 class TableContents:
     """Variables of a result, divided into tables.
 
-    point_variables: variables with one value per point, which are columns of all tables. lists: variables of
-    each list, by name of the table. sweep_wide_lists: names of lists that belong to the whole file, not to
-    single points."""
+    point_variables: variables with one value per point, which are columns of all tables. variables_by_list:
+    variables of each list, by name of the table. sweep_wide_lists: names of lists that belong to the whole
+    file, not to single points."""
 
     point_variables: tuple[Variable, ...]
-    lists: dict[str, tuple[Variable, ...]]
+    variables_by_list: dict[str, tuple[Variable, ...]]
     sweep_wide_lists: frozenset[str]
 
     @property
-    def tables(self) -> tuple[str, ...]:
+    def table_names(self) -> tuple[str, ...]:
         """Names of all tables of the result."""
-        branches = (BRANCHES_TABLE,) if self.lists.keys() >= BRANCHES_TABLE_PARTS else ()
-        return (POINTS_TABLE, *branches, *self.lists)
+        branches = (BRANCHES_TABLE,) if self.variables_by_list.keys() >= BRANCHES_TABLE_PARTS else ()
+        return (POINTS_TABLE, *branches, *self.variables_by_list)
 
-    def dimensions(self, table: str) -> tuple[str, ...]:
+    def list_dimensions(self, table: str) -> tuple[str, ...]:
         """Dimensions of the list `table`, without the dimensions of the points; empty for other tables."""
-        return self.lists[table][0].extra if table in self.lists else ()
+        return self.variables_by_list[table][0].extra_dimensions if table in self.variables_by_list else ()
 
 
 def table_contents_of(view: ResultView) -> TableContents:
@@ -87,19 +87,21 @@ def table_contents_of(view: ResultView) -> TableContents:
     point_variables: list[Variable] = []
     lists: dict[str, list[Variable]] = {}
     for variable in layout_of(config).variables:
-        if variable.extra:
-            lists.setdefault(table_name_of(variable.extra), []).append(variable)
+        if variable.extra_dimensions:
+            lists.setdefault(table_name_of(variable.extra_dimensions), []).append(variable)
         else:
             point_variables.append(variable)
     with_points = set(lists)
     for variable in sweep_wide_variables(config, view.is_grid):
         if variable.name not in view.variables:
             continue
-        of_items = tuple(name for name in variable.extra if name not in ("point", *view.parameters))
-        if of_items != variable.extra:
+        of_items = tuple(
+            name for name in variable.extra_dimensions if name not in ("point", *view.parameters)
+        )
+        if of_items != variable.extra_dimensions:
             lists[table_name_of(of_items)].append(variable)
-        elif variable.extra:
-            lists.setdefault(table_name_of(variable.extra), []).append(variable)
+        elif variable.extra_dimensions:
+            lists.setdefault(table_name_of(variable.extra_dimensions), []).append(variable)
     point_variables.sort(key=lambda variable: variable.name != "status")
     list_variables = {name: tuple(variables) for name, variables in lists.items()}
     return TableContents(
@@ -119,12 +121,20 @@ def chosen_table(
     `columns`, else POINTS_TABLE if only columns of points are named, else the default table of the task.
     Raises InputError for an unknown name, and for columns of two tables."""
     if table is not None:
-        if table not in contents.tables:
-            hint = unknown_key_hint(table, contents.tables, KNOWN_NAMES_PHRASE)
+        if table not in contents.table_names:
+            hint = unknown_key_hint(table, contents.table_names, KNOWN_NAMES_PHRASE)
             raise InputError(f"{view.path} has no table {table!r}; {hint}")
         return table
-    holding = {variable.name: name for name, variables in contents.lists.items() for variable in variables}
-    holding |= {name: list_name for list_name in contents.lists for name in contents.dimensions(list_name)}
+    holding = {
+        variable.name: name
+        for name, variables in contents.variables_by_list.items()
+        for variable in variables
+    }
+    holding |= {
+        name: list_name
+        for list_name in contents.variables_by_list
+        for name in contents.list_dimensions(list_name)
+    }
     lists = list(dict.fromkeys(holding[name] for name in columns if name in holding))
     if set(lists) == BRANCHES_TABLE_PARTS:
         return BRANCHES_TABLE

@@ -7,14 +7,14 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ...model.arm.quantities import LOADS
+from ...model.arm.quantities import LOAD_NAMES
 from ...model.parameters import PARAMETERS
 from ...results.file.view import ResultView
 from ..branch_curves import followed_parameter
 from . import table_names
 from .column import Column
 from .rows_and_columns import (
-    Rows,
+    ItemIndices,
     indices_of_items,
     list_columns,
     point_columns,
@@ -25,17 +25,17 @@ from .rows_and_columns import (
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Table of results. name: name of the table. columns: columns of equal length. empty_points: number of
-    points without a row."""
+    """Table of results. name: name of the table. columns: columns of equal length. point_count_without_rows:
+    number of points without a row."""
 
     name: str
     columns: tuple[Column, ...]
-    empty_points: int
+    point_count_without_rows: int
     other_tables: tuple[str, ...]
     """Names of the other tables of the same result."""
 
     @property
-    def rows(self) -> int:
+    def row_count(self) -> int:
         """Number of rows."""
         return len(self.columns[0].values)
 
@@ -63,7 +63,7 @@ class Tables:
         name.
         """
         name = table_names.chosen_table(self.view, self.contents, name, tuple(columns))
-        points, listed = self._rows(name)
+        points, listed = self._point_indices_and_columns(name)
         variables = self.contents.point_variables
         columns_beside = [] if points is None else list(point_columns(self.view, variables, points))
         if name == table_names.GRID_TABLE:
@@ -80,58 +80,63 @@ class Tables:
                 if name == table_names.POINTS_TABLE or column_name not in hidden
             ]
         empty = 0 if points is None else self.view.variables["status"].size - len(np.unique(points))
-        other_names = tuple(choice for choice in self.contents.tables if choice != name)
+        other_names = tuple(choice for choice in self.contents.table_names if choice != name)
         return Table(name, tuple(by_name[column_name] for column_name in columns), empty, other_names)
 
     def list_columns(self, name: str) -> tuple[Column, ...]:
         """Columns of the list `name`, without the columns of the points."""
-        return tuple(self._rows(name)[1])
+        return tuple(self._point_indices_and_columns(name)[1])
 
-    def _rows(self, name: str) -> tuple[NDArray[np.int64] | None, list[Column]]:
+    def _point_indices_and_columns(self, name: str) -> tuple[NDArray[np.int64] | None, list[Column]]:
         """Returns (point_indices, columns) for the table `name`. point_indices: index of the point of each
         row, (rows,); None if the rows belong to no point. columns: columns of the items."""
         if name == table_names.POINTS_TABLE:
             return np.arange(self.view.variables["status"].size), []
         if name == table_names.BRANCHES_TABLE:
-            return self._branches()
-        rows, columns = self._list(name)
+            return self._branches_table_columns()
+        rows, columns = self._item_indices_and_columns(name)
         return None if name in self.contents.sweep_wide_lists else rows[0], columns
 
-    def _list(self, name: str) -> tuple[Rows, list[Column]]:
+    def _item_indices_and_columns(self, name: str) -> tuple[ItemIndices, list[Column]]:
         """Returns (rows, columns) of the list `name`. rows: indices of the items. columns: columns, including
         columns in SI units."""
         is_sweep_wide = name in self.contents.sweep_wide_lists
-        variables = self.contents.lists[name]
+        variables = self.contents.variables_by_list[name]
         rows = indices_of_items(self.view, variables, is_sweep_wide)
         columns = list(list_columns(self.view, variables, rows, is_sweep_wide))
         columns += varying_quantity_columns(self.view, rows) if name == table_names.GRID_TABLE else ()
         points = None if is_sweep_wide else rows[0]
         return rows, [*columns, *si_columns(self.view, variables, columns, points)]
 
-    def _branches(self) -> tuple[NDArray[np.int64], list[Column]]:
+    def _branches_table_columns(self) -> tuple[NDArray[np.int64], list[Column]]:
         """Returns (point_indices, columns) of the table `branches`: cycles, with the special points between
         the cycles, and the kind of special point. point_indices: index of the point of each row, (rows,)."""
-        cycles, cycle_columns = self._list("cycles")
-        special_points, special_columns = self._list("special_points")
+        cycles, cycle_columns = self._item_indices_and_columns("cycles")
+        special_points, special_columns = self._item_indices_and_columns("special_points")
         by_name = {column.name: column for column in special_columns}
         parameter = followed_parameter(self.view)
         order = _order_along_branches(self.view, cycles, special_points)
         columns = [
-            column.followed_by(by_name.get(_special_point_variable(column.name, parameter)), len(order))
+            column.extended_by_rows(by_name.get(_special_point_variable(column.name, parameter)), len(order))
             for column in cycle_columns
         ]
         kinds = by_name["special_kind"]
-        no_kinds = kinds.rows(slice(0, 0)).followed_by(None, len(cycles[0]))
-        columns.append(no_kinds.followed_by(kinds, len(order)))
+        no_kinds = kinds.with_rows(slice(0, 0)).extended_by_rows(None, len(cycles[0]))
+        columns.append(no_kinds.extended_by_rows(kinds, len(order)))
         points = np.concatenate([cycles[0], special_points[0]])
-        return points[order], [column.rows(order) for column in columns]
+        return points[order], [column.with_rows(order) for column in columns]
 
 
-def _order_along_branches(view: ResultView, cycles: Rows, special_points: Rows) -> NDArray[np.int64]:
+def _order_along_branches(
+    view: ResultView, cycles: ItemIndices, special_points: ItemIndices
+) -> NDArray[np.int64]:
     """Order of the cycles, followed by the special points, along the branches: a special point follows the
     cycle that precedes it on the branch."""
-    branches = [view.by_point("branch")[cycles], view.by_point("special_branch")[special_points]]
-    positions = [cycles[1] + 1, view.by_point("special_point")[special_points]]
+    branches = [
+        view.flattened_by_point("branch")[cycles],
+        view.flattened_by_point("special_branch")[special_points],
+    ]
+    positions = [cycles[1] + 1, view.flattened_by_point("special_point")[special_points]]
     points, numbers = (np.concatenate(pair) for pair in zip(cycles, special_points, strict=True))
     is_special_point = np.repeat([0, 1], [len(cycles[0]), len(special_points[0])])
     return np.lexsort(
@@ -143,6 +148,6 @@ def _special_point_variable(cycle_variable: str, parameter_name: str) -> str:
     """Name of the variable of special points that corresponds to the variable `cycle_variable` of cycles."""
     if cycle_variable == f"branch_{parameter_name}":
         return "special_at"
-    if parameter_name == "F" and cycle_variable in {f"branch_{load}" for load in LOADS}:
+    if parameter_name == "F" and cycle_variable in {f"branch_{load}" for load in LOAD_NAMES}:
         return "special_at_si"
     return f"special_{cycle_variable}"

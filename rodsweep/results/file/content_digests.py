@@ -30,7 +30,7 @@ UNDIGESTED_ATTRIBUTES = frozenset(
 )  # fmt: skip
 """Names of attributes without digests: the seal, and attributes by which HDF5 and netCDF link dimensions to
 variables. The digest of a variable covers its dimensions."""
-NUMBER_KINDS = "iuf"
+ALLOWED_DTYPE_KINDS = "iuf"
 """NumPy type kinds allowed for variables of a result file: integers and floating-point numbers."""
 BYTES_PER_READ = 1 << 18
 """Number of bytes per read of a variable, which bounds the memory."""
@@ -74,7 +74,7 @@ def digests_of(file: h5py.File) -> Digests:
     not write."""
     variables = {}
     for name, dataset in _variables(file):
-        if dataset.dtype.kind not in NUMBER_KINDS or dataset.shape is None:
+        if dataset.dtype.kind not in ALLOWED_DTYPE_KINDS or dataset.shape is None:
             raise ValueError(f"its variable {printable_name(name, 40)} has no numbers")
         described = dataset.dtype, dataset.shape, _dimensions(name, dataset), dataset.attrs
         variables[name] = variable_digest(*described, _number_buffers(dataset))

@@ -15,16 +15,10 @@ from ...arrays import Array
 from ...sweep.points.chains import Chains
 from ...sweep.points.groups import PointGroups
 from ...sweep.points.points import Points
-from ..layouts.variables import (
-    MISSING_STATUS,
-    FilledVariable,
-    Layout,
-    Variable,
-    dimension_attributes,
-    flag_attributes,
-)
-from .combination.identity import fingerprint_of
-from .validation import FORMAT, PROGRAM
+from ..layouts.dimensions import dimension_attributes
+from ..layouts.variables import MISSING_STATUS, FilledVariable, Layout, Variable, flag_attributes
+from .combination.config_comparison import fingerprint_of
+from .validation import FORMAT_NUMBER, PROGRAM_NAME
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +37,7 @@ class FilePlan:
     """The resolved config."""
     attributes: dict[str, Any]
     """Attributes of the file, in addition to the attributes that every result file has."""
-    flags: tuple[tuple[int, str], ...]
+    status_flags: tuple[tuple[int, str], ...]
     """(value, name) of every status except MISSING_STATUS."""
     quantity_variables: tuple[FilledVariable, ...] = ()
     """Quantities of an arm, with values: axes of a grid over these quantities, or additional coordinates of
@@ -67,17 +61,17 @@ class FilePlan:
 
 
 @dataclass(frozen=True, slots=True)
-class FinalVariables:
+class FinalAdditions:
     """Contents that complete a file with all points. variables: variables that do not belong to single
-    points. changed_points: new values of the variables of points, by name, by flat index. reasons: lines that
-    say why some of these points failed."""
+    points. changed_points: new values of the variables of points, by name, by flat index. failure_reasons:
+    lines that say why some of these points failed."""
 
     variables: Sequence[FilledVariable] = ()
     changed_points: Mapping[int, Mapping[str, NDArray[Any]]] = field(default_factory=dict)
-    reasons: Sequence[str] = ()
+    failure_reasons: Sequence[str] = ()
 
 
-NO_ADDITIONS = FinalVariables()
+NO_FINAL_VARIABLES = FinalAdditions()
 
 
 def create_file(path: Path, plan: FilePlan) -> None:
@@ -90,15 +84,15 @@ def create_file(path: Path, plan: FilePlan) -> None:
             _write_dimension_scale(file, name, plan.coordinates.get(name, np.arange(1, length + 1)))
         for variable in plan.layout.variables:
             dataset = _new_dataset(file, variable, plan.points.shape + plan.layout.point_shape(variable))
-            _write_attributes(file, dataset, variable, (*plan.dimensions, *variable.extra))
+            _write_attributes(file, dataset, variable, (*plan.dimensions, *variable.extra_dimensions))
         add_variables(file, constants)
         add_variables(
             file,
             [quantity for quantity in plan.quantity_variables if not is_dimension_coordinate(quantity[0])],
         )
-        file["status"].attrs.update(flag_attributes(((MISSING_STATUS, "missing"), *plan.flags)))
-        file.attrs["program"] = PROGRAM
-        file.attrs["format"] = FORMAT
+        file["status"].attrs.update(flag_attributes(((MISSING_STATUS, "missing"), *plan.status_flags)))
+        file.attrs["program"] = PROGRAM_NAME
+        file.attrs["format"] = FORMAT_NUMBER
         file.attrs["fingerprint"] = plan.fingerprint
         file.attrs["config_resolved"] = json.dumps(plan.config)
         file.attrs.update(plan.attributes)
@@ -108,11 +102,11 @@ def add_variables(file: h5py.File, variables: Sequence[FilledVariable]) -> None:
     """Adds variables with their values to an open file, and coordinates 1, 2, ... of new dimensions.
     variables: (variable, values) pairs."""
     for variable, values in variables:
-        for name, length in zip(variable.extra, values.shape, strict=True):
+        for name, length in zip(variable.extra_dimensions, values.shape, strict=True):
             if name not in file:
                 _write_dimension_scale(file, name, np.arange(1, length + 1))
         dataset = file.create_dataset(variable.name, data=values.astype(variable.dtype))
-        _write_attributes(file, dataset, variable, variable.extra)
+        _write_attributes(file, dataset, variable, variable.extra_dimensions)
 
 
 def _write_parameters(file: h5py.File, plan: FilePlan) -> None:
@@ -142,7 +136,7 @@ def _write_parameters(file: h5py.File, plan: FilePlan) -> None:
 
 def is_dimension_coordinate(variable: Variable) -> bool:
     """Whether a variable is the coordinate of a dimension with the same name."""
-    return variable.extra == (variable.name,)
+    return variable.extra_dimensions == (variable.name,)
 
 
 def _write_dimension_scale(
@@ -163,7 +157,7 @@ def _new_dataset(file: h5py.File, variable: Variable, shape: tuple[int, ...]) ->
     # By default HDF5 allocates at the first write, and no offset would exist before.
     creation.set_alloc_time(h5py.h5d.ALLOC_TIME_EARLY)
     # A point is recognised as missing by its fill values, so they must be on disk from the start.
-    creation.set_fill_value(np.array(variable.fill, variable.dtype))
+    creation.set_fill_value(np.array(variable.fill_value, variable.dtype))
     hdf5_type = h5py.h5t.py_create(np.dtype(variable.dtype), logical=True)
     space = h5py.h5s.create_simple(shape)
     return h5py.Dataset(h5py.h5d.create(file.id, variable.name.encode(), hdf5_type, space, creation))

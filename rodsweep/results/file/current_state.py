@@ -17,8 +17,8 @@ from ..layouts.variables import MISSING_STATUS
 from ..run.journal import journal_directory, read_journals, read_reasons
 from .points import missing_ranges, write_records
 from .provenance import updated_reasons_attribute, utc_time
-from .replacement import FileReplacement, disk_refusals, file_identity
-from .validation import ResultHeader, damage_refusals, is_rodsweep_or_damaged_file, read_header
+from .replacement import FileReplacement, disk_errors_as_refusals, file_identity
+from .validation import ResultHeader, damage_as_refusals, is_rodsweep_or_damaged_file, read_header
 
 MAX_REREADS = 20
 """Maximum number of attempts to read a file that is replaced meanwhile. A run replaces its file every few
@@ -88,7 +88,7 @@ def write_snapshot(path: Path, output: Path) -> tuple[int, int]:
             raise InputError(f"{output} is the file itself; name another file with -o")
         if not _is_snapshot(output):
             raise InputError(f"{output} exists and is not a snapshot; name another file with -o")
-    with disk_refusals(output):
+    with disk_errors_as_refusals(output):
         replacement = FileReplacement(output)
     try:
         return read_file_and_journals(path, lambda: _write_new_snapshot(path, replacement))
@@ -100,13 +100,13 @@ def _write_new_snapshot(path: Path, replacement: FileReplacement) -> tuple[int, 
     """Replaces the snapshot by a copy of the file at `path` with the points of its journals. Returns (number
     of computed points, number of all points)."""
     header = read_header(path)
-    with disk_refusals(replacement.path), replacement.replacing(path) as copy:
-        blocks = read_journals(journal_directory(path), header.layout, header.fingerprint, header.points)
+    with disk_errors_as_refusals(replacement.path), replacement.writing_new_file(path) as copy:
+        blocks = read_journals(journal_directory(path), header.layout, header.fingerprint, header.point_count)
         write_records(copy, blocks, header.layout)
         with h5py.File(copy, "r+") as file:
             file.attrs.update(reasons_attribute_with_journals(header) | {SNAPSHOT_ATTRIBUTE: utc_time()})
         missing_count = index_count(missing_ranges(copy))
-    return header.points - missing_count, header.points
+    return header.point_count - missing_count, header.point_count
 
 
 def _is_snapshot(path: Path) -> bool:
@@ -114,5 +114,5 @@ def _is_snapshot(path: Path) -> bool:
     result file."""
     if not is_rodsweep_or_damaged_file(path):
         return False
-    with damage_refusals(path), h5py.File(path, "r") as file:
+    with damage_as_refusals(path), h5py.File(path, "r") as file:
         return bool(file.attrs.get(SNAPSHOT_ATTRIBUTE))

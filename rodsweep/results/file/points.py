@@ -55,7 +55,7 @@ def missing_ranges(path: Path) -> list[IndexRange]:
 
 def records_to_add(path: Path, other_path: Path, layout: Layout) -> Iterator[np.ndarray]:
     """Yields records, (n,), of points that the file `other_path` has and the file `path` lacks."""
-    block_size = _block_points(layout)
+    block_size = _points_per_block(layout)
     pairs = zip(iterate_statuses(path, block_size), iterate_statuses(other_path, block_size), strict=True)
     masks = (
         (start, statuses == MISSING_STATUS, other_statuses != MISSING_STATUS)
@@ -67,12 +67,12 @@ def records_to_add(path: Path, other_path: Path, layout: Layout) -> Iterator[np.
 
 def stored_records(path: Path, layout: Layout) -> Iterator[np.ndarray]:
     """Yields records, (n,), of all computed points of a file with the given layout."""
-    statuses = iterate_statuses(path, _block_points(layout))
+    statuses = iterate_statuses(path, _points_per_block(layout))
     blocks = ((start, status != MISSING_STATUS) for start, status in statuses)
     yield from _selected_records(path, layout, blocks)
 
 
-def _block_points(layout: Layout) -> int:
+def _points_per_block(layout: Layout) -> int:
     """Number of points in a block that is read at once, for the record size of a layout."""
     # At least one point, however large its record.
     return min(MAX_BLOCK_POINTS, MAX_BLOCK_BYTES // layout.record_dtype.itemsize + 1)
@@ -83,7 +83,7 @@ def _selected_records(
 ) -> Iterator[np.ndarray]:
     """Yields records, (n,), of selected points that were not changed after all points were solved; blocks:
     (flat index of the first point, mask of points)."""
-    changed = _changed_points(path, layout)
+    changed = _changed_point_indices(path, layout)
     offsets = _variable_offsets(path, layout)
     with path.open("rb") as stream:
         for start, mask in blocks:
@@ -170,11 +170,11 @@ def write_records(path: Path, blocks: Iterable[np.ndarray], layout: Layout) -> b
     return any_written
 
 
-def _changed_points(path: Path, layout: Layout) -> np.ndarray:
+def _changed_point_indices(path: Path, layout: Layout) -> np.ndarray:
     """Flat indices of the points that were changed after all points were solved, (n,)."""
     with h5py.File(path, "r") as file:
-        if layout.changed_points and layout.changed_points in file:
-            return np.asarray(file[layout.changed_points][...]) - 1
+        if layout.changed_points_variable and layout.changed_points_variable in file:
+            return np.asarray(file[layout.changed_points_variable][...]) - 1
     return np.empty(0, int)
 
 

@@ -20,7 +20,7 @@ MAX_RANK_STATISTICS = 10_000
 """Maximum number of ranks whose work statistics are stored, because an attribute is limited to 64 kB."""
 MAX_ATTRIBUTE_LENGTH = 60_000
 """Maximum number of characters of an attribute; HDF5 allows 64 kB."""
-RANK_STATISTICS = ("rank_points", "rank_busy_seconds", "rank_idle_seconds")
+RANK_STATISTICS_ATTRIBUTES = ("rank_points", "rank_busy_seconds", "rank_idle_seconds")
 """Names of the attributes with the work statistics of each rank of the last run."""
 KERNELS_ATTRIBUTE = "blas_kernels"
 """Name of the attribute with the BLAS kernels that computed the points of a file in all runs, a kernel per
@@ -161,7 +161,7 @@ def merged_history(attribute_sets: Sequence[Mapping[str, Any]]) -> dict[str, Any
         "hosts": " ".join(sorted(hosts))[:MAX_ATTRIBUTE_LENGTH],
         "started": min(str(run["started"]) for run in runs),
     }
-    for name in RANK_STATISTICS:
+    for name in RANK_STATISTICS_ATTRIBUTES:
         values = [np.atleast_1d(run[name]) for run in runs if name in run]
         history |= {name: np.concatenate(values)[:MAX_RANK_STATISTICS]} if values else {}
     return history

@@ -5,22 +5,24 @@ from pathlib import Path
 
 from ...errors import EnvironmentIncomplete, InputError
 from ..run.journal import journals_with_fingerprint
+from .combination.config_comparison import config_change_text
 from .combination.extension import extension_of
-from .combination.identity import config_change_text
 from .creation import FilePlan
 from .points import points_of_file
 from .validation import InvalidResultFile, ResultHeader, is_rodsweep_or_damaged_file, read_header
 
-SPACE_FACTOR = 3
+DISK_SPACE_OVER_FILE_SIZE = 3
 """Disk space that a run needs (for the file, the journals and a new copy of the file), divided by the size of
 the file."""
 EXTRA_SPACE_BYTES = 300_000
 """Additional disk space that a run needs, in bytes, for attributes, coordinates and checkpoints."""
 
 
-def require_room(path: Path, plan: FilePlan) -> None:
+def require_disk_space(path: Path, plan: FilePlan) -> None:
     """Raises EnvironmentIncomplete unless the disk has space for the file of a plan, journals and a copy."""
-    needed_bytes = SPACE_FACTOR * plan.points.count * (plan.layout.bytes_per_point + 12) + EXTRA_SPACE_BYTES
+    needed_bytes = (
+        DISK_SPACE_OVER_FILE_SIZE * plan.points.count * (plan.layout.bytes_per_point + 12) + EXTRA_SPACE_BYTES
+    )
     free = shutil.disk_usage(path.parent).free
     if free < needed_bytes:
         raise EnvironmentIncomplete(

@@ -34,7 +34,7 @@ def file_identity(path: Path) -> FileIdentity:
 
 
 @contextmanager
-def disk_refusals(path: Path, kept_clause: Callable[[], str] = str) -> Iterator[None]:
+def disk_errors_as_refusals(path: Path, kept_clause: Callable[[], str] = str) -> Iterator[None]:
     """Context that turns disk errors (OSError, or RuntimeError from HDF5) into EnvironmentIncomplete.
 
     kept_clause: function that returns a clause, for the message, on the data that are saved.
@@ -62,7 +62,7 @@ class FileReplacement:
         """Identity of the file at the last check or replacement."""
 
     @contextmanager
-    def replacing(self, source: Path | None) -> Iterator[Path]:
+    def writing_new_file(self, source: Path | None) -> Iterator[Path]:
         """Context for writing a new result file; at its end the new file is sealed and replaces the old file.
 
         Yields the path of the new file: a copy of `source`, or no file for None.

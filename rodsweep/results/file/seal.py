@@ -24,13 +24,13 @@ FORMER_CHECKSUM_HEAD = b"\nrodsweep seal 1 "
 """First bytes of the checksum in files of format 4 and before, which are refused for their format."""
 HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 """First bytes of every HDF5 file."""
-END_OFFSETS = {0: 40, 1: 44, 2: 28, 3: 28}
+HDF5_END_OFFSET_BY_VERSION = {0: 40, 1: 44, 2: 28, 3: 28}
 """Offset of the eight bytes with HDF5's end of the file, by version of HDF5's superblock."""
 MAX_CHECKSUM_TEXT_BYTES = 100_000
 """Maximum size, in bytes, of the text with the checksum and the byte ranges that the checksum omits."""
 BYTES_PER_READ = 1 << 20
 """Number of bytes per read of a file, which bounds the memory."""
-MAX_INCLUDED_VARIABLE_BYTES = 1 << 16
+MAX_CHECKSUMMED_VARIABLE_BYTES = 1 << 16
 """Size of a variable, in bytes, up to which the checksum of HDF5's structures includes its numbers."""
 OffsetAndSize = tuple[int, int]
 """Byte range of a file: (offset, size), in bytes."""
@@ -50,12 +50,16 @@ def seal(path: Path) -> None:
     with h5py.File(path, "r+") as file:
         file.attrs[SEAL_ATTRIBUTE] = json.dumps(digests_of(file))
     with h5py.File(path, "r") as file:
-        ranges = _large_pieces(file)
+        ranges = _large_variable_ranges(file)
     with path.open("r+b") as stream:
         end = _hdf5_end(stream)
         # A former checksum lies behind HDF5's own end of the file.
         stream.truncate(end)
-        checksum = {"end": end, "pieces": ranges, "frame": _checksum(stream, _left_out_pieces(ranges, end))}
+        checksum = {
+            "end": end,
+            "pieces": ranges,
+            "frame": _checksum(stream, _complementary_ranges(ranges, end)),
+        }
         stream.seek(end)
         stream.write(CHECKSUM_HEAD + json.dumps(checksum).encode() + b"\n")
 
@@ -83,7 +87,7 @@ def has_valid_structure_checksum(path: Path) -> bool:
             # Before the checksum, since a writer that closes the file meanwhile is no damage.
             is_locked = _is_locked_for_writing(stream)
             is_valid = stored_checksums["end"] == end and stored_checksums["frame"] == _checksum(
-                stream, _left_out_pieces(ranges, end)
+                stream, _complementary_ranges(ranges, end)
             )
         except (LookupError, TypeError, ValueError, OverflowError, RecursionError, OSError):
             raise ChecksumMismatch("its checksum cannot be read") from None
@@ -112,23 +116,27 @@ def _hdf5_end(stream: BinaryIO) -> int:
     """Offset of HDF5's own end of the file, in bytes, from the superblock."""
     stream.seek(0)
     header = stream.read(64)
-    if not header.startswith(HDF5_SIGNATURE) or len(header) < 64 or header[8] not in END_OFFSETS:
+    if (
+        not header.startswith(HDF5_SIGNATURE)
+        or len(header) < 64
+        or header[8] not in HDF5_END_OFFSET_BY_VERSION
+    ):
         raise ChecksumMismatch("it is not HDF5")
-    offset = END_OFFSETS[header[8]]
+    offset = HDF5_END_OFFSET_BY_VERSION[header[8]]
     return int.from_bytes(header[offset : offset + 8], "little")
 
 
-def _large_pieces(file: h5py.File) -> list[OffsetAndSize]:
-    """Byte ranges of the numbers of contiguous variables larger than MAX_INCLUDED_VARIABLE_BYTES, in
+def _large_variable_ranges(file: h5py.File) -> list[OffsetAndSize]:
+    """Byte ranges of the numbers of contiguous variables larger than MAX_CHECKSUMMED_VARIABLE_BYTES, in
     order."""
     variables = [dataset for dataset in map(file.get, file) if isinstance(dataset, h5py.Dataset)]
     ranges = {(dataset.id.get_offset(), dataset.id.get_storage_size()) for dataset in variables}
     return sorted(
-        (start, size) for start, size in ranges if start is not None and size > MAX_INCLUDED_VARIABLE_BYTES
+        (start, size) for start, size in ranges if start is not None and size > MAX_CHECKSUMMED_VARIABLE_BYTES
     )
 
 
-def _left_out_pieces(ranges: list[OffsetAndSize], end: int) -> Iterator[OffsetAndSize]:
+def _complementary_ranges(ranges: list[OffsetAndSize], end: int) -> Iterator[OffsetAndSize]:
     """Yields the byte ranges from 0 to `end` that the sorted byte ranges `ranges` leave out."""
     position = 0
     # An empty piece at the end closes the last gap.

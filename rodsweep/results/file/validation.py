@@ -15,21 +15,21 @@ from ...config.values import printable
 from ...errors import InputError
 from ..layouts import layout_of
 from ..layouts.variables import Layout
-from .combination.identity import fingerprint_of
+from .combination.config_comparison import fingerprint_of
 from .content_digests import refuse_changed
 from .points import points_of_open_file
 from .seal import HDF5_SIGNATURE, OPEN_FOR_WRITING_CLAUSE, has_valid_structure_checksum
 
-PROGRAM = "rodsweep"
+PROGRAM_NAME = "rodsweep"
 """Value of the attribute `program` of result files."""
-FORMAT = 11
+FORMAT_NUMBER = 11
 """Value of the attribute `format` of result files. The format grows when a variable is added or changes in
 meaning; files whose format number differs are refused. Format 5 was the first with sealed content; 6
 introduced frequencies in Hz, counts from 1, the Hopf points of the lines of limit cycles, and grids over an
 arm's quantities; in 9 `tip_theta_max` is the largest |theta|, not the largest theta."""
 CONFIG_SUFFIXES = (".yaml", ".yml")
 """Suffixes of the names of config files."""
-MAX_REASON_LENGTH = 150
+MAX_QUOTED_MESSAGE_LENGTH = 150
 """Maximum number of characters of a library's error message that a message of rodsweep quotes; longer
 messages are cut."""
 DAMAGE_EXCEPTIONS = (OSError, LookupError, ValueError, TypeError, RuntimeError, OverflowError, MemoryError)
@@ -45,7 +45,7 @@ class InvalidResultFile(InputError):
 
 
 @contextmanager
-def damage_refusals(path: Path) -> Iterator[None]:
+def damage_as_refusals(path: Path) -> Iterator[None]:
     """Context that turns DAMAGE_EXCEPTIONS, which a damaged file or a file of another kind raises, into
     `InvalidResultFile`."""
     try:
@@ -56,10 +56,11 @@ def damage_refusals(path: Path) -> Iterator[None]:
 
 
 def one_line_message(error: Exception) -> str:
-    """Message of a library's exception about a file, on one line, cut to MAX_REASON_LENGTH characters."""
+    """Message of a library's exception about a file, on one line, cut to MAX_QUOTED_MESSAGE_LENGTH
+    characters."""
     text = getattr(error, "strerror", None) or str(error) or type(error).__name__
     text = "".join(character if character.isprintable() else " " for character in text)
-    return text if len(text) <= MAX_REASON_LENGTH else text[: MAX_REASON_LENGTH - 3] + "..."
+    return text if len(text) <= MAX_QUOTED_MESSAGE_LENGTH else text[: MAX_QUOTED_MESSAGE_LENGTH - 3] + "..."
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +68,7 @@ class ResultHeader:
     """Description of a complete result file at `path`. attributes: attributes of the file. layout: its
     variables.
 
-    config: the resolved config. fingerprint: digest of config and points. points: number of points.
+    config: the resolved config. fingerprint: digest of config and points. point_count: number of points.
     """
 
     path: Path
@@ -75,7 +76,7 @@ class ResultHeader:
     config: dict[str, Any]
     fingerprint: str
     layout: Layout
-    points: int
+    point_count: int
 
 
 def open_checked(path: Path, checks_values: bool = True) -> tuple[h5py.File, ResultHeader]:
@@ -91,7 +92,7 @@ def open_checked(path: Path, checks_values: bool = True) -> tuple[h5py.File, Res
         raise InvalidResultFile(
             f"{path} is a config, not a result file; `rodsweep run` makes a result file from it"
         )
-    with damage_refusals(path):
+    with damage_as_refusals(path):
         # Before HDF5 opens the file, because damaged structures can make it crash or loop.
         is_framed = has_valid_structure_checksum(path)
         file = h5py.File(path, "r")
@@ -123,7 +124,7 @@ def header_of(path: Path, file: h5py.File, check_content: bool = True) -> Result
     version does not read.
     """
     attributes = {name: escape_control_characters(value) for name, value in file.attrs.items()}
-    if attributes.get("program") != PROGRAM:
+    if attributes.get("program") != PROGRAM_NAME:
         raise ValueError("the file was not written by rodsweep")
     _refuse_other_format(path, attributes)
     if check_content:
@@ -146,20 +147,20 @@ def escape_control_characters(value: Any) -> Any:
 
 
 def _refuse_other_format(path: Path, attributes: Mapping[str, Any]) -> None:
-    """Raises InputError for a file whose format differs from FORMAT."""
+    """Raises InputError for a file whose format differs from FORMAT_NUMBER."""
     format_number = int(np.atleast_1d(attributes.get("format", 0))[0])  # netCDF stores a list of one number
     version, commit = (str(attributes.get(name, "unknown")) for name in ("rodsweep_version", "git_commit"))
     writer = f"{version}, commit {commit[:12]}"
-    if format_number > FORMAT:
+    if format_number > FORMAT_NUMBER:
         raise InputError(
             f"{path} has format {format_number}, written by rodsweep {writer}; rodsweep {__version__} "
-            f"reads format {FORMAT}: update rodsweep"
+            f"reads format {FORMAT_NUMBER}: update rodsweep"
         )
-    if format_number < FORMAT:
+    if format_number < FORMAT_NUMBER:
         raise InputError(
             f"{path} was written by an earlier rodsweep ({writer}) in format {format_number}, and this "
-            f"rodsweep reads format {FORMAT}: read the file with that version, or compute it again, with "
-            "--fresh or into another file"
+            f"rodsweep reads format {FORMAT_NUMBER}: read the file with that version, or compute it again, "
+            "with --fresh or into another file"
         )
 
 
@@ -196,6 +197,6 @@ def is_rodsweep_or_damaged_file(path: Path) -> bool:
     try:
         has_valid_structure_checksum(path)
         with h5py.File(path, "r") as file:
-            return bool(file.attrs.get("program") == PROGRAM)
+            return bool(file.attrs.get("program") == PROGRAM_NAME)
     except DAMAGE_EXCEPTIONS:
         return True

@@ -10,10 +10,10 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from ...model.arm.quantities import ALL_QUANTITIES
+from ...model.arm.quantities import ARM_FILE_VARIABLES
 from ...model.parameters import PARAMETERS
 from ..layouts.si_units import load_kind_of
-from ..layouts.variables import TYPED_UNIT
+from ..layouts.variables import TYPED_UNIT_ATTRIBUTE
 from .content_digests import is_user_added
 from .current_state import (
     insert_records,
@@ -21,7 +21,7 @@ from .current_state import (
     read_file_and_journals,
     reasons_attribute_with_journals,
 )
-from .validation import damage_refusals, escape_control_characters, open_checked, refuse_absent
+from .validation import damage_as_refusals, escape_control_characters, open_checked, refuse_absent
 
 MAX_CHECKED_BYTES = 10**9
 """Size of a file, in bytes, up to which its numbers are compared with the seal before use. In a larger file
@@ -41,7 +41,7 @@ class FileVariables(Mapping[str, np.ndarray]):
 
     def __getitem__(self, name: str) -> np.ndarray:
         if name not in self.values_read:
-            with damage_refusals(self.path):
+            with damage_as_refusals(self.path):
                 values = self.file[name][...]
                 if len(self.recent) and name in (self.recent.dtype.names or ()):
                     insert_records(values, name, self.recent)
@@ -49,7 +49,7 @@ class FileVariables(Mapping[str, np.ndarray]):
         return self.values_read[name]
 
     def __contains__(self, name: object) -> bool:
-        with damage_refusals(self.path):
+        with damage_as_refusals(self.path):
             return name in self.file and not is_user_added(str(name))
 
     def __iter__(self) -> Iterator[str]:
@@ -69,7 +69,7 @@ class ResultView:
     variables: Mapping[str, np.ndarray]
     parameters: tuple[str, ...]
     """Names of the parameters of a point: dimensions of a grid, or variables along the dimension `point`."""
-    flags: dict[int, str]
+    status_flags: dict[int, str]
     """Name of the status, by value of the variable `status`."""
     journalled_count: int
     """Number of points that are still in the journals of a running or interrupted run."""
@@ -107,7 +107,7 @@ class ResultView:
         The shape of a quantity is (); (n,) along a parameter or the dimension `point`; or (...,) along axes
         of a grid over quantities.
         """
-        return {name: self.variables[name] for name in ALL_QUANTITIES if name in self.variables}
+        return {name: self.variables[name] for name in ARM_FILE_VARIABLES if name in self.variables}
 
     @property
     def load_kind(self) -> str:
@@ -142,19 +142,21 @@ class ResultView:
     @property
     def status_names(self) -> NDArray[np.str_]:
         """Name of the status of every point, (points,)."""
-        return np.array([self.flags.get(int(value), "missing") for value in self.variables["status"].ravel()])
+        return np.array(
+            [self.status_flags.get(int(value), "missing") for value in self.variables["status"].ravel()]
+        )
 
     def has_status(self, *statuses: str) -> NDArray[np.bool_]:
         """Mask of the points whose status has one of the names `statuses`, with the shape of `status`."""
-        values = [value for value, word in self.flags.items() if word in statuses]
+        values = [value for value, word in self.status_flags.items() if word in statuses]
         return np.isin(self.variables["status"], values)
 
     @property
-    def sentences(self) -> dict[str, str]:
+    def status_sentences(self) -> dict[str, str]:
         """Meaning of every status as a sentence, by name of the status."""
         return status_sentences_in(self.attributes)
 
-    def by_point(self, name: str) -> np.ndarray:
+    def flattened_by_point(self, name: str) -> np.ndarray:
         """Variable `name` with all points flattened to the first dimension, (points, ...)."""
         values = self.variables[name]
         return values.reshape(-1, *values.shape[self.variables["status"].ndim :])
@@ -164,7 +166,7 @@ class ResultView:
         dimensions."""
         shape = self.variables["status"].shape
         names = (name for name, values in self.variables.items() if values.shape[: len(shape)] == shape)
-        return {name: self.by_point(name)[index] for name in names}
+        return {name: self.flattened_by_point(name)[index] for name in names}
 
     @property
     def point_columns(self) -> dict[str, np.ndarray]:
@@ -195,14 +197,18 @@ def _view(path: Path) -> ResultView:
     refuse_absent(path)
     # Opened only once, because a run may replace the file at any instant.
     file, header = open_checked(path, checks_values=path.stat().st_size <= MAX_CHECKED_BYTES)
-    with damage_refusals(path):
+    with damage_as_refusals(path):
         status = file["status"]
         words = str(escape_control_characters(status.attrs["flag_meanings"])).split()
         flags = dict(zip((int(value) for value in status.attrs["flag_values"]), words, strict=True))
         recent = journalled_points(header, status[...].ravel())
         variables = FileVariables(path, file, recent)
-        stored = (name for name in ALL_QUANTITIES if name in file)
-        units = {name: str(file[name].attrs[TYPED_UNIT]) for name in stored if TYPED_UNIT in file[name].attrs}
+        stored = (name for name in ARM_FILE_VARIABLES if name in file)
+        units = {
+            name: str(file[name].attrs[TYPED_UNIT_ATTRIBUTE])
+            for name in stored
+            if TYPED_UNIT_ATTRIBUTE in file[name].attrs
+        }
     layout = header.layout
     attributes = header.attributes | reasons_attribute_with_journals(header)
     return ResultView(

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 from . import branch, criticality, limit_cycle, modes, phase_diagram, spectrum, thresholds
-from .rods import optional_parameters_in
+from .rod_properties import optional_parameters_in
 from .si_variables import with_si_variables
 from .variables import ExtensionRule, Layout, Variable
 
@@ -23,12 +23,12 @@ LAYOUT_MAKERS: dict[str, Callable[[dict[str, Any]], Layout]]
 LAYOUT_MAKERS = {task: module.layout for task, module in LAYOUT_MODULES.items()}
 """Function from a resolved config to the layout of the file, by task."""
 EXTENSION_RULES: dict[str, dict[str, ExtensionRule]]
-EXTENSION_RULES = {task: module.OPTION_EXTENSION_RULES for task, module in LAYOUT_MODULES.items()}
+EXTENSION_RULES = {task: module.REUSE_RULES_OF_INCREASED_OPTIONS for task, module in LAYOUT_MODULES.items()}
 """Rules for the options of which a larger value requests more data of a point, by task and option. A file
 cannot be extended if any other option changes."""
 SWEEP_WIDE_VARIABLE_MAKERS: dict[str, Callable[[dict[str, Any], bool], tuple[Variable, ...]]] = {
     "spectrum": spectrum.sweep_wide_variables,
-    "modes": lambda config, is_grid: spectrum.FORCE_CHANGE_VARIABLES,
+    "modes": lambda config, is_grid: spectrum.FORCE_THRESHOLD_VARIABLES,
     "phase_diagram": phase_diagram.sweep_wide_variables,
     "limit_cycle": limit_cycle.sweep_wide_variables,
 }
@@ -60,4 +60,4 @@ def lacks_sweep_wide_variables(attributes: Mapping[str, Any]) -> bool:
     curves of a phase diagram."""
     if "finished" in attributes or "config_resolved" not in attributes:
         return False
-    return layout_of(json.loads(attributes["config_resolved"])).has_variables_of_all_points
+    return layout_of(json.loads(attributes["config_resolved"])).has_sweep_wide_variables

@@ -2,9 +2,9 @@
 
 from typing import Any
 
-from ...model.parameters import NONLINEAR_PARAMETERS, PARAMETERS, parameter_names_except
+from ...model.parameters import NONLINEAR_ROD_PARAMETER_NAMES, PARAMETERS, parameter_names_except
 from .limit_cycle import LEAST_STRETCH_VARIABLE
-from .rods import with_certified_meaning
+from .rod_properties import with_certified_long_name
 from .variables import (
     NEW_SOLVE_RULE,
     SECONDS_VARIABLE,
@@ -13,10 +13,10 @@ from .variables import (
     Layout,
     Variable,
     along_dimension,
-    boolean,
-    integer,
-    real,
-    word,
+    boolean_variable,
+    integer_variable,
+    real_variable,
+    word_variable,
 )
 
 CYCLE_DIMENSION = "branch_point"
@@ -54,28 +54,30 @@ def branch_cycle_variables(parameter_name: str) -> tuple[Variable, ...]:
     unit = PARAMETERS[parameter_name].unit
     return along_dimension(
         CYCLE_DIMENSION,
-        integer("branch", "number of the branch, from 1"),
-        real(f"branch_{parameter_name}", unit, f"{parameter_name} of the cycle"),
-        real(
+        integer_variable("branch", "number of the branch, from 1"),
+        real_variable(f"branch_{parameter_name}", unit, f"{parameter_name} of the cycle"),
+        real_variable(
             f"branch_{parameter_name}_error",
             "1",
             f"estimate of the relative error of branch_{parameter_name}, for a fixed deflection at t = 0",
         ),
-        real("period", "tau2", "period of the cycle"),
-        real("tip_y_max", "L", "largest y of the tip"),
-        real("tip_y_min", "L", "smallest y of the tip; -tip_y_max for a cycle with the mirror symmetry"),
-        real("tip_x_min", "L", "smallest x of the tip"),
-        real("tip_x_max", "L", "largest x of the tip"),
-        real("tip_theta_max", "rad", "largest |theta|, theta: the angle of the tip, over a period"),
+        real_variable("period", "tau2", "period of the cycle"),
+        real_variable("tip_y_max", "L", "largest y of the tip"),
+        real_variable(
+            "tip_y_min", "L", "smallest y of the tip; -tip_y_max for a cycle with the mirror symmetry"
+        ),
+        real_variable("tip_x_min", "L", "smallest x of the tip"),
+        real_variable("tip_x_max", "L", "largest x of the tip"),
+        real_variable("tip_theta_max", "rad", "largest |theta|, theta: the angle of the tip, over a period"),
         LEAST_STRETCH_VARIABLE,
-        real("multiplier", "1", "modulus of the largest nontrivial Floquet multiplier"),
-        integer(
+        real_variable("multiplier", "1", "modulus of the largest nontrivial Floquet multiplier"),
+        integer_variable(
             "unstable_multipliers",
             "number of nontrivial Floquet multipliers outside the unit circle; 0: stable; -1: undecided "
             "within error",
         ),
         *(
-            real(name, "1", f"estimate of {error_noun}, at branch_{parameter_name}")
+            real_variable(name, "1", f"estimate of {error_noun}, at branch_{parameter_name}")
             for name, error_noun in ERROR_VARIABLES
         ),
     )
@@ -87,8 +89,8 @@ def followed_range_variables(parameter_name: str, prefix: str = "") -> tuple[Var
     unit = PARAMETERS[parameter_name].unit
     words = f"{parameter_name} up to which branches are followed beyond the range, if they may enter it again"
     return (
-        real(f"{prefix}followed_from", unit, f"smallest {words}"),
-        real(f"{prefix}followed_to", unit, f"largest {words}"),
+        real_variable(f"{prefix}followed_from", unit, f"smallest {words}"),
+        real_variable(f"{prefix}followed_to", unit, f"largest {words}"),
     )
 
 
@@ -97,12 +99,14 @@ def special_variables(parameter_name: str) -> tuple[Variable, ...]:
     unit = PARAMETERS[parameter_name].unit
     return along_dimension(
         SPECIAL_DIMENSION,
-        word("special_kind", "kind of the special point", SPECIAL_KINDS),
-        real("special_at", unit, f"{parameter_name} at the special point"),
-        real("special_error", unit, "estimate of the absolute error of special_at"),
-        real("special_period", "tau2", "period of the cycle at the special point"),
-        real("special_tip_y_max", "L", "largest y of the tip at the special point; 0 at a Hopf point"),
-        real(
+        word_variable("special_kind", "kind of the special point", SPECIAL_KINDS),
+        real_variable("special_at", unit, f"{parameter_name} at the special point"),
+        real_variable("special_error", unit, "estimate of the absolute error of special_at"),
+        real_variable("special_period", "tau2", "period of the cycle at the special point"),
+        real_variable(
+            "special_tip_y_max", "L", "largest y of the tip at the special point; 0 at a Hopf point"
+        ),
+        real_variable(
             "special_amplitude_coefficient",
             "L",
             "coefficient a of a Hopf point: the largest y of its cycles is |a| sqrt("
@@ -110,20 +114,20 @@ def special_variables(parameter_name: str) -> tuple[Variable, ...]:
             f"{parameter_name}",
         ),
         *(
-            real(f"special_{name}_error", "1", f"estimate of the relative error of special_{name}")
+            real_variable(f"special_{name}_error", "1", f"estimate of the relative error of special_{name}")
             for name in ("period", "tip_y_max", "amplitude_coefficient")
         ),
-        integer("special_branch", "number of the branch, from 1"),
-        integer(
+        integer_variable("special_branch", "number of the branch, from 1"),
+        integer_variable(
             "special_point",
             "number, from 1, of the branch_point before the special point; 0: no branch_point is before it",
         ),
-        word("special_reason", "reason for the end of the branch", END_REASONS),
-        integer(
+        word_variable("special_reason", "reason for the end of the branch", END_REASONS),
+        integer_variable(
             "special_meets",
             "at a symmetry breaking: number of the second branch that begins or ends there; -1: no branch",
         ),
-        integer(
+        integer_variable(
             "special_unstable_after",
             "at a Hopf point: number of unstable modes of the straight rod beyond it in the parameter",
         ),
@@ -136,7 +140,7 @@ def _list_length_rule(name: str) -> ExtensionRule:
     return ExtensionRule(lambda records, old: records[name] < old)
 
 
-OPTION_EXTENSION_RULES = {
+REUSE_RULES_OF_INCREASED_OPTIONS = {
     "cycles": _list_length_rule("point_count"),
     "special": _list_length_rule("special_count"),
     "certify": NEW_SOLVE_RULE,
@@ -148,22 +152,24 @@ def layout(config: dict[str, Any]) -> Layout:
     options = config["branch"]
     parameter = options["along"]
     variables = (
-        integer("hopf_count", f"number of Hopf points between start and stop of {parameter}"),
-        integer(
+        integer_variable("hopf_count", f"number of Hopf points between start and stop of {parameter}"),
+        integer_variable(
             "branch_count",
             "number of branches that begin at Hopf points or symmetry breakings, each counted once",
         ),
-        integer("point_count", "number of cycles of all branches"),
-        integer("special_count", "number of special points of all branches, stored or not"),
-        integer("unstable_at_start", "number of unstable modes of the straight rod at start; -1: not known"),
-        boolean("certified", "whether the list of Hopf points is proved complete"),
+        integer_variable("point_count", "number of cycles of all branches"),
+        integer_variable("special_count", "number of special points of all branches, stored or not"),
+        integer_variable(
+            "unstable_at_start", "number of unstable modes of the straight rod at start; -1: not known"
+        ),
+        boolean_variable("certified", "whether the list of Hopf points is proved complete"),
         *followed_range_variables(parameter),
         *branch_cycle_variables(parameter),
         *special_variables(parameter),
         SECONDS_VARIABLE,
         STATUS_VARIABLE,
     )
-    parameters = parameter_names_except(parameter, NONLINEAR_PARAMETERS)
-    variables = with_certified_meaning(variables, config, "Hopf points")
+    parameters = parameter_names_except(parameter, NONLINEAR_ROD_PARAMETER_NAMES)
+    variables = with_certified_long_name(variables, config, "Hopf points")
     extents = {CYCLE_DIMENSION: options["cycles"], SPECIAL_DIMENSION: options["special"]}
     return Layout(variables, extents, parameters)

@@ -3,10 +3,10 @@
 from math import nan
 from typing import Any
 
-from ...model.parameters import NONLINEAR_PARAMETERS, PARAMETERS, parameter_names_except
-from .rods import with_certified_meaning
+from ...model.parameters import NONLINEAR_ROD_PARAMETER_NAMES, PARAMETERS, parameter_names_except
+from .rod_properties import with_certified_long_name
 from .thresholds import CROSSING_LIST_EXTENSION_RULE, SEARCH_END_VARIABLES, search_variables
-from .variables import ANGULAR_UNIT, NEW_SOLVE_RULE, Layout, Variable, along_dimension, real
+from .variables import ANGULAR_UNIT, NEW_SOLVE_RULE, Layout, Variable, along_dimension, real_variable
 
 FORCE_UNIT = PARAMETERS["F"].unit
 SLOPE_UNIT = "L^2/(k3 tau2)"
@@ -14,7 +14,7 @@ SLOPE_UNIT = "L^2/(k3 tau2)"
 LANDAU_UNIT = "1/(tau2 L^2)"
 """Unit of the Landau coefficient c."""
 HOPF_POINT_DIMENSION = "crossing"
-ABSENT_FROM_HOPF_SEARCH = ("crossing_growth_rate", "solves")
+VARIABLES_ABSENT_FROM_HOPF_SEARCH = ("crossing_growth_rate", "solves")
 """Names of the variables of a search for crossings that are not stored for a search for Hopf points, where
 growth rates are 0."""
 CRITICALITY_CODES = ((-1, "supercritical"), (0, "undecided"), (1, "subcritical"))
@@ -35,32 +35,36 @@ def criticality_variable(name: str, decided_by: str) -> Variable:
 
 NORMAL_FORM_VARIABLES = along_dimension(
     HOPF_POINT_DIMENSION,
-    real("crossing_frequency_error", ANGULAR_UNIT, "estimate of the absolute error of crossing_frequency"),
-    real("growth_slope_real", SLOPE_UNIT, "d(growth rate)/dF of the pair at the Hopf point"),
-    real("growth_slope_imag", SLOPE_UNIT, "d(angular frequency)/dF of the pair at the Hopf point"),
-    real("growth_slope_error", "1", "estimate of the relative error of the complex slope dw/dF"),
-    real("landau_real", LANDAU_UNIT, "real part of the Landau coefficient c, for tip y = Re Z"),
-    real("landau_imag", LANDAU_UNIT, "imaginary part of the Landau coefficient c"),
-    real("landau_error", "1", "estimate of the relative error of the complex c"),
-    real(
+    real_variable(
+        "crossing_frequency_error", ANGULAR_UNIT, "estimate of the absolute error of crossing_frequency"
+    ),
+    real_variable("growth_slope_real", SLOPE_UNIT, "d(growth rate)/dF of the pair at the Hopf point"),
+    real_variable("growth_slope_imag", SLOPE_UNIT, "d(angular frequency)/dF of the pair at the Hopf point"),
+    real_variable("growth_slope_error", "1", "estimate of the relative error of the complex slope dw/dF"),
+    real_variable("landau_real", LANDAU_UNIT, "real part of the Landau coefficient c, for tip y = Re Z"),
+    real_variable("landau_imag", LANDAU_UNIT, "imaginary part of the Landau coefficient c"),
+    real_variable("landau_error", "1", "estimate of the relative error of the complex c"),
+    real_variable(
         "amplitude_coefficient",
         "L",
         "coefficient a: to leading order the largest tip y of the cycles is |a| sqrt(|F - F_H|/F_H); "
         "a < 0: cycles at F < F_H",
     ),
-    real("amplitude_coefficient_error", "1", "estimate of the relative error of amplitude_coefficient"),
-    real(
+    real_variable(
+        "amplitude_coefficient_error", "1", "estimate of the relative error of amplitude_coefficient"
+    ),
+    real_variable(
         "frequency_slope",
         SLOPE_UNIT,
         "coefficient b: to leading order the angular frequency of the cycles is that of the Hopf point "
         "+ b (F - F_H)",
     ),
-    real("frequency_slope_error", "1", "estimate of the relative error of frequency_slope"),
+    real_variable("frequency_slope_error", "1", "estimate of the relative error of frequency_slope"),
     criticality_variable("criticality", "landau_real"),
     Variable("elements", "<i2", 0, "1", "spectral elements used"),
     Variable("order", "<i2", 0, "1", "polynomial order used"),
 )
-OPTION_EXTENSION_RULES = {"crossings": CROSSING_LIST_EXTENSION_RULE, "certify": NEW_SOLVE_RULE}
+REUSE_RULES_OF_INCREASED_OPTIONS = {"crossings": CROSSING_LIST_EXTENSION_RULE, "certify": NEW_SOLVE_RULE}
 
 
 def layout(config: dict[str, Any]) -> Layout:
@@ -68,10 +72,10 @@ def layout(config: dict[str, Any]) -> Layout:
     search = [
         variable
         for variable in search_variables("F", "crossing_F")
-        if variable.name not in ABSENT_FROM_HOPF_SEARCH
+        if variable.name not in VARIABLES_ABSENT_FROM_HOPF_SEARCH
     ]
     position = [variable.name for variable in search].index("unstable_after") + 1
     variables = (*search[:position], *NORMAL_FORM_VARIABLES, *SEARCH_END_VARIABLES, *search[position:])
-    variables = with_certified_meaning(variables, config, "Hopf points")
+    variables = with_certified_long_name(variables, config, "Hopf points")
     extents = {HOPF_POINT_DIMENSION: config["criticality"]["crossings"]}
-    return Layout(variables, extents, parameter_names_except("F", NONLINEAR_PARAMETERS))
+    return Layout(variables, extents, parameter_names_except("F", NONLINEAR_ROD_PARAMETER_NAMES))

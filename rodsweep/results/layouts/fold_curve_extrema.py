@@ -1,9 +1,9 @@
 """Variables of a phase diagram on the extrema of the row parameter along curves of folds of cycles."""
 
 from ...model.parameters import PARAMETERS
-from .variables import Variable, along_dimension, integer, real
+from .variables import Variable, along_dimension, integer_variable, real_variable
 
-EXTREMA_UNLOCATED = integer(
+UNLOCATED_EXTREMA_VARIABLE = integer_variable(
     "cycle_extrema_unlocated",
     "number of extrema of the row parameter along curves of folds that could not be located",
 )
@@ -17,11 +17,14 @@ def fold_curve_extremum_variables(line_parameter: str, row_parameter: str) -> di
     error_meaning = "estimate of the absolute error of cycle_extremum_"
     variables = along_dimension(
         "cycle_extremum",
-        integer("cycle_extremum_curve", "number of the curve of folds on which the extremum lies"),
+        integer_variable("cycle_extremum_curve", "number of the curve of folds on which the extremum lies"),
         *(
-            real(f"cycle_extremum_{name}", units[name], f"{name} where {row_parameter} is extremal")
+            real_variable(f"cycle_extremum_{name}", units[name], f"{name} where {row_parameter} is extremal")
             for name in units
         ),
-        *(real(f"cycle_extremum_{name}_error", units[name], f"{error_meaning}{name}") for name in units),
+        *(
+            real_variable(f"cycle_extremum_{name}_error", units[name], f"{error_meaning}{name}")
+            for name in units
+        ),
     )
     return {variable.name: variable for variable in variables}

@@ -7,30 +7,30 @@ from typing import Any
 import numpy as np
 
 from ...model.parameters import (
-    NON_OPTIONAL_LINEAR_PARAMETERS,
-    NONLINEAR_PARAMETERS,
+    NON_OPTIONAL_LINEAR_PARAMETER_NAMES,
+    NONLINEAR_ROD_PARAMETER_NAMES,
     PARAMETERS,
-    TRANSVERSE_PARAMETERS,
+    TRANSVERSE_PARAMETER_NAMES,
 )
-from .rods import has_standard_rods, optional_parameters_in, with_meaning
+from .rod_properties import has_uniform_linear_rods, optional_parameters_in, with_long_name
 from .thresholds import CROSSING_KINDS
 from .variables import (
     ANGULAR_UNIT,
     MESH_VARIABLES,
     NEW_SOLVE_RULE,
-    NOT_KNOWN_SUFFIX,
     SECONDS_VARIABLE,
     STATUS_VARIABLE,
+    UNKNOWN_COUNT_LONG_NAME_SUFFIX,
     ExtensionRule,
     Layout,
     Variable,
     along_dimension,
-    integer,
-    real,
-    word,
+    integer_variable,
+    real_variable,
+    word_variable,
 )
 
-LEAST_STRETCH_VARIABLE = real(
+LEAST_STRETCH_VARIABLE = real_variable(
     "least_stretch",
     "1",
     "smallest stretch h1 over a period at the nodes and times of the solution, and where it is 0.2 or "
@@ -38,81 +38,99 @@ LEAST_STRETCH_VARIABLE = real(
 )
 POWER_UNIT = "k3/(L tau2)"
 """Dimensionless unit of a power."""
-STORED_MULTIPLIERS = 6
+STORED_MULTIPLIER_COUNT = 6
 """Number of stored nontrivial Floquet multipliers, the solver's `MULTIPLIER_LIST_SETTINGS.length`; NaN stands
 for a modulus below its `min_modulus`."""
 CYCLE_STATUSES = ("cycle", "unstable")
 """Names of the statuses of points with a limit cycle, stable or unstable."""
-SECOND_STATES = ((-1, "not_known"), (0, "none_known"), (1, "straight"), (2, "cycle_possible"))
+SECOND_STABLE_STATES = ((-1, "not_known"), (0, "none_known"), (1, "straight"), (2, "cycle_possible"))
 """(stored number, word) for a second stable state of the rod, besides the state that the solve reached."""
 CYCLE_VARIABLES = (
-    real("period", "tau2", "period of the limit cycle"),
-    real("frequency", ANGULAR_UNIT, "angular frequency of the limit cycle, 2 pi/period"),
-    real("linear_growth_rate", "1/tau2", "real part of the leading eigenvalue of the straight rod"),
-    real(
+    real_variable("period", "tau2", "period of the limit cycle"),
+    real_variable("frequency", ANGULAR_UNIT, "angular frequency of the limit cycle, 2 pi/period"),
+    real_variable("linear_growth_rate", "1/tau2", "real part of the leading eigenvalue of the straight rod"),
+    real_variable(
         "linear_frequency",
         ANGULAR_UNIT,
         "angular frequency of the leading mode of the straight rod, imaginary part of the eigenvalue",
     ),
-    word(
+    word_variable(
         "second_state",
         "second stable state, besides the state in which the point ended; straight: the straight rod is "
         "stable as well; cycle_possible: the straight rod is stable, and the Hopf point at subcritical_F is "
         "subcritical",
-        SECOND_STATES,
+        SECOND_STABLE_STATES,
     ),
-    real("subcritical_F", "k3/L^2", "force of the subcritical Hopf point whose unstable cycles exist at F"),
-    real("tip_x_min", "L", "smallest x of the tip over a period"),
-    real("tip_x_max", "L", "largest x of the tip over a period"),
-    real("tip_y_max", "L", "largest deflection y of the tip over a period"),
-    real("tip_theta_max", "rad", "largest |theta|, theta: the angle of the tip, over a period"),
-    real("period_error", "1", "estimate of the relative error of period"),
-    real("amplitude_error", "1", "estimate of the relative error of tip_y_max"),
-    real("extrema_error", "1", "estimate of the error of the tip's other extrema, in units of tip_y_max"),
-    real("harmonic_amplitude", "L", "amplitude of a harmonic of the tip's deflection y", "harmonic"),
-    real("injection_mean", POWER_UNIT, "power of the follower force, mean over a period"),
-    real("injection_rms", POWER_UNIT, "power of the follower force, root mean square of its fluctuation"),
-    real("dissipation_mean", POWER_UNIT, "power lost to the fluid, mean over a period"),
-    real("dissipation_rms", POWER_UNIT, "power lost to the fluid, root mean square of its fluctuation"),
-    real("energy_imbalance", "1", "relative difference of energy injected and dissipated over a period"),
-    real("multiplier", "1", "modulus of the largest nontrivial Floquet multiplier"),
-    real("multiplier_error", "1", "estimate of the absolute error of multiplier"),
-    real("trivial_multiplier_error", "1", "distance of the trivial Floquet multiplier from 1"),
+    real_variable(
+        "subcritical_F", "k3/L^2", "force of the subcritical Hopf point whose unstable cycles exist at F"
+    ),
+    real_variable("tip_x_min", "L", "smallest x of the tip over a period"),
+    real_variable("tip_x_max", "L", "largest x of the tip over a period"),
+    real_variable("tip_y_max", "L", "largest deflection y of the tip over a period"),
+    real_variable("tip_theta_max", "rad", "largest |theta|, theta: the angle of the tip, over a period"),
+    real_variable("period_error", "1", "estimate of the relative error of period"),
+    real_variable("amplitude_error", "1", "estimate of the relative error of tip_y_max"),
+    real_variable(
+        "extrema_error", "1", "estimate of the error of the tip's other extrema, in units of tip_y_max"
+    ),
+    real_variable("harmonic_amplitude", "L", "amplitude of a harmonic of the tip's deflection y", "harmonic"),
+    real_variable("injection_mean", POWER_UNIT, "power of the follower force, mean over a period"),
+    real_variable(
+        "injection_rms", POWER_UNIT, "power of the follower force, root mean square of its fluctuation"
+    ),
+    real_variable("dissipation_mean", POWER_UNIT, "power lost to the fluid, mean over a period"),
+    real_variable(
+        "dissipation_rms", POWER_UNIT, "power lost to the fluid, root mean square of its fluctuation"
+    ),
+    real_variable(
+        "energy_imbalance", "1", "relative difference of energy injected and dissipated over a period"
+    ),
+    real_variable("multiplier", "1", "modulus of the largest nontrivial Floquet multiplier"),
+    real_variable("multiplier_error", "1", "estimate of the absolute error of multiplier"),
+    real_variable("trivial_multiplier_error", "1", "distance of the trivial Floquet multiplier from 1"),
     *along_dimension(
         "multiplier_number",
-        real("multiplier_real", "1", "real part of a nontrivial Floquet multiplier, by descending modulus"),
-        real("multiplier_imag", "1", "imaginary part of a nontrivial Floquet multiplier"),
+        real_variable(
+            "multiplier_real", "1", "real part of a nontrivial Floquet multiplier, by descending modulus"
+        ),
+        real_variable("multiplier_imag", "1", "imaginary part of a nontrivial Floquet multiplier"),
     ),
-    real(
+    real_variable(
         "modulation_ratio",
         "1",
         "frequency of the modulation of a motion on a torus, divided by the frequency of its oscillation; "
         "from the integrated motion, to about three digits",
     ),
     LEAST_STRETCH_VARIABLE,
-    integer("periods", "number of returns to the Poincare section during the time integration"),
+    integer_variable("periods", "number of returns to the Poincare section during the time integration"),
     *MESH_VARIABLES,
     SECONDS_VARIABLE,
     STATUS_VARIABLE,
 )
-PERIOD_TAU1_VARIABLE = real(
+PERIOD_TAU1_VARIABLE = real_variable(
     "period_tau1", "tau1", "period of the limit cycle in units of tau1: period k2/gamma3"
 )
 TIP_UNITS = {"x": "L", "y": "L", "theta": "rad"}
 """Units of the position and the angle of the tip."""
-TIP_VARIABLES = tuple(real(f"tip_{n}", unit, f"{n} of the tip", "sample") for n, unit in TIP_UNITS.items())
+TIP_VARIABLES = tuple(
+    real_variable(f"tip_{n}", unit, f"{n} of the tip", "sample") for n, unit in TIP_UNITS.items()
+)
 ENERGY_VARIABLES = (
-    real("energy", "k3/L", "elastic energy", "sample"),
-    real("injection", POWER_UNIT, "power of the follower force", "sample"),
-    real("dissipation", POWER_UNIT, "power lost to the fluid", "sample"),
+    real_variable("energy", "k3/L", "elastic energy", "sample"),
+    real_variable("injection", POWER_UNIT, "power of the follower force", "sample"),
+    real_variable("dissipation", POWER_UNIT, "power lost to the fluid", "sample"),
 )
 SHAPE_VARIABLES = tuple(
-    real(f"shape_{name}", units, f"{name} along the rod", "shape", "u") for name, units in TIP_UNITS.items()
+    real_variable(f"shape_{name}", units, f"{name} along the rod", "shape", "u")
+    for name, units in TIP_UNITS.items()
 )
 TRANSIENT_VARIABLES = along_dimension(
     "transient",
-    real("transient_time", "tau2", "time since the start of the motion"),
-    *(real(f"transient_{n}", unit, f"{n} of the tip during the transient") for n, unit in TIP_UNITS.items()),
+    real_variable("transient_time", "tau2", "time since the start of the motion"),
+    *(
+        real_variable(f"transient_{n}", unit, f"{n} of the tip during the transient")
+        for n, unit in TIP_UNITS.items()
+    ),
 )
 HOPF_DIMENSION = "hopf"
 """Dimension of the Hopf points on the lines of points of a file."""
@@ -123,56 +141,63 @@ HOPF_CROSSING_KINDS = ("none", "hopf", "hopf_reverse", "restabilization")
 def hopf_point_variables(names: Collection[str]) -> tuple[Variable, ...]:
     """Variables of the Hopf points of the straight rod on lines of points."""
     place_clause = "at the Hopf point"
-    parameters = [PARAMETERS[name] for name in TRANSVERSE_PARAMETERS if name in names]
+    parameters = [PARAMETERS[name] for name in TRANSVERSE_PARAMETER_NAMES if name in names]
     kinds = ((CROSSING_KINDS.index(kind), kind) for kind in HOPF_CROSSING_KINDS)
     return (
         *along_dimension(
             HOPF_DIMENSION,
-            word(
+            word_variable(
                 "hopf_along",
                 "parameter along which the Hopf point was found, between points of a line",
-                TRANSVERSE_PARAMETERS,
+                TRANSVERSE_PARAMETER_NAMES,
             ),
-            word("hopf_kind", f"change of stability {place_clause} as the parameter hopf_along grows", kinds),
-            *(real(f"hopf_{p.name}", p.unit, f"{p.name} {place_clause}") for p in parameters),
-            real(
+            word_variable(
+                "hopf_kind", f"change of stability {place_clause} as the parameter hopf_along grows", kinds
+            ),
+            *(real_variable(f"hopf_{p.name}", p.unit, f"{p.name} {place_clause}") for p in parameters),
+            real_variable(
                 "hopf_error",
                 "1",
                 "estimate of the relative error of the parameter hopf_along at the Hopf point",
             ),
-            real("hopf_frequency", ANGULAR_UNIT, "angular frequency of the pair that crosses"),
-            real("hopf_frequency_error", ANGULAR_UNIT, "estimate of the absolute error of hopf_frequency"),
-            integer(
+            real_variable("hopf_frequency", ANGULAR_UNIT, "angular frequency of the pair that crosses"),
+            real_variable(
+                "hopf_frequency_error", ANGULAR_UNIT, "estimate of the absolute error of hopf_frequency"
+            ),
+            integer_variable(
                 "hopf_unstable_after",
-                f"number of modes with positive growth rate beyond the Hopf point{NOT_KNOWN_SUFFIX}",
+                "number of modes with positive growth rate beyond the Hopf point"
+                f"{UNKNOWN_COUNT_LONG_NAME_SUFFIX}",
             ),
         ),
-        integer(
+        integer_variable(
             "hopf_lines",
             "number of searched lines of points, which differ in one parameter of the straight rod",
         ),
-        integer("hopf_lines_proved", "number of searched lines whose list of Hopf points is proved complete"),
+        integer_variable(
+            "hopf_lines_proved", "number of searched lines whose list of Hopf points is proved complete"
+        ),
     )
 
 
 NEW_SOLVE_OF_CYCLES_RULE = ExtensionRule(lambda records, before: np.isnan(records["period"]))
 """Rule for the options that set the stored data of a cycle: after an increase, every point with a cycle is
 solved again."""
-OPTION_EXTENSION_RULES = {
+REUSE_RULES_OF_INCREASED_OPTIONS = {
     **dict.fromkeys(("harmonics", "samples", "shapes", "nodes"), NEW_SOLVE_OF_CYCLES_RULE),
     "transient": NEW_SOLVE_RULE,
-    "time": ExtensionRule(NEW_SOLVE_OF_CYCLES_RULE.has_data, ("tau2", "tau1")),
+    "time": ExtensionRule(NEW_SOLVE_OF_CYCLES_RULE.has_additional_data, ("tau2", "tau1")),
 }
 
 
 def sweep_wide_variables(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
     """Variables of the Hopf points on the lines of points in the file of a resolved config. is_grid: not
     used."""
-    variables = hopf_point_variables((*NON_OPTIONAL_LINEAR_PARAMETERS, *optional_parameters_in(config)))
-    if has_standard_rods(config):
+    variables = hopf_point_variables((*NON_OPTIONAL_LINEAR_PARAMETER_NAMES, *optional_parameters_in(config)))
+    if has_uniform_linear_rods(config):
         return variables
     meaning = "number of searched lines whose list of Hopf points is confirmed by counts of unstable modes"
-    return with_meaning(variables, "hopf_lines_proved", meaning)
+    return with_long_name(variables, "hopf_lines_proved", meaning)
 
 
 def layout(config: dict[str, Any]) -> Layout:
@@ -180,7 +205,7 @@ def layout(config: dict[str, Any]) -> Layout:
     if the config asks for them."""
     options = config["limit_cycle"]
     variables: tuple[Variable, ...] = CYCLE_VARIABLES
-    extents = {"harmonic": options["harmonics"], "multiplier_number": STORED_MULTIPLIERS}
+    extents = {"harmonic": options["harmonics"], "multiplier_number": STORED_MULTIPLIER_COUNT}
     if options["time"] == "tau1":
         variables += (PERIOD_TAU1_VARIABLE,)
     if options["samples"]:
@@ -192,4 +217,4 @@ def layout(config: dict[str, Any]) -> Layout:
     if options["transient"]:
         variables += TRANSIENT_VARIABLES
         extents |= {"transient": options["transient"]}
-    return Layout(variables, extents, NONLINEAR_PARAMETERS)
+    return Layout(variables, extents, NONLINEAR_ROD_PARAMETER_NAMES)

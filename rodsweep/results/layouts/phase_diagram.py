@@ -1,14 +1,13 @@
 """Layout of the task phase_diagram: rows, and stability boundaries followed through the rows."""
 
-from collections.abc import Iterable
 from typing import Any
 
-from ...model.parameters import PARAMETERS, TRANSVERSE_PARAMETERS, parameter_names_except
+from ...model.parameters import PARAMETERS, TRANSVERSE_PARAMETER_NAMES, parameter_names_except
+from .bautin_points import bautin_curve_variables, criticality_variables
 from .branch import SPECIAL_KINDS, followed_range_variables
-from .criticality import LANDAU_UNIT, SLOPE_UNIT, criticality_variable
-from .detached_branches import CURVES_LOST_BEYOND, DETACHED_ROW_NAME, DETACHED_ROW_VARIABLES_BY_NAME
-from .fold_curve_extrema import EXTREMA_UNLOCATED, fold_curve_extremum_variables
-from .rods import with_certified_meaning
+from .detached_branches import DETACHED_ROW_NAME, DETACHED_ROW_VARIABLES_BY_NAME, LOST_CURVE_ENDS_VARIABLE
+from .fold_curve_extrema import UNLOCATED_EXTREMA_VARIABLE, fold_curve_extremum_variables
+from .rod_properties import with_certified_long_name
 from .spectrum import UNSTABLE_COUNT_VARIABLE
 from .thresholds import CROSSING_LIST_EXTENSION_RULE, search_variables
 from .variables import (
@@ -18,18 +17,16 @@ from .variables import (
     Layout,
     Variable,
     along_dimension,
-    integer,
-    real,
-    word,
+    curve_end_variables,
+    integer_variable,
+    real_variable,
+    word_variable,
 )
 
-CLASS_NAMES = ("monotone", "oscillatory", "flutter", "undecided", "crushed")
-STABILITY_CLASSES = ((-1, "missing"), *enumerate(CLASS_NAMES))
+STABILITY_CLASS_NAMES = ("monotone", "oscillatory", "flutter", "undecided", "crushed")
+STABILITY_CLASSES = ((-1, "missing"), *enumerate(STABILITY_CLASS_NAMES))
 """(stored number, word) for the behaviour of the rod at a point of a phase diagram."""
-BAUTIN_ENDS = ("none", "range_end", "plane_edge", "not_found", "list_full", "closed")
-"""Names of the reasons why a curve of generalised Hopf points ends; the file stores the position in this
-list."""
-CURVE_ENDS = {
+BOUNDARY_CURVE_END_REASONS = {
     "none": "not an end of the curve",
     "edge": "the curve leaves the diagram",
     "crushed": "the rod is crushed beyond",
@@ -38,7 +35,7 @@ CURVE_ENDS = {
     "list_full": "the curve has the maximum number of points",
 }
 """Meaning of every reason why a boundary curve ends, by word; the file stores the position in this table."""
-CURVE_KINDS = ((0, "double"), (1, "hopf"))
+BOUNDARY_CURVE_KINDS = ((0, "double"), (1, "hopf"))
 """(stored number, word) for boundary curves: of double real eigenvalues, where oscillations set in or end, or
 of Hopf points."""
 STABLE_STATE_NAMES = ("neither_known", "straight", "cycle", "both", "undecided", "crushed")
@@ -48,7 +45,7 @@ CYCLE_SPECIAL_DIMENSION = "cycle_special"
 """Name of the dimension of the special points on the branches of cycles of a row."""
 MAX_CYCLE_SPECIAL_POINTS = 64
 """Maximum number of special points stored for a row; the variable cycle_special_count counts all."""
-CYCLE_CURVE_ENDS = {
+CYCLE_CURVE_END_REASONS = {
     "none": "not an end of the curve",
     "edge": "the curve leaves the diagram",
     "crushed": "F comes within a relative distance of 1e-3 of k1",
@@ -61,7 +58,7 @@ CYCLE_CURVE_ENDS = {
 }
 """Meaning of every reason why a curve of folds of cycles, or of torus points, ends, by word; the file stores
 the position in this table."""
-OPTION_EXTENSION_RULES = dict.fromkeys(("certify", "cycles"), NEW_SOLVE_RULE) | {
+REUSE_RULES_OF_INCREASED_OPTIONS = dict.fromkeys(("certify", "cycles"), NEW_SOLVE_RULE) | {
     "crossings": CROSSING_LIST_EXTENSION_RULE,
     "curves": NO_NEW_SOLVE_RULE,
 }
@@ -71,7 +68,7 @@ def plane_of(config: dict[str, Any]) -> tuple[tuple[str, str], dict[str, int]]:
     """Returns ((line, row), number of values by parameter) for a resolved config. line: name of the parameter
     that varies along each row. row: name of the parameter that differs between rows."""
     axes = config["parameters"]
-    names = (name for name in TRANSVERSE_PARAMETERS if name in axes)
+    names = (name for name in TRANSVERSE_PARAMETER_NAMES if name in axes)
     value_counts = {name: len(axes[name].get("values", ())) or axes[name]["num"] for name in names}
     line_parameter, row_parameter = (name for name, size in value_counts.items() if size > 1)
     return (line_parameter, row_parameter), value_counts
@@ -84,7 +81,9 @@ def sweep_wide_variables(config: dict[str, Any], is_grid: bool) -> tuple[Variabl
     (line, row), _ = plane_of(config)
     variables = curve_variables(line, row) | criticality_variables(line, row)
     variables |= fold_curve_extremum_variables(line, row)
-    variables |= {variable.name: variable for variable in (EXTREMA_UNLOCATED, CURVES_LOST_BEYOND)}
+    variables |= {
+        variable.name: variable for variable in (UNLOCATED_EXTREMA_VARIABLE, LOST_CURVE_ENDS_VARIABLE)
+    }
     variables |= cycle_curve_variables(line, row) | DETACHED_ROW_VARIABLES_BY_NAME
     for third in config["phase_diagram"].get("bautin_along") or ():
         variables |= bautin_curve_variables(line, row, third)
@@ -97,15 +96,15 @@ def layout(config: dict[str, Any]) -> Layout:
     options = config["phase_diagram"]
     (line, _), sizes = plane_of(config)
     variables: tuple[Variable, ...] = (
-        word("class", "behaviour of the rod", STABILITY_CLASSES, line),
-        integer("unstable_count", UNSTABLE_COUNT_VARIABLE.long_name, line),
+        word_variable("class", "behaviour of the rod", STABILITY_CLASSES, line),
+        integer_variable("unstable_count", UNSTABLE_COUNT_VARIABLE.long_name, line),
         *search_variables(line, "crossing_at"),
     )
     extents = {line: sizes[line], "crossing": options["crossings"]}
     if options["cycles"]:
         variables += cycle_variables(line)
         extents[CYCLE_SPECIAL_DIMENSION] = MAX_CYCLE_SPECIAL_POINTS
-    variables = with_certified_meaning(variables, config, "crossings")
+    variables = with_certified_long_name(variables, config, "crossings")
     changed = DETACHED_ROW_NAME if options["cycles"] else ""
     return Layout(variables, extents, parameter_names_except(line), (), options["curves"], changed)
 
@@ -118,18 +117,22 @@ def cycle_variables(line_parameter: str) -> tuple[Variable, ...]:
     absolute_error_meaning = "estimate of the absolute error of cycle_special_"
     relative_error_meaning = "estimate of the relative error of cycle_special_"
     return (
-        word("stable_states", "stable states of the rod", STABLE_STATES, line_parameter),
-        integer("cycle_special_count", "number of special points of the branches of the row, stored or not"),
+        word_variable("stable_states", "stable states of the rod", STABLE_STATES, line_parameter),
+        integer_variable(
+            "cycle_special_count", "number of special points of the branches of the row, stored or not"
+        ),
         *followed_range_variables(line_parameter, "cycle_"),
         *along_dimension(
             CYCLE_SPECIAL_DIMENSION,
-            word("cycle_special_kind", "kind of the special point of a branch", SPECIAL_KINDS),
-            real(f"cycle_special_{line_parameter}", unit, f"{line_parameter} {place_clause}"),
-            real("cycle_special_error", unit, f"{absolute_error_meaning}{line_parameter}"),
-            real("cycle_special_period", "tau2", f"period of the cycle {place_clause}"),
-            real("cycle_special_tip_y_max", "L", f"largest y of the tip {place_clause}; 0 at a Hopf point"),
-            real("cycle_special_period_error", "1", f"{relative_error_meaning}period"),
-            real("cycle_special_tip_y_max_error", "1", f"{relative_error_meaning}tip_y_max"),
+            word_variable("cycle_special_kind", "kind of the special point of a branch", SPECIAL_KINDS),
+            real_variable(f"cycle_special_{line_parameter}", unit, f"{line_parameter} {place_clause}"),
+            real_variable("cycle_special_error", unit, f"{absolute_error_meaning}{line_parameter}"),
+            real_variable("cycle_special_period", "tau2", f"period of the cycle {place_clause}"),
+            real_variable(
+                "cycle_special_tip_y_max", "L", f"largest y of the tip {place_clause}; 0 at a Hopf point"
+            ),
+            real_variable("cycle_special_period_error", "1", f"{relative_error_meaning}period"),
+            real_variable("cycle_special_tip_y_max_error", "1", f"{relative_error_meaning}tip_y_max"),
         ),
     )
 
@@ -137,114 +140,71 @@ def cycle_variables(line_parameter: str) -> tuple[Variable, ...]:
 def cycle_curve_variables(line_parameter: str, row_parameter: str) -> dict[str, Variable]:
     """Variables, by name, of the curves of folds of cycles and torus points, for `phase_diagram.cycles`.
     line_parameter, row_parameter: parameters."""
-    dimension = "cycle_curve_point"
-    force = PARAMETERS[line_parameter].unit
+    units = {name: PARAMETERS[name].unit for name in (line_parameter, row_parameter)}
+    unit = units[line_parameter]
     kind_meaning = "kind of the special points on the curve, fold or torus"
     error_meaning = f"estimate of the absolute error of cycle_curve_{line_parameter} on the curve"
-    variables = (
-        integer("cycle_curve_number", "number of the curve of special points of cycles, from 1", dimension),
-        word("cycle_curve_kind", kind_meaning, SPECIAL_KINDS, dimension),
-        real(f"cycle_curve_{line_parameter}", force, f"{line_parameter} on the curve", dimension),
-        real(f"cycle_curve_{row_parameter}", PARAMETERS[row_parameter].unit, f"{row_parameter} on the curve",
-             dimension),
-        real("cycle_curve_error", force, error_meaning, dimension),
-        real("cycle_curve_period", "tau2", "period of the cycle on the curve", dimension),
-        real("cycle_curve_tip_y_max", "L", "largest y of the tip; 0 where the amplitude vanishes", dimension),
-        *end_variables("cycle_curve", CYCLE_CURVE_ENDS, dimension),
-        real("cycle_curve_agreement", "1", "largest distance of a fold or torus point of a row from its "
-             f"curve along {line_parameter}, as a fraction of the range of {line_parameter}"),
-        integer("cycle_curves_untraced", "number of folds and torus points of rows without a curve"),
-    )  # fmt: skip
-    return {variable.name: variable for variable in variables}
-
-
-def end_variables(curve: str, reasons: Iterable[str], dimension: str) -> tuple[Variable, Variable]:
-    """Variables with the reasons why curves begin and end, along the points of the curves. curve: prefix of
-    the names. dimension: dimension of the points."""
-    reasons = tuple(reasons)
-    return (
-        word(f"{curve}_start", "why the curve begins at the point", reasons, dimension),
-        word(f"{curve}_end", "why the curve ends at the point", reasons, dimension),
+    agreement_meaning = (
+        f"largest distance of a fold or torus point of a row from its curve along {line_parameter}, as a "
+        f"fraction of the range of {line_parameter}"
     )
+    variables = (
+        *along_dimension(
+            "cycle_curve_point",
+            integer_variable("cycle_curve_number", "number of the curve of special points of cycles, from 1"),
+            word_variable("cycle_curve_kind", kind_meaning, SPECIAL_KINDS),
+            *(real_variable(f"cycle_curve_{name}", units[name], f"{name} on the curve") for name in units),
+            real_variable("cycle_curve_error", unit, error_meaning),
+            real_variable("cycle_curve_period", "tau2", "period of the cycle on the curve"),
+            real_variable(
+                "cycle_curve_tip_y_max", "L", "largest y of the tip; 0 where the amplitude vanishes"
+            ),
+            *curve_end_variables("cycle_curve", CYCLE_CURVE_END_REASONS),
+        ),
+        real_variable("cycle_curve_agreement", "1", agreement_meaning),
+        integer_variable("cycle_curves_untraced", "number of folds and torus points of rows without a curve"),
+    )
+    return {variable.name: variable for variable in variables}
 
 
 def curve_variables(line_parameter: str, row_parameter: str) -> dict[str, Variable]:
     """Variables, by name, of the boundary curves of a phase diagram, their folds, their agreement with the
     rows, and reference values of filament and partial beam. line_parameter, row_parameter: parameters."""
     kind_meaning = "kind of the points on the curve, double real eigenvalues or Hopf points"
+    fold_parameter_meaning = "parameter that reverses its direction along the curve at the fold"
+    filament_meaning = "Fc: F at which the filament (k1, k2 = inf, gamma3 = 0) flutters"
+    beam_meaning = "4 Fc: k1 at the fold of the partial beam (k2 = inf, gamma3 = 0)"
     units = {name: PARAMETERS[name].unit for name in (line_parameter, row_parameter)}
     force = PARAMETERS["F"].unit
     error_meaning = "estimate of the error of fold_"
-    variables = (
-        integer("curve_number", "number of the curve, from 1", "curve_point"),
-        word("curve_kind", kind_meaning, CURVE_KINDS, "curve_point"),
-        *(real(f"curve_{name}", units[name], f"{name} on the curve", "curve_point") for name in units),
-        real("curve_frequency", ANGULAR_UNIT, "angular frequency of the modes on the curve", "curve_point"),
-        real("curve_growth_rate", "1/tau2", "growth rate of the modes on the curve", "curve_point"),
-        *end_variables("curve", CURVE_ENDS, "curve_point"),
-        integer("fold_curve", "number of the curve on which the fold lies", "fold"),
-        word("fold_kind", kind_meaning, CURVE_KINDS, "fold"),
-        word("fold_of", "parameter that reverses its direction along the curve at the fold", units, "fold"),
-        *(real(f"fold_{name}", units[name], f"{name} at the fold", "fold") for name in units),
-        *(real(f"fold_{name}_error", units[name], f"{error_meaning}{name}", "fold") for name in units),
-        real("fold_frequency", ANGULAR_UNIT, "angular frequency of the modes at the fold", "fold"),
-        real("fold_growth_rate", "1/tau2", "growth rate of the modes at the fold", "fold"),
-        real("curve_agreement", "1", f"largest distance of a crossing from its curve along {line_parameter}, "
-             f"as a fraction of the range of {line_parameter}"),
-        integer("curves_untraced", "number of crossings on rows without a curve"),
-        real("filament_F_hopf", force, "Fc: F at which the filament (k1, k2 = inf, gamma3 = 0) flutters"),
-        real("partial_beam_k1", force, "4 Fc: k1 at the fold of the partial beam (k2 = inf, gamma3 = 0)"),
-        real("partial_beam_F", force, "2 Fc: F at the fold of the partial beam"),
-    )  # fmt: skip
-    return {variable.name: variable for variable in variables}
-
-
-def criticality_variables(line_parameter: str, row_parameter: str) -> dict[str, Variable]:
-    """Variables, by name, of the sign of Re c along Hopf curves, and of its zeros, for
-    `phase_diagram.criticality`. line_parameter, row_parameter: parameters."""
-    units = {name: PARAMETERS[name].unit for name in (line_parameter, row_parameter)}
-    error_meaning = "estimate of the error of bautin_"
-    variables = (
-        *along_dimension("curve_point", criticality_variable("curve_criticality", "Re c")),
-        real("curve_gamma1", PARAMETERS["gamma1"].unit, "axial drag of curve_criticality and bautin_*"),
-        *along_dimension(
-            "bautin",
-            integer("bautin_curve", "number of the curve on which the generalised Hopf point lies"),
-            integer(
-                "bautin_curve_point", "number, from 1, of the curve_point before the generalised Hopf point"
-            ),
-            *(real(f"bautin_{name}", units[name], f"{name} where Re c = 0") for name in units),
-            *(real(f"bautin_{name}_error", units[name], f"{error_meaning}{name}") for name in units),
-            real(
-                "bautin_frequency",
-                ANGULAR_UNIT,
-                "angular frequency of the pair at the generalised Hopf point",
-            ),
-            real("bautin_growth_slope_real", SLOPE_UNIT, "d(growth rate)/dF of the pair"),
-            real("bautin_growth_slope_imag", SLOPE_UNIT, "d(angular frequency)/dF of the pair"),
-            real("bautin_landau_imag", LANDAU_UNIT, "imaginary part of the Landau coefficient c"),
-        ),
-        integer(
-            "bautin_unlocated", "number of sign changes of Re c along Hopf curves that could not be located"
-        ),
+    agreement_meaning = (
+        f"largest distance of a crossing from its curve along {line_parameter}, as a fraction of the range "
+        f"of {line_parameter}"
     )
-    return {variable.name: variable for variable in variables}
-
-
-def bautin_curve_variables(line_parameter: str, row_parameter: str, third: str) -> dict[str, Variable]:
-    """Variables of the curves of generalised Hopf points, by name, for `phase_diagram.bautin_along`. The
-    curves run through the space of three parameters with the names line_parameter, row_parameter and
-    third."""
-    names = (line_parameter, row_parameter, third)
-    step = "bautin_step"
-    units = {name: PARAMETERS[name].unit for name in names}
-    error_meaning = "estimate of the error of bautin_along_"
     variables = (
-        integer("bautin_along_curve", "number of the curve of generalised Hopf points, from 1", step),
-        *(real(f"bautin_along_{name}", units[name], f"{name} where Re c = 0", step) for name in names),
-        *(real(f"bautin_along_{name}_error", units[name], f"{error_meaning}{name}", step) for name in names),
-        real("bautin_along_frequency", ANGULAR_UNIT, "angular frequency of the pair", step),
-        real("bautin_along_landau_imag", LANDAU_UNIT, "imaginary part of the Landau coefficient c", step),
-        *end_variables("bautin_along", BAUTIN_ENDS, step),
+        *along_dimension(
+            "curve_point",
+            integer_variable("curve_number", "number of the curve, from 1"),
+            word_variable("curve_kind", kind_meaning, BOUNDARY_CURVE_KINDS),
+            *(real_variable(f"curve_{name}", units[name], f"{name} on the curve") for name in units),
+            real_variable("curve_frequency", ANGULAR_UNIT, "angular frequency of the modes on the curve"),
+            real_variable("curve_growth_rate", "1/tau2", "growth rate of the modes on the curve"),
+            *curve_end_variables("curve", BOUNDARY_CURVE_END_REASONS),
+        ),
+        *along_dimension(
+            "fold",
+            integer_variable("fold_curve", "number of the curve on which the fold lies"),
+            word_variable("fold_kind", kind_meaning, BOUNDARY_CURVE_KINDS),
+            word_variable("fold_of", fold_parameter_meaning, units),
+            *(real_variable(f"fold_{name}", units[name], f"{name} at the fold") for name in units),
+            *(real_variable(f"fold_{name}_error", units[name], f"{error_meaning}{name}") for name in units),
+            real_variable("fold_frequency", ANGULAR_UNIT, "angular frequency of the modes at the fold"),
+            real_variable("fold_growth_rate", "1/tau2", "growth rate of the modes at the fold"),
+        ),
+        real_variable("curve_agreement", "1", agreement_meaning),
+        integer_variable("curves_untraced", "number of crossings on rows without a curve"),
+        real_variable("filament_F_hopf", force, filament_meaning),
+        real_variable("partial_beam_k1", force, beam_meaning),
+        real_variable("partial_beam_F", force, "2 Fc: F at the fold of the partial beam"),
     )
     return {variable.name: variable for variable in variables}

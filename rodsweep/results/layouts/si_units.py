@@ -8,7 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...config.arm.axes import LOAD_KEYS
-from ...model.arm.quantities import LOAD_OF_RATIO, LOADS, SCALE_NAMES, UNITS
+from ...model.arm.quantities import (
+    LOAD_NAME_BY_RELATIVE_LOAD,
+    LOAD_NAMES,
+    LOAD_SCALE_NAMES,
+    UNITS_AND_EXAMPLES,
+)
 from .variables import ANGULAR_UNIT
 
 HERTZ = "Hz"
@@ -45,11 +50,13 @@ SI_UNIT_BY_DIMENSIONLESS_UNIT = {
     "k3/(L tau2)": SIUnit("W", ("force_scale", "length"), ("tau2",)),
 }
 """SI units of the dimensionless units of time, length, energy and power."""
-FORCE_SI_UNIT_BY_LOAD = {load: SIUnit(UNITS[load][0], (SCALE_NAMES[load],)) for load in LOADS}
+FORCE_SI_UNIT_BY_LOAD = {
+    load: SIUnit(UNITS_AND_EXAMPLES[load][0], (LOAD_SCALE_NAMES[load],)) for load in LOAD_NAMES
+}
 """SI unit in which the follower force is stored, by name of the arm's load, "pressure" or "force"."""
 
 
 def load_kind_of(arm: Mapping[str, Any]) -> str:
     """Kind of the loads in the results of an arm: "force" or "pressure"."""
-    load = next((LOAD_OF_RATIO.get(name, name) for name in arm if name in LOAD_KEYS), "pressure")
+    load = next((LOAD_NAME_BY_RELATIVE_LOAD.get(name, name) for name in arm if name in LOAD_KEYS), "pressure")
     return str(arm.get("load_kind") or load)

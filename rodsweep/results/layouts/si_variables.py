@@ -14,16 +14,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...config.arm.axes import STORAGE_AXIS_OF_QUANTITY, grid_axis_names
+from ...config.arm.axes import FILE_AXIS_OF_QUANTITY, grid_axis_names
 from ...config.arm.quantities import typed_unit
 from ...config.arm.section import ArmConfig
 from ...config.parameters_section import ParametersSection
 from ...config.tasks import makes_diagram
 from ...model.arm.drag import DRAG_ESTIMATE_NAMES
 from ...model.arm.neglected import Validity
-from ...model.arm.quantities import ALL_QUANTITIES, UNITS
+from ...model.arm.quantities import ARM_FILE_VARIABLES, UNITS_AND_EXAMPLES
 from ...model.parameters import PARAMETERS
 from ...sweep.points.points import Points
+from .dimensions import UNIT_AND_LONG_NAME_OF_DIMENSION
 from .si_units import (
     FORCE_SI_UNIT_BY_LOAD,
     HERTZ,
@@ -32,13 +33,13 @@ from .si_units import (
     SIUnit,
     load_kind_of,
 )
-from .variables import DIMENSIONS, FilledVariable, Layout, Variable, real, word
+from .variables import FilledVariable, Layout, Variable, real_variable, word_variable
 
 SI_SUFFIX = "_si"
 """Suffix of the name of a variable in SI units."""
 HERTZ_SUFFIX = "_hz"
 """Suffix of the name of a frequency in Hz."""
-LOAD_OF_UNIT = {each.unit: load for load, each in FORCE_SI_UNIT_BY_LOAD.items()}
+LOAD_KIND_BY_SI_UNIT = {each.unit: load for load, each in FORCE_SI_UNIT_BY_LOAD.items()}
 """Name of the load, "pressure" or "force", by its SI unit."""
 HERTZ_NAMES_OF_THRESHOLDS = {
     f"{event}_frequency": f"frequency_{event}_hz" for event in ("hopf", "restabilization")
@@ -62,17 +63,17 @@ extension is the effect compression of an arm under a pull, F < 0."""
 UNKNOWN_VALIDITY_NUMBER = -1
 """Value of model_applies where the solver may have missed an unstable mode or a cycle."""
 VALIDITY_VARIABLES = (
-    word(
+    word_variable(
         "model_applies",
         "whether the model applies to the arm, judged by the effects that it neglects",
         ((UNKNOWN_VALIDITY_NUMBER, "not_known"), *((int(each), each.name) for each in Validity)),
     ),
-    word(
+    word_variable(
         "neglected_effect",
         "largest effect that the model neglects, relative to the limit of each effect",
         ((-1, "none"), *enumerate(NEGLECTED_EFFECTS)),
     ),
-    real(
+    real_variable(
         "neglected_excess",
         "1",
         "size of neglected_effect, in units of the limit beyond which the model does not apply",
@@ -95,11 +96,11 @@ def si_variables_of(layout: Layout, config: Mapping[str, Any]) -> dict[str, Vari
     is_force = load_kind_of(config["parameters"]["arm"]) == "force"
     units = ((variable, _stored_si_unit(variable, is_force).unit) for variable in layout.variables)
     return {
-        stored_variable.name: real(
+        stored_variable.name: real_variable(
             si_name_of(stored_variable.name, si_unit),
             si_unit,
-            _si_meaning(stored_variable, si_unit),
-            *stored_variable.extra,
+            _si_long_name(stored_variable, si_unit),
+            *stored_variable.extra_dimensions,
         )
         for stored_variable, si_unit in units
         if si_unit
@@ -111,12 +112,12 @@ def si_name_of(name: str, unit: str) -> str:
     if name in HERTZ_NAMES_OF_THRESHOLDS:
         return HERTZ_NAMES_OF_THRESHOLDS[name]
     parts = name.split("_")
-    if unit in LOAD_OF_UNIT and "F" in parts:
-        return "_".join(LOAD_OF_UNIT[unit] if word == "F" else word for word in parts)
+    if unit in LOAD_KIND_BY_SI_UNIT and "F" in parts:
+        return "_".join(LOAD_KIND_BY_SI_UNIT[unit] if word == "F" else word for word in parts)
     return name + (HERTZ_SUFFIX if unit == HERTZ else SI_SUFFIX)
 
 
-def _si_meaning(variable: Variable, unit: str) -> str:
+def _si_long_name(variable: Variable, unit: str) -> str:
     """Long name of the SI variable of a dimensionless variable: its long name, followed by "in SI units"; if
     `unit` is HERTZ, without "angular" and the clause after the first comma, followed by "in cycles per
     second"."""
@@ -129,7 +130,9 @@ def _si_meaning(variable: Variable, unit: str) -> str:
 
 def _stored_si_unit(variable: Variable, is_force: bool) -> SIUnit:
     """SI unit in which a variable is also stored, or NO_SI_UNIT."""
-    return si_unit_of(variable, is_force) if variable.extra in DIMENSIONS_STORED_IN_SI else NO_SI_UNIT
+    return (
+        si_unit_of(variable, is_force) if variable.extra_dimensions in DIMENSIONS_STORED_IN_SI else NO_SI_UNIT
+    )
 
 
 def si_unit_of(variable: Variable, is_force: bool) -> SIUnit:
@@ -149,7 +152,7 @@ def si_variable(
     """Returns (SI variable, its values, (n,)) for a dimensionless variable with the values `values`, (n,).
     quantities: the arm's quantities by name, () or (n,) each."""
     si = si_unit_of(variable, is_force)
-    converted = real(si_name_of(variable.name, si.unit), si.unit, _si_meaning(variable, si.unit))
+    converted = real_variable(si_name_of(variable.name, si.unit), si.unit, _si_long_name(variable, si.unit))
     return converted, values * si.scale(quantities)
 
 
@@ -173,13 +176,13 @@ def arm_variables(parameters: ParametersSection, points: Points) -> tuple[Filled
     if not points.arm_axes:
         quantities = arm.grid_quantities()
         along = {
-            n: (STORAGE_AXIS_OF_QUANTITY[n],) if np.ndim(quantity_values) else ()
+            n: (FILE_AXIS_OF_QUANTITY[n],) if np.ndim(quantity_values) else ()
             for n, quantity_values in quantities.items()
         }
         return tuple(_si_variable(arm, n, values, along[n]) for n, values in quantities.items())
     axes = points.arm_axes
     numbers = {name: axis.array()[0] for name, axis in arm.quantity_axes.items() if name not in axes}
-    columns = points.units | {n: column for n, column in points.columns_by_name.items() if n not in axes}
+    columns = points.arm_units | {n: column for n, column in points.columns_by_name.items() if n not in axes}
     shape = points.shape
     return (
         *(_si_variable(arm, name, values, (name,)) for name, values in axes.items()),
@@ -190,12 +193,14 @@ def arm_variables(parameters: ParametersSection, points: Points) -> tuple[Filled
 
 def _si_variable(arm: ArmConfig, name: str, values: Any, dimensions: tuple[str, ...]) -> FilledVariable:
     """(variable, values) of the arm's quantity or parameter `name`, along the given dimensions."""
-    units, meaning = DIMENSIONS[name] if name in PARAMETERS else ALL_QUANTITIES[name][:2]
-    variable = real(name, units, meaning, *dimensions)
-    if name in UNITS and getattr(arm, name) is not None:
+    units, meaning = (
+        UNIT_AND_LONG_NAME_OF_DIMENSION[name] if name in PARAMETERS else ARM_FILE_VARIABLES[name][:2]
+    )
+    variable = real_variable(name, units, meaning, *dimensions)
+    if name in UNITS_AND_EXAMPLES and getattr(arm, name) is not None:
         variable = replace(variable, typed_unit=typed_unit(name, getattr(arm, name)))
     if name == "drag":
-        variable = replace(variable, dtype="|i1", fill=-1, flags=tuple(enumerate(DRAG_ESTIMATE_NAMES)))
+        variable = replace(variable, dtype="|i1", fill_value=-1, flags=tuple(enumerate(DRAG_ESTIMATE_NAMES)))
     return variable, np.asarray(values, variable.dtype)
 
 
@@ -206,8 +211,8 @@ def quantities_at_points(quantities: Iterable[FilledVariable], points: Points) -
     dimensions = tuple(points.arm_axes)
     result = {}
     for variable, values in quantities:
-        index = tuple(slice(None) if name in variable.extra else None for name in dimensions)
-        is_axis = bool(variable.extra)
+        index = tuple(slice(None) if name in variable.extra_dimensions else None for name in dimensions)
+        is_axis = bool(variable.extra_dimensions)
         result[variable.name] = np.broadcast_to(values[index], points.shape).ravel() if is_axis else values
     return result
 

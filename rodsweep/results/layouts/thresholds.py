@@ -4,7 +4,7 @@ well."""
 from typing import Any
 
 from ...model.parameters import PARAMETERS, parameter_names_except
-from .rods import with_certified_meaning
+from .rod_properties import with_certified_long_name
 from .variables import (
     ANGULAR_UNIT,
     NEW_SOLVE_RULE,
@@ -13,24 +13,30 @@ from .variables import (
     ExtensionRule,
     Layout,
     Variable,
-    boolean,
-    integer,
-    real,
-    word,
+    boolean_variable,
+    integer_variable,
+    real_variable,
+    word_variable,
 )
 
 FORCE_UNIT = PARAMETERS["F"].unit
 SEARCH_END_VARIABLES = (
-    real("F_end", FORCE_UNIT, "largest F of the search"),
-    integer("unstable_at_end", "number of modes with positive growth rate at F_end; -1: not known"),
+    real_variable("F_end", FORCE_UNIT, "largest F of the search"),
+    integer_variable("unstable_at_end", "number of modes with positive growth rate at F_end; -1: not known"),
 )
 THRESHOLD_VARIABLES = (
-    real("F_onset", FORCE_UNIT, "smallest F at which two real leading eigenvalues merge into a complex pair"),
-    real("onset_growth_rate", "1/tau2", "growth rate of the double eigenvalue at F_onset"),
-    real("F_hopf", FORCE_UNIT, "smallest F at which a pair becomes unstable"),
-    real("hopf_frequency", ANGULAR_UNIT, "angular frequency of the pair at F_hopf"),
-    real("F_restabilization", FORCE_UNIT, "smallest F at which the last unstable pair becomes stable again"),
-    real("restabilization_frequency", ANGULAR_UNIT, "angular frequency of the pair at F_restabilization"),
+    real_variable(
+        "F_onset", FORCE_UNIT, "smallest F at which two real leading eigenvalues merge into a complex pair"
+    ),
+    real_variable("onset_growth_rate", "1/tau2", "growth rate of the double eigenvalue at F_onset"),
+    real_variable("F_hopf", FORCE_UNIT, "smallest F at which a pair becomes unstable"),
+    real_variable("hopf_frequency", ANGULAR_UNIT, "angular frequency of the pair at F_hopf"),
+    real_variable(
+        "F_restabilization", FORCE_UNIT, "smallest F at which the last unstable pair becomes stable again"
+    ),
+    real_variable(
+        "restabilization_frequency", ANGULAR_UNIT, "angular frequency of the pair at F_restabilization"
+    ),
     *SEARCH_END_VARIABLES,
 )
 CROSSING_MEANINGS = {
@@ -56,12 +62,16 @@ def crossing_variables(line_parameter: str, position_name: str) -> tuple[Variabl
     with the value of this parameter at a crossing."""
     units = PARAMETERS[line_parameter].unit
     return (
-        real(position_name, units, f"{line_parameter} at the crossing", "crossing"),
-        word("crossing_kind", "kind of the crossing", CROSSING_KINDS, "crossing"),
-        real("crossing_frequency", ANGULAR_UNIT, "angular frequency of the modes that cross", "crossing"),
-        real("crossing_growth_rate", "1/tau2", "growth rate of the modes that cross", "crossing"),
-        real("crossing_error", units, f"estimate of the absolute error of {position_name}", "crossing"),
-        integer(
+        real_variable(position_name, units, f"{line_parameter} at the crossing", "crossing"),
+        word_variable("crossing_kind", "kind of the crossing", CROSSING_KINDS, "crossing"),
+        real_variable(
+            "crossing_frequency", ANGULAR_UNIT, "angular frequency of the modes that cross", "crossing"
+        ),
+        real_variable("crossing_growth_rate", "1/tau2", "growth rate of the modes that cross", "crossing"),
+        real_variable(
+            "crossing_error", units, f"estimate of the absolute error of {position_name}", "crossing"
+        ),
+        integer_variable(
             "unstable_after", "number of modes with positive growth rate beyond the crossing", "crossing"
         ),
     )
@@ -75,13 +85,15 @@ def search_variables(line_parameter: str, position_name: str) -> tuple[Variable,
         f"of a range of {line_parameter} that may contain a window of flutter too narrow to be resolved"
     )
     return (
-        integer("crossing_count", "number of crossings found, stored or not"),
+        integer_variable("crossing_count", "number of crossings found, stored or not"),
         *crossing_variables(line_parameter, position_name),
-        real("open_from", units, f"start {undecided}"),
-        real("open_to", units, f"end {undecided}"),
-        boolean("certified", "whether the list of crossings is proved complete in the searched range"),
-        integer("boxes", "number of evaluations of D over a box"),
-        integer("solves", "number of eigenproblems solved"),
+        real_variable("open_from", units, f"start {undecided}"),
+        real_variable("open_to", units, f"end {undecided}"),
+        boolean_variable(
+            "certified", "whether the list of crossings is proved complete in the searched range"
+        ),
+        integer_variable("boxes", "number of evaluations of D over a box"),
+        integer_variable("solves", "number of eigenproblems solved"),
         SECONDS_VARIABLE,
         STATUS_VARIABLE,
     )
@@ -90,12 +102,12 @@ def search_variables(line_parameter: str, position_name: str) -> tuple[Variable,
 CROSSING_LIST_EXTENSION_RULE = ExtensionRule(lambda records, before: records["crossing_count"] <= before)
 """Rule for the maximum number of stored crossings; a stored list that is not full already has all
 crossings."""
-OPTION_EXTENSION_RULES = {"crossings": CROSSING_LIST_EXTENSION_RULE, "certify": NEW_SOLVE_RULE}
+REUSE_RULES_OF_INCREASED_OPTIONS = {"crossings": CROSSING_LIST_EXTENSION_RULE, "certify": NEW_SOLVE_RULE}
 
 
 def layout(config: dict[str, Any]) -> Layout:
     """Layout of the result file of the task thresholds, for a resolved config."""
-    variables = with_certified_meaning(
+    variables = with_certified_long_name(
         THRESHOLD_VARIABLES + search_variables("F", "crossing_F"), config, "crossings"
     )
     return Layout(variables, {"crossing": config["thresholds"]["crossings"]}, parameter_names_except("F"))

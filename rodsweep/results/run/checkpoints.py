@@ -25,7 +25,7 @@ CHECKPOINT_HEAD = b"rodsweep checkpoint 8\n"
 number are ignored."""
 RESULT_HEAD = b"rodsweep unit 2\n"
 """First line of the file of an item's result; the number grows when items or results change in meaning."""
-Arrays = dict[str, np.ndarray]
+ArraysByName = dict[str, np.ndarray]
 STATE_PREFIX = "state_"
 """Prefix of the names of a solver state's arrays in a checkpoint file."""
 
@@ -33,22 +33,22 @@ STATE_PREFIX = "state_"
 class StateWithArrays(Protocol):
     """Solver state after a point of a chain of points, which can be written as arrays."""
 
-    def arrays(self) -> Arrays:
+    def arrays(self) -> ArraysByName:
         """The complete solver state as arrays of any shape, (...,), by name."""
 
 
 class ArrayStore:
     """Store of sets of named arrays in the journal directory of a run, with one file per set. A set is
-    identified by a number. pattern: pattern of the names of the files."""
+    identified by a number. file_name_pattern: pattern of the names of the files."""
 
-    pattern: ClassVar[str]
+    file_name_pattern: ClassVar[str]
 
     def __init__(self, directory: Path, fingerprint: str, first_line: bytes):
         """directory: journal directory. fingerprint: digest of config and points."""
         self.directory = directory
         self.header = first_line + fingerprint.encode() + b"\n"
 
-    def put(self, number: int, arrays: Arrays) -> None:
+    def put(self, number: int, arrays: ArraysByName) -> None:
         """Stores arrays by name under `number`; replaces earlier arrays of this number."""
         stream = io.BytesIO()
         # In memory first, as the checksum is needed before anything is written.
@@ -62,7 +62,7 @@ class ArrayStore:
         # Atomic, so that a reader finds the old or the new state, never a part.
         os.replace(copy, path)
 
-    def get(self, number: int) -> Arrays | None:
+    def get(self, number: int) -> ArraysByName | None:
         """Arrays stored under `number`, by name; None if there is no intact file of this run."""
         if not self._path(number).is_file():
             return None
@@ -75,16 +75,18 @@ class ArrayStore:
             return dict(arrays)
 
     def _path(self, number: int) -> Path:
-        return self.directory / self.pattern.replace("*", f"{number:09d}")
+        return self.directory / self.file_name_pattern.replace("*", f"{number:09d}")
 
 
 class Checkpoints(ArrayStore):
     """Store with the last solved point of each unfinished chain of points, and the solver state after this
     point."""
 
-    pattern = CHECKPOINT_GLOB
+    file_name_pattern = CHECKPOINT_GLOB
 
-    def __init__(self, directory: Path, fingerprint: str, state_of: Callable[[Arrays], StateWithArrays]):
+    def __init__(
+        self, directory: Path, fingerprint: str, state_of: Callable[[ArraysByName], StateWithArrays]
+    ):
         """directory: journal directory. state_of: makes a solver state from its arrays (the result of the
         state's method `arrays`)."""
         super().__init__(directory, fingerprint, CHECKPOINT_HEAD)
@@ -115,17 +117,17 @@ class ItemResults(ArrayStore):
     """Store of the results of finished work items, until the variables that depend on all points are
     computed."""
 
-    pattern = ITEM_RESULT_GLOB
+    file_name_pattern = ITEM_RESULT_GLOB
 
     def __init__(self, directory: Path, fingerprint: str):
         """directory: journal directory."""
         super().__init__(directory, fingerprint, RESULT_HEAD)
 
-    def write(self, item: int, arrays: Arrays) -> None:
+    def write(self, item: int, arrays: ArraysByName) -> None:
         """Stores the result of the work item number `item`, as arrays by name."""
         self.put(item, arrays)
 
-    def read(self) -> dict[int, Arrays]:
+    def read(self) -> dict[int, ArraysByName]:
         """Results of all work items with an intact file, by number of the work item."""
         names = (path.name.removeprefix("unit-") for path in self.directory.glob(ITEM_RESULT_GLOB))
         results = {int(name): self.get(int(name)) for name in names if name.isdecimal()}

@@ -1,5 +1,4 @@
-"""Journals: append-only files next to the result file, one per rank, to which finished points are written at
-once.
+"""Journals: append-only files next to the result file, one per rank, to which finished points go at once.
 
 The records of a point, or of a group of points, are written by a single call. A kill at any instant
 therefore loses only the points in progress. Every record has a checksum, which reveals an incomplete record.
@@ -142,13 +141,15 @@ def delete_matching_files(directory: Path, pattern: str) -> None:
 def journals_with_fingerprint(directory: Path, fingerprint: str) -> list[Path]:
     """Paths of the journals in a directory that have points and this fingerprint."""
     header = _journal_header(fingerprint)
-    return [path for path in sorted(directory.glob(JOURNAL_GLOB)) if _header_if_points(path) == header]
+    paths = sorted(directory.glob(JOURNAL_GLOB))
+    return [path for path in paths if _header_of_journal_with_points(path) == header]
 
 
 def journals_without_fingerprint(directory: Path, fingerprint: str) -> list[Path]:
     """Paths of the journals in a directory that have points and another fingerprint or a damaged head."""
     headers = (b"", _journal_header(fingerprint))
-    return [path for path in sorted(directory.glob(JOURNAL_GLOB)) if _header_if_points(path) not in headers]
+    paths = sorted(directory.glob(JOURNAL_GLOB))
+    return [path for path in paths if _header_of_journal_with_points(path) not in headers]
 
 
 def move_journals_aside(directory: Path, paths: Iterable[Path]) -> Path:
@@ -164,8 +165,7 @@ def move_journals_aside(directory: Path, paths: Iterable[Path]) -> Path:
 
 
 def kept_points_clause(directory: Path, fingerprint: str) -> str:
-    """Clause for messages with the directory of finished points in journals; empty if the journals have no
-    points."""
+    """Clause for messages with the directory of finished points in journals; empty without such points."""
     has_points = journals_with_fingerprint(directory, fingerprint)
     return f"; finished points are kept in {directory}" if has_points else ""
 
@@ -175,7 +175,7 @@ def _journal_header(fingerprint: str) -> bytes:
     return JOURNAL_HEAD + fingerprint.encode() + b"\n"
 
 
-def _header_if_points(path: Path) -> bytes:
+def _header_of_journal_with_points(path: Path) -> bytes:
     """First two lines of a journal that has points; empty for any other file."""
     if not path.is_file():
         return b""
@@ -220,9 +220,8 @@ def _complete_text_lines(blocks: Iterable[np.ndarray]) -> bytes:
     for rows in blocks:
         index = np.ascontiguousarray(rows[:, :INDEX_BYTES]).view("<i8").ravel()
         is_text = (index == TEXT_CONTINUES) | (index == TEXT_ENDS)
-        for row, number, is_valid in zip(
-            rows[is_text], index[is_text], _has_valid_checksum(rows[is_text]), strict=True
-        ):
+        texts = rows[is_text]
+        for row, number, is_valid in zip(texts, index[is_text], _has_valid_checksum(texts), strict=True):
             line = line + row[INDEX_BYTES:-CHECKSUM_BYTES].tobytes().rstrip(b"\0") if is_valid else b""
             if number == TEXT_ENDS:
                 lines.append(line)

@@ -25,7 +25,7 @@ def add_debian_modules(libraries: Path = SYSTEM_LIBRARY_FOLDER) -> None:
         if f"{name.upper()}_DIR" in os.environ or is_module_found(f"{name}4py"):
             continue
         directories = libraries.glob(f"{name}dir/{name}[0-9].*/*-real/lib/python3/dist-packages")
-        sys.path += map(str, sorted(directories, key=_petsc_version_numbers)[-1:])
+        sys.path += map(str, sorted(directories, key=_petsc_version_in_path)[-1:])
 
 
 def is_module_found(module: str) -> bool:
@@ -36,7 +36,7 @@ def is_module_found(module: str) -> bool:
         return False
 
 
-def _petsc_version_numbers(directory: Path) -> list[int]:
+def _petsc_version_in_path(directory: Path) -> list[int]:
     """Version numbers in the name of the fourth parent directory: [3, 18] for
     petscdir/petsc3.18/x86_64-linux-gnu-real/lib/python3/dist-packages."""
     return [int(number) for number in re.findall(r"\d+", directory.parents[3].name)]

@@ -28,35 +28,36 @@ except (ImportError, ValueError) as error:  # ValueError: compiled for another N
     raise import_failure_error("petsc4py and slepc4py", error) from error
 
 __all__ = [
-    "PETSC_ERRORS",
+    "PETSC_EXCEPTIONS",
     "PETSc",
     "SLEPc",
     "blas_description",
     "user_options_text",
-    "sparse_package",
-    "versions",
+    "sparse_lu_package",
+    "library_versions",
 ]
 
-PETSC_ERRORS = (PETSc.Error, SystemError)
+PETSC_EXCEPTIONS = (PETSc.Error, SystemError)
 """Exceptions after a failure inside PETSc; some releases of petsc4py wrap a PETSc.Error in a SystemError."""
 
-SPARSE_PACKAGES = ("superlu", "umfpack", "klu", "mumps")
+SPARSE_LU_PACKAGES = ("superlu", "umfpack", "klu", "mumps")
 """Names of PETSc's sparse LU packages with pivoting, the fastest first, as measured on the rod's matrices.
 PETSc's built-in LU has no pivoting."""
-UNKNOWN_LIBRARY = "unknown"
+UNKNOWN_BLAS_NAME = "unknown"
 """Name reported for a BLAS library that states no name, for example the reference BLAS."""
 
 
 @cache
-def sparse_package() -> str | None:
-    """First package in SPARSE_PACKAGES that this PETSc was built with; None if PETSc has no such package."""
-    for name in SPARSE_PACKAGES:
+def sparse_lu_package() -> str | None:
+    """First package in SPARSE_LU_PACKAGES that this PETSc was built with; None if PETSc has no such
+    package."""
+    for name in SPARSE_LU_PACKAGES:
         if PETSc.Sys.hasExternalPackage({"umfpack": "suitesparse", "klu": "suitesparse"}.get(name, name)):
             return name
     return None
 
 
-def versions() -> dict[str, str]:
+def library_versions() -> dict[str, str]:
     """Versions of PETSc, SLEPc, petsc4py and slepc4py, by lower-case name."""
     return {
         "petsc": ".".join(map(str, PETSc.Sys.getVersion())),
@@ -79,16 +80,16 @@ def blas_description() -> str:
     for library in threadpool_info():
         if library["user_api"] == "blas":
             parts = (library["internal_api"], library["version"], library.get("architecture"))
-            descriptions[_package_with_library(library["filepath"])].add(
+            descriptions[_package_of_blas_library(library["filepath"])].add(
                 " ".join(str(word) for word in parts if word)
             )
     petscs, numpys = (" and ".join(sorted(descriptions[name])) for name in ("PETSc", "NumPy"))
     if numpys in ("", petscs):
-        return petscs or UNKNOWN_LIBRARY
-    return f"PETSc {petscs or UNKNOWN_LIBRARY}, NumPy {numpys}"
+        return petscs or UNKNOWN_BLAS_NAME
+    return f"PETSc {petscs or UNKNOWN_BLAS_NAME}, NumPy {numpys}"
 
 
-def _package_with_library(path: str) -> str:
+def _package_of_blas_library(path: str) -> str:
     """Package to which the library at `path` belongs: NumPy, SciPy, or else PETSc (a system library)."""
     names = {part.removesuffix(".libs") for part in Path(path).parts}
     packages = (package for package in ("NumPy", "SciPy") if package.lower() in names)

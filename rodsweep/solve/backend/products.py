@@ -15,10 +15,10 @@ from numba.extending import get_cython_function_address
 from ...arrays import Array
 from ...model.compiled.compilation import compiled
 
-_ADDRESS = types.intp
+_ADDRESS_TYPE = types.intp
 binding.add_symbol("rodsweep_dgemm", get_cython_function_address("scipy.linalg.cython_blas", "dgemm"))
 # By name, not by address, so that the compiled code can be cached.
-_dgemm = types.ExternalFunction("rodsweep_dgemm", typing.signature(types.void, *[_ADDRESS] * 13))
+_dgemm = types.ExternalFunction("rodsweep_dgemm", typing.signature(types.void, *[_ADDRESS_TYPE] * 13))
 
 
 @compiled
@@ -38,7 +38,7 @@ def matrix_product(a: Any, b: Any, c: Any, extents: Any, factors: Array) -> None
 
 
 @compiled
-def square_product(A: Array, B: Array, C: Array, factor: float, factor_of_C: float) -> None:
+def square_matrix_product(A: Array, B: Array, C: Array, factor: float, factor_of_C: float) -> None:
     """Matrix product C = factor A B + factor_of_C C, written to C; all (n, n) and contiguous."""
     n = len(A)
     extents = np.full(6, n, np.int32)

@@ -14,10 +14,10 @@ from ...arrays import Array, Complex
 from ...model.compiled.compilation import compiled
 from ...model.compiled.kernel_constants import KernelConstants
 
-_ADDRESS = types.intp
+_ADDRESS_TYPE = types.intp
 binding.add_symbol("rodsweep_dgeev", get_cython_function_address("scipy.linalg.cython_lapack", "dgeev"))
 # By name, not by address, so that the compiled code can be cached.
-_dgeev = types.ExternalFunction("rodsweep_dgeev", typing.signature(types.void, *[_ADDRESS] * 14))
+_dgeev = types.ExternalFunction("rodsweep_dgeev", typing.signature(types.void, *[_ADDRESS_TYPE] * 14))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -27,6 +27,7 @@ class SmallEigenvalueSettings(KernelConstants):
     work_array_ratio: int = 12
     """Length of the work array divided by n, for a matrix (n, n): dgeev needs 3, and is faster with more."""
     field_ranges: ClassVar = {"work_array_ratio": (2, math.inf)}
+    """Exclusive bounds (lower, upper) of a field, by name of the field."""
 
 
 SMALL_EIGENVALUE_SETTINGS = SmallEigenvalueSettings()

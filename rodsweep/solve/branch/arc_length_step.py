@@ -12,12 +12,10 @@ from functools import cached_property, partial
 import numpy as np
 
 from ...arrays import Array, Complex
-from ..continuation.curve import StepControl, StepResult, advance
+from ..continuation.curve import StepControl, StepResult, next_solution_and_step_length
+from ..cycle.accuracy.newton_tolerances import allowed_distance_from_matrix_orbit
 from ..cycle.accuracy.refined_cycle import RefinedCycle
-from ..cycle.accuracy.refinement import (
-    allowed_matrix_distance,
-    cycle_with_calibrated_errors,
-)
+from ..cycle.accuracy.refinement import cycle_with_calibrated_errors
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.newton import ConvergedOrbit, error_of_largest_multiplier, relative_change
 from ..orbit.orbit import Orbit
@@ -26,15 +24,15 @@ from .bordered.condition import BorderCondition, moved_orbit
 from .bordered.corrected_linearisation import CorrectedLinearisation, linearisation_of
 from .bordered.matrix import BorderedMatrix
 from .bordered.scale import ArcLengthScale
-from .branch_errors import BranchCalibration, BranchDerivatives, branch_newton_tolerance
+from .branch_errors import BranchDerivatives, BranchErrorCalibration, branch_newton_tolerance
 from .branch_prediction import HermiteNode, PreviousCycle, hermite_nodes, predicted_change
 
 ARC_STEP_CONTROL = StepControl(
     first_length=0.02,
     max_length=0.25,
     min_length=5e-6,
-    target_error=5e-4,
-    max_error=0.1,
+    target_prediction_error=5e-4,
+    max_prediction_error=0.1,
     prediction_order=4,
     max_angle=0.45,
     max_length_ratio=2.0,
@@ -50,15 +48,15 @@ class BranchCycle:
 
     cycle: RefinedCycle
     derivatives: BranchDerivatives
-    next_arc_length: float
+    next_step_length: float
     """Arc length of the step to the next cycle."""
-    calibration: BranchCalibration
+    calibration: BranchErrorCalibration
     """Errors of the mesh, measured or interpolated at this cycle, or measured at an earlier cycle; the errors
     of this cycle are estimated from these errors."""
-    steps_since_measured: int = 0
+    steps_since_error_measurement: int = 0
     """Number of steps since the last cycle with measured errors; 0 if the errors of this cycle are
     measured."""
-    arc_since_measured: float = 0.0
+    arc_length_since_error_measurement: float = 0.0
     """Arc length of the branch since the last cycle with measured errors; 0 if the errors of this cycle are
     measured or interpolated."""
     next_mesh: OrbitMesh | None = None
@@ -99,17 +97,17 @@ class BranchCycle:
         return self.orbit.form.rod.coordinate(self.scale.parameter_name)
 
     @property
-    def parameter_rate(self) -> float:
+    def parameter_per_arc_length(self) -> float:
         """Derivative of the scaled parameter coordinate with respect to arc length; changes sign at a
         fold."""
-        return self.derivatives.parameter_rate
+        return self.derivatives.parameter_per_arc_length
 
     @cached_property
-    def multipliers_over_solved_part(self) -> Complex:
+    def multipliers_over_solved_time_interval(self) -> Complex:
         """Nontrivial multipliers over the solved part of the period, (m,). Asymmetric cycle: eigenvalues of
         the map over the period. Symmetric cycle: eigenvalues of the map over half a period, composed with the
         reflection."""
-        values = self.cycle.converged_orbit.matrix.multipliers_over_solved_part
+        values = self.cycle.converged_orbit.matrix.multipliers_over_solved_time_interval
         # The multiplier nearest to 1 belongs to the motion along the orbit itself.
         return np.delete(values, int(np.argmin(np.abs(values - 1))))
 
@@ -137,11 +135,13 @@ class BranchCycle:
 def next_cycle(start: BranchCycle, accuracy: float) -> BranchCycle:
     """The next cycle of a branch after `start`, to a relative accuracy; raises Unsolvable if the shortest
     step fails."""
-    end, length = advance(partial(_step_of_length, start, accuracy), start.next_arc_length, ARC_STEP_CONTROL)
+    end, length = next_solution_and_step_length(
+        partial(_step_of_length, start, accuracy), start.next_step_length, ARC_STEP_CONTROL
+    )
     # The cubic through two cycles with tangents errs in the fourth power of the step, hence the order.
     return replace(
         end.solution,
-        next_arc_length=ARC_STEP_CONTROL.next_length(length, end, ARC_STEP_CONTROL.prediction_order),
+        next_step_length=ARC_STEP_CONTROL.next_length(length, end, ARC_STEP_CONTROL.prediction_order),
     )
 
 
@@ -155,20 +155,22 @@ def cycle_at_length(start: BranchCycle, length: float, accuracy: float) -> Branc
 def _step_of_length(start: BranchCycle, accuracy: float, length: float) -> StepResult[BranchCycle]:
     """The cycle at the arc length `length` from `start`, to a relative accuracy, with the prediction error
     and the cosine of the angle between the tangents; raises Unsolvable. On the first step of a branch, and on
-    the first step on another mesh, an allowed prediction error is replaced by `target_error`."""
+    the first step on another mesh, an allowed prediction error is replaced by `target_prediction_error`."""
     condition = start.arc_length_condition(length)
     predicted = start.predicted_on_next_mesh(length)
     # Steps are chosen by the error of the cubic, which is larger and varies less than that of the quintic.
     cubic = start.predicted_on_next_mesh(length, max_earlier_cycles=1)
     tolerance = branch_newton_tolerance(accuracy)
-    solved = condition.solve_cycle(predicted, tolerance, start.workspace, allowed_matrix_distance(accuracy))
+    solved = condition.solve_cycle(
+        predicted, tolerance, start.workspace, allowed_distance_from_matrix_orbit(accuracy)
+    )
     prediction_error = relative_change(cubic, solved.orbit.values - cubic.values)
     is_unknown = start.previous is None or start.next_mesh is not None
     control_error = prediction_error
-    if is_unknown and prediction_error <= ARC_STEP_CONTROL.max_error:
+    if is_unknown and prediction_error <= ARC_STEP_CONTROL.max_prediction_error:
         # The error of the tangent predictor does not predict the error of the cubic, and the error on another
         # mesh contains the difference between the meshes.
-        control_error = ARC_STEP_CONTROL.target_error
+        control_error = ARC_STEP_CONTROL.target_prediction_error
     tangent = tangent_at(solved.orbit, start.scale, start.unit_tangent, linearisation_of(solved))
     cosine = float(
         start.scale.directional_derivative(solved.orbit, tangent) @ start.unit_tangent
@@ -192,26 +194,28 @@ def branch_cycle_with_calibrated_errors(
     solved: ConvergedOrbit,
     tangent: Array,
     length: float,
-    next_arc_length: float,
+    next_step_length: float,
     accuracy: float,
 ) -> BranchCycle:
     """The solved orbit `solved` as the cycle of the branch at the arc length `length` from `start`, with
     errors estimated from the calibration of `start`.
 
-    tangent: tangent of the branch at the new cycle, (N + 1,). next_arc_length: arc length of the step to the
+    tangent: tangent of the branch at the new cycle, (N + 1,). next_step_length: arc length of the step to the
     next cycle. accuracy: relative accuracy of `solved`.
     """
-    cycle = cycle_with_calibrated_errors(start.calibration.at_equal_parameter, solved, accuracy)
+    cycle = cycle_with_calibrated_errors(start.calibration.errors_at_equal_parameter, solved, accuracy)
     derivatives = branch_derivatives(solved, start.scale, tangent)
-    curvature = (derivatives.parameter_rate - start.parameter_rate) / length
+    curvature = (derivatives.parameter_per_arc_length - start.parameter_per_arc_length) / length
     rate = error_of_largest_multiplier(cycle.multipliers, start.cycle.multipliers) / length
     return BranchCycle(
         cycle=cycle,
-        derivatives=replace(derivatives, parameter_second_derivative=curvature, multiplier_rate=rate),
-        next_arc_length=next_arc_length,
+        derivatives=replace(
+            derivatives, parameter_second_derivative=curvature, multiplier_change_per_arc_length=rate
+        ),
+        next_step_length=next_step_length,
         calibration=start.calibration,
-        steps_since_measured=start.steps_since_measured + 1,
-        arc_since_measured=start.arc_since_measured + length,
+        steps_since_error_measurement=start.steps_since_error_measurement + 1,
+        arc_length_since_error_measurement=start.arc_length_since_error_measurement + length,
         previous=PreviousCycle(start.orbit, start.tangent, start.cycle.errors, start.previous),
     )
 
@@ -219,7 +223,7 @@ def branch_cycle_with_calibrated_errors(
 def branch_derivatives(solved: ConvergedOrbit, scale: ArcLengthScale, tangent: Array) -> BranchDerivatives:
     """Scale and unit tangent of a branch at the cycle `solved`. scale: scale at another cycle of the branch.
     tangent: tangent of any length, (N + 1,). In the result `parameter_second_derivative` and
-    `multiplier_rate` are 0, to be set by the caller."""
+    `multiplier_change_per_arc_length` are 0, to be set by the caller."""
     own_scale = ArcLengthScale.at_orbit(
         solved.orbit, scale.parameter_name, scale.min_deflection_unit, scale.min_coordinate_unit
     )

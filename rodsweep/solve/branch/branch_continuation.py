@@ -10,17 +10,14 @@ from ...solve_progress import SolvePosition, report
 from ...wording import counted
 from ..unsolvable import Unsolvable
 from .arc_length_step import ARC_STEP_CONTROL, BranchCycle, arc_length_between, cycle_at_length, next_cycle
-from .branch_curve import BranchCurve, BranchEnd, RangePassage
+from .branch_curve import BranchCurve, BranchEnd, RangeEndPassage
 from .branch_limits import BranchLimits
-from .branch_mesh_choice import is_measurement_due
+from .branch_mesh_choice import is_error_measurement_due
 from .branch_record import BranchRecord, branch_end_point
 from .computing_time import fraction_done
-from .mirror_image_end import (
-    accurate_end_before_hopf,
-    end_or_shorter_step_at_mirror_image,
-)
+from .mirror_image_end import accurate_end_before_hopf, end_or_shorter_step_at_mirror_image
 from .range_end import (
-    cycle_at_end_beside_zero,
+    cycle_at_range_end_beside_zero,
     cycle_within_range,
     index_of_passed_range_end,
     range_end_condition,
@@ -28,18 +25,18 @@ from .range_end import (
 from .settings import BRANCH_END_SETTINGS
 from .special.detection import fold_and_breaking_between, lie_on_one_branch, special_points_between
 from .special.locating import special_point_between
-from .special.special_point import SpecialKind, SpecialPoint
+from .special.special_point import SpecialPoint, SpecialPointKind
 from .start.first_asymmetric_cycle import ASYMMETRIC_START_SETTINGS, first_asymmetric_cycle
 from .start.first_cycle import first_cycle
 from .start.hopf_point import hopf_as_special_point
 from .status import BranchEndReason, reason_of_failure
 
 
-def follow_branch(hopf_index: int, limits: BranchLimits) -> BranchCurve:
+def follow_branch_from_hopf_point(hopf_index: int, limits: BranchLimits) -> BranchCurve:
     """The branch from the Hopf point `limits.hopfs[hopf_index]`; a failure is stored in its last special
     point."""
     hopf = limits.hopfs[hopf_index]
-    curve = BranchCurve(start_hopf=hopf_index)
+    curve = BranchCurve(start_hopf_index=hopf_index)
     curve.add_special_point(hopf_as_special_point(hopf))
     return _follow_to_end(
         curve,
@@ -54,7 +51,7 @@ def follow_asymmetric_branch(breaking_index: int, name: str, limits: BranchLimit
     failure is stored in its last special point."""
     limits = replace(limits, accuracy=min(limits.accuracy, ASYMMETRIC_START_SETTINGS.max_accuracy))
     breaking = limits.breakings[breaking_index]
-    curve = BranchCurve(start_hopf=-1, start_breaking=breaking)
+    curve = BranchCurve(start_hopf_index=-1, start_breaking=breaking)
     curve.add_special_point(replace(breaking.special_point, message="", orbit=None))
 
     def first() -> tuple[BranchCycle, BranchLimits]:
@@ -73,22 +70,20 @@ def _follow_to_end(
     """The branch `curve`, which has only its first special point, followed to its end. solve_first_cycle:
     function that solves the first cycle and returns it with the limits of the branch."""
     if limits.max_cycles < 1:
-        curve.end(
-            BranchEnd(_end_without_cycle(curve, BranchEndReason.list_full), complete=False, list_full=True)
-        )
+        end = _end_without_cycle(curve, BranchEndReason.list_full)
+        curve.append_end(BranchEnd(end, is_complete=False, reached_max_cycles=True))
         return curve
     try:
         start, limits = solve_first_cycle()
     except Unsolvable as reason:
-        curve.end(
-            BranchEnd(_end_without_cycle(curve, reason_of_failure(reason), str(reason)), complete=False)
-        )
+        end = _end_without_cycle(curve, reason_of_failure(reason), str(reason))
+        curve.append_end(BranchEnd(end, is_complete=False))
         return curve
     passed_end = index_of_passed_range_end(start, limits.coordinate_range)
     if passed_end >= 0:
-        passage = RangePassage(start, passed_end, limits.accuracy)
+        passage = RangeEndPassage(start, passed_end, limits.accuracy)
         special = _end_without_cycle(curve, limits.end_reasons[passed_end])
-        curve.end(BranchEnd(special, complete=True, range_passage=passage))
+        curve.append_end(BranchEnd(special, is_complete=True, range_end_passage=passage))
         return curve
     return follow_from_cycle(curve, start, limits)
 
@@ -101,19 +96,19 @@ def follow_from_cycle(curve: BranchCurve, first_cycle: BranchCycle, limits: Bran
     while isinstance(last_cycle, BranchCycle):
         report(partial(_branch_progress, curve, last_cycle, limits))
         last_cycle = _append_next_cycle(record, last_cycle, limits)
-    record.end(last_cycle)
+    record.append_end(last_cycle)
     return curve
 
 
-def follow_from_range_end(entry: RangePassage, limits: BranchLimits) -> BranchCurve:
+def follow_from_range_end(entry: RangeEndPassage, limits: BranchLimits) -> BranchCurve:
     """The branch that enters the range at `entry`, followed to its end."""
     limits = replace(limits, accuracy=entry.accuracy)
-    curve = BranchCurve(start_hopf=-1, start_passage=entry)
-    start = entry.end_point
+    curve = BranchCurve(start_hopf_index=-1, start_passage=entry)
+    start = entry.normal_form_end_point
     if start is None:
         errors = entry.cycle.cycle.errors
         start = replace(
-            range_end_point(entry.cycle, limits.end_reasons[entry.index]),
+            range_end_point(entry.cycle, limits.end_reasons[entry.range_end_index]),
             period_error=errors.period_error,
             tip_y_max_error=errors.amplitude_error,
         )
@@ -143,11 +138,11 @@ def _end_without_cycle(curve: BranchCurve, reason: BranchEndReason, message: str
     special_point = curve.special_points[0]
     return replace(
         special_point,
-        kind=SpecialKind.end,
-        reason=reason,
+        kind=SpecialPointKind.end,
+        end_reason=reason,
         message=message,
         amplitude_coefficient=nan,
-        relative_coefficient_error=nan,
+        relative_amplitude_coefficient_error=nan,
     )
 
 
@@ -159,33 +154,35 @@ def _append_next_cycle(
     is too long, `start` with half the step length, without a new cycle."""
     curve = record.curve
     if len(curve.points) >= limits.max_cycles:
-        return BranchEnd(branch_end_point(start, BranchEndReason.list_full), complete=False, list_full=True)
+        return BranchEnd(
+            branch_end_point(start, BranchEndReason.list_full), is_complete=False, reached_max_cycles=True
+        )
     try:
-        cycle_at_end = cycle_at_end_beside_zero(start, limits.coordinate_range[0], limits.accuracy)
+        cycle_at_end = cycle_at_range_end_beside_zero(start, limits.coordinate_range[0], limits.accuracy)
         end = cycle_at_end or next_cycle(start, limits.accuracy)
-        next_length = end.next_arc_length
+        next_length = end.next_step_length
         if (replacement := _end_or_shorter_step(start, end, limits)) is not None:
             return replacement
         end, passed_end = cycle_within_range(start, end, limits.coordinate_range, limits.accuracy)
         range_end = (
             range_end_condition(start, limits.coordinate_range[passed_end]) if passed_end >= 0 else None
         )
-        if range_end is not None and _step_has_unresolved_corner(start, end):
+        if range_end is not None and _step_has_unresolved_amplitude_corner(start, end):
             range_end = None  # first a cycle at half the step
             end = cycle_at_length(start, arc_length_between(start, end) / 2, limits.accuracy)
         if (last_cycle := _add_special_points(curve, start, end, limits)) is not None:
             return last_cycle
         record.append(end)
-        is_measured = range_end is not None or is_measurement_due(end, limits.accuracy)
-        last = record.assign_errors(range_end) if is_measured else end
+        is_measured = range_end is not None or is_error_measurement_due(end, limits.accuracy)
+        last = record.bring_errors_within_accuracy(range_end) if is_measured else end
     except Unsolvable as reason:
         message = f"the next cycle is not solved: {reason}"
-        return BranchEnd(branch_end_point(start, reason_of_failure(reason), message), complete=False)
+        return BranchEnd(branch_end_point(start, reason_of_failure(reason), message), is_complete=False)
     if range_end is None:
         return last
-    passage = RangePassage(replace(last, next_arc_length=next_length), passed_end, limits.accuracy)
+    passage = RangeEndPassage(replace(last, next_step_length=next_length), passed_end, limits.accuracy)
     end_point = range_end_point(last, limits.end_reasons[passed_end])
-    return BranchEnd(end_point, complete=True, range_passage=passage)
+    return BranchEnd(end_point, is_complete=True, range_end_passage=passage)
 
 
 def _end_or_shorter_step(
@@ -202,7 +199,7 @@ def _end_or_shorter_step(
     half_length = arc_length_between(start, end) / 2
     if half_length < ARC_STEP_CONTROL.min_length:
         raise Unsolvable("two branches touch within the shortest allowed step")
-    return replace(start, next_arc_length=half_length)
+    return replace(start, next_step_length=half_length)
 
 
 def range_end_point(point: BranchCycle, reason: BranchEndReason) -> SpecialPoint:
@@ -218,13 +215,13 @@ def range_end_point(point: BranchCycle, reason: BranchEndReason) -> SpecialPoint
 def _add_special_points(
     curve: BranchCurve, start: BranchCycle, end: BranchCycle, limits: BranchLimits
 ) -> BranchEnd | None:
-    """Appends the special points between the last cycle `start` and the next cycle `end` to a branch. Returns
-    the end of the branch if it ends between the two cycles, at h1 = 0 or because it is closed; else None."""
+    """Appends the special points between the last cycle `start` and the next cycle `end` to a branch.
+    Returns the end of the branch if it ends between the two cycles, at h1 = 0 or because it is closed; else
+    None."""
     # h1 = 0: the model is not valid beyond, even if the discrete equations have solutions.
     if end.cycle.measures.least_stretch <= 0:
-        return BranchEnd(
-            special_point_between(SpecialKind.left_the_model, start, end, limits.accuracy), complete=True
-        )
+        special = special_point_between(SpecialPointKind.left_the_model, start, end, limits.accuracy)
+        return BranchEnd(special, is_complete=True)
     if limits.locates_special_points:
         cycle_at = partial(cycle_at_length, accuracy=limits.accuracy)
         special_points, are_complete = special_points_between(start, end, cycle_at, limits.accuracy)
@@ -237,13 +234,15 @@ def _add_special_points(
         curve.add_special_points(special_points, are_complete)
         return None
     curve.add_special_points(special_points[:closing_index], are_complete)
-    return BranchEnd(special_points[closing_index], complete=True, closed=True)
+    return BranchEnd(special_points[closing_index], is_complete=True, is_closed=True)
 
 
-def _step_has_unresolved_corner(start: BranchCycle, end: BranchCycle) -> bool:
+def _step_has_unresolved_amplitude_corner(start: BranchCycle, end: BranchCycle) -> bool:
     """Whether the largest tip y has a corner on the last step (a different maximum of y(t) becomes the
     largest), and the step is too long for a figure, which locates a corner from two cycles before and two
     cycles after the corner."""
     time_difference = abs(end.cycle.motion.time_of_largest_y - start.cycle.motion.time_of_largest_y)
-    is_other_peak = min(time_difference, 1 - time_difference) > BRANCH_END_SETTINGS.max_peak_shift_fraction
-    return is_other_peak and arc_length_between(start, end) > BRANCH_END_SETTINGS.max_step_with_corner
+    is_other_peak = min(time_difference, 1 - time_difference) > BRANCH_END_SETTINGS.max_peak_shift_in_periods
+    return (
+        is_other_peak and arc_length_between(start, end) > BRANCH_END_SETTINGS.max_step_with_amplitude_corner
+    )

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ...model.floquet import min_unstable_count
+from ...model.floquet import min_unstable_multiplier_count
 from ..cycle.accuracy.cycle_errors import CycleErrors
 from ..cycle.accuracy.settings import REFINEMENT_SETTINGS
 from ..orbit.measures import CycleMeasures
@@ -18,7 +18,7 @@ from .symmetry_breaking import SymmetryBreaking
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StoredBranchCycle:
-    """Stored quantities of one cycle of a branch."""
+    """Stored quantities of one cycle of a branch. measures: period, extrema, harmonics and powers."""
 
     parameter_value: float
     """Value of the continuation parameter."""
@@ -45,15 +45,17 @@ class StoredBranchCycle:
             parameter_value_error=point.calibration.parameter_error(accuracy),
             measures=cycle.measures,
             errors=cycle.errors,
-            multiplier=cycle.largest_multiplier,
+            multiplier=cycle.largest_multiplier_modulus,
             unstable_count=least_count if least_count == largest_count else -1,
         )
 
     @property
-    def min_unstable_multipliers(self) -> int:
+    def min_unstable_multiplier_count(self) -> int:
         """Lower bound on the number of nontrivial multipliers outside the unit circle: 0 if the cycle is
         stable, -1 if its stability is unknown."""
-        return min_unstable_count(self.unstable_count, self.multiplier, self.errors.multiplier_error)
+        return min_unstable_multiplier_count(
+            self.unstable_count, self.multiplier, self.errors.multiplier_error
+        )
 
 
 def unstable_count_bounds(point: BranchCycle) -> tuple[int, int]:
@@ -68,43 +70,49 @@ def _multiplier_modulus_error(point: BranchCycle) -> float:
     """Error of the modulus of a multiplier near the unit circle: relative error of the largest multiplier,
     plus a multiple of the error of the trivial multiplier, whose exact value is 1."""
     cycle = point.cycle
-    relative_error = cycle.errors.multiplier_error / max(cycle.largest_multiplier, 1.0)
+    relative_error = cycle.errors.multiplier_error / max(cycle.largest_multiplier_modulus, 1.0)
     # The trivial multiplier is exactly 1: its distance from 1 shows the effect of the mesh.
-    return relative_error + REFINEMENT_SETTINGS.multiplier_error_factor * cycle.trivial_multiplier_error
+    return (
+        relative_error
+        + REFINEMENT_SETTINGS.multiplier_error_per_matrix_distance * cycle.trivial_multiplier_error
+    )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class RangePassage:
+class RangeEndPassage:
     """Place where a branch leaves or enters the parameter range. cycle: the cycle there, with the tangent
-    along which the branch is followed. index: 0 at the smallest coordinate of the range, 1 at the largest.
-    accuracy: relative accuracy of the branch."""
+    along which the branch is followed. range_end_index: 0 at the smallest coordinate of the range, 1 at the
+    largest. accuracy: relative accuracy of the branch."""
 
     cycle: BranchCycle
-    index: int
+    range_end_index: int
     accuracy: float
-    hopf: HopfBranchStart | None = None
+    hopf_beyond_range_end: HopfBranchStart | None = None
     """Hopf point just beyond the end of the range where the branch ends, or None. `cycle` is then the cycle
     of the branch nearest to the end of the range, within the range."""
-    end_point: SpecialPoint | None = None
-    """The cycle at the end of the range by the normal form of `hopf`; None without `hopf`."""
+    normal_form_end_point: SpecialPoint | None = None
+    """The cycle at the end of the range by the normal form of `hopf_beyond_range_end`; None without
+    `hopf_beyond_range_end`."""
 
-    def is_same_as(self, other: "RangePassage") -> bool:
+    def is_same_as(self, other: "RangeEndPassage") -> bool:
         """Whether a branch passes the end of the range at the same cycle, or its mirror image, as another
         branch, in either direction: the end of the range, the period and the largest |y| of the tip agree
         within their errors."""
-        if self.index != other.index:
+        if self.range_end_index != other.range_end_index:
             return False
         # Small cycles near a Hopf point have uncertain heights, whereas the Hopf point is known.
-        if self.hopf is not None and other.hopf is not None:
-            return self.hopf is other.hopf
-        (period, period_error, height, height_error) = self._period_and_height
-        (other_period, other_period_error, other_height, other_height_error) = other._period_and_height
-        factor = SPECIAL_POINT_SETTINGS.error_factor
+        if self.hopf_beyond_range_end is not None and other.hopf_beyond_range_end is not None:
+            return self.hopf_beyond_range_end is other.hopf_beyond_range_end
+        (period, period_error, height, height_error) = self._period_and_largest_tip_y_with_errors
+        (other_period, other_period_error, other_height, other_height_error) = (
+            other._period_and_largest_tip_y_with_errors
+        )
+        factor = SPECIAL_POINT_SETTINGS.error_safety_factor
         return abs(period / other_period - 1) <= factor * (period_error + other_period_error) and abs(
             height / other_height - 1
         ) <= factor * (height_error + other_height_error)
 
-    def has_same_cycle_as(self, other: "RangePassage") -> bool:
+    def has_same_cycle_as(self, other: "RangeEndPassage") -> bool:
         """Whether both places have the same cycle, with the same number of multipliers outside the unit
         circle: this number differs between the two cycles beside a fold, however near they are."""
         counts = [unstable_count_bounds(passage.cycle) for passage in (self, other)]
@@ -112,10 +120,10 @@ class RangePassage:
         return is_certain and counts[0] == counts[1] and self.is_same_as(other)
 
     @property
-    def _period_and_height(self) -> tuple[float, float, float, float]:
+    def _period_and_largest_tip_y_with_errors(self) -> tuple[float, float, float, float]:
         """(period, its relative error, largest |y| of the tip, its relative error) at the end of the
         range."""
-        point = self.end_point
+        point = self.normal_form_end_point
         if point is not None:
             return point.period, point.period_error, point.tip_y_max, point.tip_y_max_error
         measures = self.cycle.cycle.measures
@@ -128,44 +136,46 @@ class RangePassage:
 @dataclass(frozen=True, slots=True)
 class BranchEnd:
     """The end of a branch. special_point: last special point of the branch; other fields as in
-    `BranchCurve`, `range_passage` as `end_passage`."""
+    `BranchCurve`, `range_end_passage` as `end_passage`."""
 
     special_point: SpecialPoint
-    complete: bool
-    end_hopf: int = -1
+    is_complete: bool
+    end_hopf_index: int = -1
     end_breaking: SymmetryBreaking | None = None
-    list_full: bool = False
-    closed: bool = False
-    range_passage: RangePassage | None = None
+    reached_max_cycles: bool = False
+    is_closed: bool = False
+    range_end_passage: RangeEndPassage | None = None
 
 
 @dataclass(kw_only=True, slots=True)
 class BranchCurve:
     """A branch: cycles and special points, both lists in order along the branch."""
 
-    start_hopf: int
+    start_hopf_index: int
     """Index in `BranchLimits.hopfs` of the Hopf point where the branch starts, -1 if it starts elsewhere."""
     points: list[StoredBranchCycle] = field(default_factory=list)
     special_points: list[SpecialPoint] = field(default_factory=list)
-    end_hopf: int = -1
+    """Special points in order along the branch; once the branch has ended, the last one is the end of the
+    branch."""
+    end_hopf_index: int = -1
     """Index in `BranchLimits.hopfs` of the Hopf point where the branch ends; -1 if the branch has another
     end."""
     start_breaking: SymmetryBreaking | None = None
     """Symmetry breaking where an asymmetric branch starts; None if the branch starts elsewhere."""
     end_breaking: SymmetryBreaking | None = None
     """Symmetry breaking where an asymmetric branch ends; None if the branch has another end."""
-    complete: bool = False
+    is_complete: bool = False
     """Whether the branch was followed to a true end: Hopf point, symmetry breaking, end of the range, or end
     of the model."""
-    list_full: bool = False
+    reached_max_cycles: bool = False
     """Whether the continuation stopped at the maximum number of cycles."""
-    closed: bool = False
+    is_closed: bool = False
     """Whether the branch is closed: its last special point is its first special point, located again."""
-    are_circle_crossings_explained: bool = True
+    are_unit_circle_crossings_explained: bool = True
     """Whether special points explain every multiplier that crosses the unit circle along the branch."""
-    start_passage: RangePassage | None = None
+    start_passage: RangeEndPassage | None = None
     """Place at an end of the range where the branch starts; None if it starts elsewhere."""
-    end_passage: RangePassage | None = None
+    end_passage: RangeEndPassage | None = None
     """Place where the branch leaves the range; None if it has another end."""
 
     def add_special_point(self, special: SpecialPoint) -> None:
@@ -179,7 +189,7 @@ class BranchCurve:
         there."""
         for special in special_points:
             self.add_special_point(special)
-        self.are_circle_crossings_explained &= are_complete
+        self.are_unit_circle_crossings_explained &= are_complete
 
     def remove_last_cycles(self, count: int) -> None:
         """Removes the last `count` cycles, and all special points beyond the first removed cycle."""
@@ -188,16 +198,16 @@ class BranchCurve:
             point for point in self.special_points if point.index_of_cycle_before < len(self.points)
         ]
 
-    def end(self, end: BranchEnd) -> None:
+    def append_end(self, end: BranchEnd) -> None:
         """Appends the end of the branch as its last special point, and sets the fields for the end of the
         branch."""
         self.add_special_point(end.special_point)
-        self.complete = end.complete
-        self.list_full = end.list_full
-        self.closed = end.closed
-        self.end_hopf = end.end_hopf
+        self.is_complete = end.is_complete
+        self.reached_max_cycles = end.reached_max_cycles
+        self.is_closed = end.is_closed
+        self.end_hopf_index = end.end_hopf_index
         self.end_breaking = end.end_breaking
-        self.end_passage = end.range_passage
+        self.end_passage = end.range_end_passage
 
     def index_of_first_special_point(self, special_points: Sequence[SpecialPoint]) -> int:
         """Index in `special_points` of the first special point of this branch, -1 if `special_points` does
@@ -209,7 +219,7 @@ class BranchCurve:
             (i for i, point in located for own_point in own_points if own_point.is_same_as(point)), -1
         )
 
-    def joined_with(self, forward: "BranchCurve") -> "BranchCurve":
+    def joined_with_forward_branch(self, forward: "BranchCurve") -> "BranchCurve":
         """The branch of this branch, reversed, and the branch `forward`; both start at the same cycle, in
         opposite directions."""
         cycle_count = len(self.points)
@@ -224,17 +234,17 @@ class BranchCurve:
             for point in forward.special_points
         ]
         return BranchCurve(
-            start_hopf=self.end_hopf,
+            start_hopf_index=self.end_hopf_index,
             start_breaking=self.end_breaking,
             # The first cycle, common to both directions, is taken from `forward`.
             points=[*self.points[:0:-1], *forward.points],
             special_points=[*backward_points, *forward_points],
-            end_hopf=forward.end_hopf,
+            end_hopf_index=forward.end_hopf_index,
             end_breaking=forward.end_breaking,
             start_passage=self.end_passage,
             end_passage=forward.end_passage,
-            complete=self.complete and forward.complete,
-            list_full=self.list_full or forward.list_full,
-            are_circle_crossings_explained=self.are_circle_crossings_explained
-            and forward.are_circle_crossings_explained,
+            is_complete=self.is_complete and forward.is_complete,
+            reached_max_cycles=self.reached_max_cycles or forward.reached_max_cycles,
+            are_unit_circle_crossings_explained=self.are_unit_circle_crossings_explained
+            and forward.are_unit_circle_crossings_explained,
         )

@@ -16,13 +16,13 @@ import numpy as np
 
 from ...arrays import Array
 from ...determinant.exponents import EXPONENT_SETTINGS
-from ..cycle.accuracy.calibration import ERROR_COUNT, Calibration
+from ..cycle.accuracy.calibration import ERROR_COUNT, MeshErrorCalibration
 from ..cycle.accuracy.cheapest_mesh import cheapest_mesh
 from ..cycle.accuracy.cycle_errors import CYCLE_ERROR_SETTINGS, MULTIPLIER_ERROR_INDEX
-from ..cycle.accuracy.refinement import newton_tolerance
-from ..cycle.accuracy.settings import CALIBRATION_SETTINGS
+from ..cycle.accuracy.newton_tolerances import newton_tolerance
+from ..cycle.accuracy.settings import MESH_ERROR_CALIBRATION_SETTINGS
 from ..orbit.orbit_mesh import OrbitMesh
-from ..orbit.path_differences import EXTREMUM_INDEX, PATH_INDEX, PERIOD_INDEX, Y_INDEX
+from ..orbit.tip_path_differences import EXTREMUM_INDEX, PATH_INDEX, PERIOD_INDEX, Y_INDEX
 from .bordered.scale import ArcLengthScale
 from .multiplier_sensitivity import MultiplierSensitivity
 from .settings import BRANCH_ERROR_SETTINGS
@@ -31,7 +31,8 @@ from .settings import BRANCH_ERROR_SETTINGS
 def branch_newton_tolerance(accuracy: float) -> float:
     """Relative tolerance of Newton's method for a cycle of a branch of a given relative accuracy."""
     tolerance = max(
-        BRANCH_ERROR_SETTINGS.newton_tolerance_ratio * accuracy, BRANCH_ERROR_SETTINGS.min_newton_tolerance
+        BRANCH_ERROR_SETTINGS.newton_tolerance_per_accuracy * accuracy,
+        BRANCH_ERROR_SETTINGS.min_newton_tolerance,
     )
     return min(tolerance, newton_tolerance(accuracy))
 
@@ -48,150 +49,159 @@ class BranchDerivatives:
     """The tangent in components (deflection, log period, parameter), (3,), a unit vector."""
     parameter_second_derivative: float
     """Second derivative of the scaled parameter coordinate with respect to arc length."""
-    multiplier_rate: float
+    multiplier_change_per_arc_length: float
     """Modulus of the derivative of the largest multiplier with respect to arc length."""
 
     @property
-    def parameter_rate(self) -> float:
+    def parameter_per_arc_length(self) -> float:
         """Derivative of the scaled parameter coordinate with respect to arc length; 0 at a fold."""
         return float(self.unit_tangent[2])
 
     def arc_length_for_parameter_change(self, change: float) -> float:
         """Signed arc length over which the scaled parameter coordinate changes by `change`: change /
-        `parameter_rate`. Near a fold, where the parameter may never change by `change`: an upper bound of
-        this length with the same sign, of modulus 2 sqrt(|change / `parameter_second_derivative`|)."""
+        `parameter_per_arc_length`. Near a fold, where the parameter may never change by `change`: an upper
+        bound of this length with the same sign, of modulus 2 sqrt(|change /
+        `parameter_second_derivative`|)."""
         # Away from a fold the quadratic term changes the linear solution by an eighth at most.
-        if self.parameter_rate**2 >= 4 * abs(self.parameter_second_derivative * change):
-            return change / self.parameter_rate
-        direction = np.copysign(1.0, change * self.parameter_rate)
+        if self.parameter_per_arc_length**2 >= 4 * abs(self.parameter_second_derivative * change):
+            return change / self.parameter_per_arc_length
+        direction = np.copysign(1.0, change * self.parameter_per_arc_length)
         # Near a fold: an upper bound of the root s of rate s + curvature s^2/2 = change.
         curvature = max(abs(self.parameter_second_derivative), EXPONENT_SETTINGS.min_divisor)
         return float(direction * 2 * (abs(change) / curvature) ** 0.5)
 
 
 @dataclass(frozen=True, eq=False)
-class BranchCalibration:
-    """Measured errors of a mesh at a cycle of a branch. at_equal_parameter: errors at equal parameter.
+class BranchErrorCalibration:
+    """Measured errors of a mesh at a cycle of a branch. errors_at_equal_parameter: errors at equal parameter.
     parameter_errors: relative errors of the parameter at equal deflection, caused by the mesh in space and by
-    the mesh in time, (2,). sensitivity, period_sensitivity: |(p/y) dy/dp| and |(p/T) dT/dp|, p: parameter, y:
-    largest tip y, T: period. multiplier_sensitivity: sensitivity of the largest multiplier at this cycle."""
+    the mesh in time, (2,). tip_y_sensitivity, period_sensitivity: |(p/y) dy/dp| and |(p/T) dT/dp|, p:
+    parameter, y: largest tip y, T: period. multiplier_sensitivity: sensitivity of the largest multiplier at
+    this cycle."""
 
-    at_equal_parameter: Calibration
+    errors_at_equal_parameter: MeshErrorCalibration
     parameter_errors: Array
-    sensitivity: float
+    tip_y_sensitivity: float
     period_sensitivity: float
     multiplier_sensitivity: MultiplierSensitivity
 
     @property
     def mesh(self) -> OrbitMesh:
-        return self.at_equal_parameter.mesh
+        return self.errors_at_equal_parameter.mesh
 
     def period_error(self, accuracy: float) -> float:
         """Relative error of the period at equal parameter, at least a fraction of the relative accuracy,
         without the effect of a steep slope dy/dp if the period is not as steep."""
-        return self._period_errors.errors(accuracy).period_error
+        return self._period_errors.estimated_cycle_errors(accuracy).period_error
 
     def parameter_error(self, accuracy: float) -> float:
         """Relative error of the parameter at equal deflection, with a safety factor, at least a fraction of
         the relative accuracy and at least the rounding error."""
         return max(
-            CALIBRATION_SETTINGS.safety_factor * float(self.parameter_errors.sum()),
+            MESH_ERROR_CALIBRATION_SETTINGS.error_safety_factor * float(self.parameter_errors.sum()),
             CYCLE_ERROR_SETTINGS.min_error_over_accuracy * accuracy,
-            CYCLE_ERROR_SETTINGS.rounding_error,
+            CYCLE_ERROR_SETTINGS.relative_rounding_error,
         )
 
     def largest_weighted_error(self, accuracy: float) -> float:
         """The number that must not exceed the accuracy: the larger of the parameter error, and the largest
         weighted error at equal parameter divided by max(1, sensitivity / `max_tip_y_sensitivity`)."""
-        return self._limiting_errors.errors(accuracy).largest_weighted_error
+        return self._errors_for_mesh_choice.estimated_cycle_errors(accuracy).largest_weighted_error
 
     def cheapest_mesh(self, accuracy: float) -> OrbitMesh:
         """The cheapest mesh on which `largest_weighted_error` is predicted within the accuracy; the next
         finer mesh if no such mesh is allowed."""
-        return cheapest_mesh(self._limiting_errors, accuracy)
+        return cheapest_mesh(self._errors_for_mesh_choice, accuracy)
 
     def cheapest_mesh_for_parameter(self, accuracy: float) -> OrbitMesh:
         """The cheapest mesh on which the parameter at equal deflection is predicted to have a relative
         accuracy."""
-        return cheapest_mesh(self._parameter_errors_only, accuracy)
+        return cheapest_mesh(self._calibration_with_parameter_errors, accuracy)
 
     @property
-    def _steepness(self) -> float:
+    def _allowed_errors_per_accuracy(self) -> float:
         """Ratio, at least 1, of the allowed errors at equal parameter to the accuracy."""
         # Errors at equal p are proportional to the slope dy/dp; a steep slope is no defect of the mesh.
-        return max(1.0, self.sensitivity / BRANCH_ERROR_SETTINGS.max_tip_y_sensitivity)
+        return max(1.0, self.tip_y_sensitivity / BRANCH_ERROR_SETTINGS.max_tip_y_sensitivity)
 
     @cached_property
-    def _period_errors(self) -> Calibration:
+    def _period_errors(self) -> MeshErrorCalibration:
         """Errors from which the error of the period is estimated: errors at equal parameter, but the errors
         of largest y and path, which limit the error of the period from below, without the part that a steep
         slope dy/dp causes. Near a Hopf point a mesh displaces this point, and y at equal p changes by a large
         fraction, but the period does not; at a fold both change."""
-        reduction = max(1.0, self._steepness / max(1.0, self.period_sensitivity))
-        errors = self.at_equal_parameter.mesh_errors.copy()
+        reduction = max(1.0, self._allowed_errors_per_accuracy / max(1.0, self.period_sensitivity))
+        errors = self.errors_at_equal_parameter.mesh_errors.copy()
         errors[:, [Y_INDEX, PATH_INDEX]] /= reduction
-        return replace(self.at_equal_parameter, mesh_errors=errors)
+        return replace(self.errors_at_equal_parameter, mesh_errors=errors)
 
     @cached_property
-    def _limiting_errors(self) -> Calibration:
+    def _errors_for_mesh_choice(self) -> MeshErrorCalibration:
         """Errors from which the mesh is chosen: errors at equal parameter, reduced as in
         `largest_weighted_error`, and the parameter error."""
-        errors = self.at_equal_parameter.mesh_errors / self._steepness
+        errors = self.errors_at_equal_parameter.mesh_errors / self._allowed_errors_per_accuracy
         errors[:, PERIOD_INDEX] = np.maximum(errors[:, PERIOD_INDEX], self.parameter_errors)
-        return replace(self.at_equal_parameter, mesh_errors=errors)
+        return replace(self.errors_at_equal_parameter, mesh_errors=errors)
 
     @cached_property
-    def _parameter_errors_only(self) -> Calibration:
+    def _calibration_with_parameter_errors(self) -> MeshErrorCalibration:
         """A calibration in which the errors of period, largest y, extrema and path equal the parameter error
         at equal deflection, in space and in time; the error of the multiplier is unchanged."""
         # A copy, because many cycles share one calibration.
-        errors = self.at_equal_parameter.mesh_errors.copy()
+        errors = self.errors_at_equal_parameter.mesh_errors.copy()
         errors[:, [PERIOD_INDEX, Y_INDEX, EXTREMUM_INDEX, PATH_INDEX]] = self.parameter_errors[:, None]
-        return replace(self.at_equal_parameter, mesh_errors=errors)
+        return replace(self.errors_at_equal_parameter, mesh_errors=errors)
 
-    def grown(self, growth: Array) -> "BranchCalibration":
+    def with_grown_errors(self, growth: Array) -> "BranchErrorCalibration":
         """The calibration with all errors in space and in time multiplied by `growth`, (2,)."""
-        own = self.at_equal_parameter
+        own = self.errors_at_equal_parameter
         calibration = replace(own, mesh_errors=growth[:, None] * own.mesh_errors)
-        return replace(self, at_equal_parameter=calibration, parameter_errors=growth * self.parameter_errors)
+        return replace(
+            self, errors_at_equal_parameter=calibration, parameter_errors=growth * self.parameter_errors
+        )
 
     def interpolate(
         self,
-        other: "BranchCalibration",
+        other: "BranchErrorCalibration",
         fraction: float,
         sensitivities: tuple[float, float],
         multiplier_sensitivity: MultiplierSensitivity,
-    ) -> "BranchCalibration":
+    ) -> "BranchErrorCalibration":
         """Interpolated errors of a cycle on the branch between two measured cycles with the same mesh. other:
         errors of the second measured cycle. fraction: fraction of the arc length from the first measured
-        cycle to the interpolated one. sensitivities (`sensitivity`, `period_sensitivity`),
+        cycle to the interpolated one. sensitivities (`tip_y_sensitivity`, `period_sensitivity`),
         multiplier_sensitivity: of the interpolated cycle.
         Near a fold or a Hopf point errors at equal parameter are proportional to the sensitivity, which
         changes by factors between two cycles; their quotients are interpolated. The errors are not below the
         smaller of the two measured errors, which need not depend on the sensitivity.
         """
-        first, second = self.at_equal_parameter.mesh_errors, other.at_equal_parameter.mesh_errors
+        first, second = (
+            self.errors_at_equal_parameter.mesh_errors,
+            other.errors_at_equal_parameter.mesh_errors,
+        )
         parameter_errors = _log_interpolated_errors(self.parameter_errors, other.parameter_errors, fraction)
         quotients = _log_interpolated_errors(
-            first / self._sensitivities, second / other._sensitivities, fraction
+            first / self._error_sensitivity_factors, second / other._error_sensitivity_factors, fraction
         )
         errors = max(sensitivities[0], 1.0) * quotients
         for part in errors:
-            part[MULTIPLIER_ERROR_INDEX] = multiplier_sensitivity.error(float(part[MULTIPLIER_ERROR_INDEX]))
+            part[MULTIPLIER_ERROR_INDEX] = multiplier_sensitivity.error_from_quotient(
+                float(part[MULTIPLIER_ERROR_INDEX])
+            )
         # The interpolated errors contain their growth since the last measurement.
         calibration = replace(
-            self.at_equal_parameter,
+            self.errors_at_equal_parameter,
             mesh_errors=np.maximum(errors, np.minimum(first, second)),
             space_time_error_growth=np.ones(2),
         )
-        return BranchCalibration(calibration, parameter_errors, *sensitivities, multiplier_sensitivity)
+        return BranchErrorCalibration(calibration, parameter_errors, *sensitivities, multiplier_sensitivity)
 
     @property
-    def _sensitivities(self) -> Array:
-        """Factors, (5,), by which errors of the cycle at equal parameter grow: `sensitivity`, at least 1; for
-        the multiplier times the factor of `multiplier_sensitivity`."""
-        factors = np.full(ERROR_COUNT, max(self.sensitivity, 1.0))
-        factors[MULTIPLIER_ERROR_INDEX] *= self.multiplier_sensitivity.factor
+    def _error_sensitivity_factors(self) -> Array:
+        """Factors, (5,), by which errors of the cycle at equal parameter grow: `tip_y_sensitivity`, at least
+        1; for the multiplier times the factor of `multiplier_sensitivity`."""
+        factors = np.full(ERROR_COUNT, max(self.tip_y_sensitivity, 1.0))
+        factors[MULTIPLIER_ERROR_INDEX] *= self.multiplier_sensitivity.error_growth_factor
         return factors
 
 
@@ -200,7 +210,7 @@ def _log_interpolated_errors(first_errors: Array, second_errors: Array, fraction
     at the fraction `fraction` of the distance from the first to the second; multiplied by
     `interpolation_safety_factor`, but not above the larger of the two errors."""
     larger_errors = np.maximum(first_errors, second_errors)
-    smallest = larger_errors / BRANCH_ERROR_SETTINGS.max_error_ratio
+    smallest = larger_errors / BRANCH_ERROR_SETTINGS.max_error_ratio_for_interpolation
     # Errors of a mesh change by factors along a branch, so geometric means are interpolated.
     first, second = (np.maximum(errors, smallest) for errors in (first_errors, second_errors))
     means = first ** (1 - fraction) * second**fraction

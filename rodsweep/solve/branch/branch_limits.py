@@ -10,7 +10,7 @@ from .start.hopf_point import HopfBranchStart
 from .status import BranchEndReason
 from .symmetry_breaking import SymmetryBreaking
 
-WORK_UNIT = 1e9
+MULTIPLICATIONS_PER_WORK_UNIT = 1e9
 """Unit of `BranchRequest.work`: number of multiplications in the eliminations of Newton matrices."""
 
 
@@ -19,7 +19,7 @@ class BranchRequest:
     """Request for the branches of every rod. along, start, stop: name and range of the continuation
     parameter. accuracy: relative accuracy of the cycles. certify: whether to prove that no Hopf point is
     missing. cycles, special: maximum numbers of stored cycles and special points. work: limit of the work on
-    the branches of a rod, in `WORK_UNIT`; None: no limit."""
+    the branches of a rod, in `MULTIPLICATIONS_PER_WORK_UNIT`; None: no limit."""
 
     along: str
     start: float
@@ -31,10 +31,10 @@ class BranchRequest:
     work: float | None = None
 
     @property
-    def max_work(self) -> float:
+    def max_multiplications(self) -> float:
         """Largest number of multiplications in the eliminations of all Newton matrices for one rod; inf
         without a limit."""
-        return inf if self.work is None else WORK_UNIT * self.work
+        return inf if self.work is None else MULTIPLICATIONS_PER_WORK_UNIT * self.work
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +58,7 @@ class BranchLimits:
     """Whether the angular velocity Omega is an unknown for all cycles, see `StressForm`."""
     breakings: Sequence[SymmetryBreaking] = ()
     """Symmetry breakings found so far on the branches of the rod."""
-    hopfs_beyond: Sequence[HopfBranchStart] = ()
+    hopfs_beyond_range: Sequence[HopfBranchStart] = ()
     """Hopf points of the rod beyond the ends of the range; a branch may end just beyond."""
     locates_special_points: bool = True
     """Whether all special points between the ends of a branch are located; on parts beyond the range only
@@ -67,4 +67,4 @@ class BranchLimits:
     @property
     def all_hopfs(self) -> list[HopfBranchStart]:
         """Hopf points within the range and beyond."""
-        return [*self.hopfs, *self.hopfs_beyond]
+        return [*self.hopfs, *self.hopfs_beyond_range]

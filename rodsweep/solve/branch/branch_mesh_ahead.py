@@ -9,9 +9,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...arrays import Array
-from ..cycle.accuracy.error_indicators import error_growth_factors, tails_and_size
-from ..orbit.mesh_choice import finer_orbit_mesh, regraded_coarser
-from ..orbit.orbit_mesh import OrbitMesh, mesh_of
+from ..cycle.accuracy.error_indicators import coefficient_tails_and_orbit_size, error_growth_factors
+from ..orbit.mesh_choice import coarser_regraded_mesh, finer_orbit_mesh
+from ..orbit.orbit_mesh import OrbitMesh, mesh_of_orbit
 from .arc_length_step import BranchCycle
 from .settings import BRANCH_ERROR_SETTINGS, BRANCH_MESH_SETTINGS
 
@@ -21,39 +21,46 @@ def expected_error_growth(
 ) -> Array:
     """Expected growth factors of the errors in space and in time, (2,), from the last cycle of `points` to
     the next measured cycle, by the growth of the coefficient tails over the last steps, or of the measured
-    errors of the parameter if these have grown more. measured, points: as in `with_errors_within_accuracy`.
-    measured_end: the last cycle of `points` with measured errors."""
+    errors of the parameter if these have grown more. measured, points: as in
+    `cycles_with_errors_within_accuracy`. measured_end: the last cycle of `points` with measured errors."""
     end = points[-1]
     # Tails are compared on one mesh.
-    known = next(point for point in (measured, *points) if mesh_of(point.orbit) == mesh_of(end.orbit))
-    length = end.arc_since_measured - known.arc_since_measured
+    known = next(
+        point for point in (measured, *points) if mesh_of_orbit(point.orbit) == mesh_of_orbit(end.orbit)
+    )
+    length = end.arc_length_since_error_measurement - known.arc_length_since_error_measurement
     if not length > 0:
         return np.ones(2)
     # A branch is followed by arc length: the size of an orbit does not matter.
-    tails = [np.append(tails_and_size(point.orbit)[:-1], 1.0) for point in (known, end)]
+    tails = [np.append(coefficient_tails_and_orbit_size(point.orbit)[:-1], 1.0) for point in (known, end)]
     steps = BRANCH_MESH_SETTINGS.max_steps_between_measurements
     growth: Array = error_growth_factors(*tails)
     if known is measured:
         errors = [
-            np.maximum(point.calibration.parameter_errors, BRANCH_ERROR_SETTINGS.min_error)
+            np.maximum(point.calibration.parameter_errors, BRANCH_ERROR_SETTINGS.min_error_for_logarithm)
             for point in (measured, measured_end)
         ]
         growth = np.maximum(growth, errors[1] / errors[0])
-    growth = growth ** (steps * end.next_arc_length / length)
-    return np.minimum(growth, BRANCH_MESH_SETTINGS.max_planned_growth)
+    growth = growth ** (steps * end.next_step_length / length)
+    return np.minimum(growth, BRANCH_MESH_SETTINGS.max_planned_error_growth)
 
 
-def mesh_ahead(end: BranchCycle, growth: Array, accuracy: float) -> OrbitMesh | None:
+def mesh_for_next_cycles(end: BranchCycle, growth: Array, accuracy: float) -> OrbitMesh | None:
     """The mesh for the next cycles of the branch after `end`, whose errors were measured; None if its own
     mesh is expected to suffice up to the next measured cycle. growth: expected growth factors of the errors
     up to there, (2,)."""
     mesh = end.calibration.mesh
-    expected = end.calibration.grown(growth)
-    cheapest = expected.cheapest_mesh(BRANCH_MESH_SETTINGS.planned_error_ratio * accuracy)
+    expected = end.calibration.with_grown_errors(growth)
+    cheapest = expected.cheapest_mesh(BRANCH_MESH_SETTINGS.planned_error_per_accuracy * accuracy)
     if expected.largest_weighted_error(accuracy) > accuracy:
-        target = regraded_coarser(finer_orbit_mesh(mesh, cheapest), end.orbit)
+        target = coarser_regraded_mesh(finer_orbit_mesh(mesh, cheapest), end.orbit)
         return target if target.is_allowed else None
     # A sufficient mesh is replaced only by a much cheaper mesh, which is likely to suffice for many cycles.
-    cheaper = expected.cheapest_mesh(BRANCH_MESH_SETTINGS.planned_error_ratio_of_cheaper_mesh * accuracy)
-    target = regraded_coarser(cheaper, end.orbit)
-    return target if target.cost <= BRANCH_MESH_SETTINGS.max_cheaper_cost_ratio * mesh.cost else None
+    cheaper = expected.cheapest_mesh(BRANCH_MESH_SETTINGS.planned_error_per_accuracy_if_cheaper * accuracy)
+    target = coarser_regraded_mesh(cheaper, end.orbit)
+    return (
+        target
+        if target.elimination_cost
+        <= BRANCH_MESH_SETTINGS.max_cost_ratio_of_cheaper_mesh * mesh.elimination_cost
+        else None
+    )

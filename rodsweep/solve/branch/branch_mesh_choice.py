@@ -9,25 +9,26 @@ from dataclasses import replace
 import numpy as np
 
 from ...arrays import Array
+from ..cycle.accuracy.newton_tolerances import allowed_distance_from_matrix_orbit
 from ..cycle.accuracy.refined_cycle import RefinedCycle
-from ..cycle.accuracy.refinement import allowed_matrix_distance, cycle_with_calibrated_errors
+from ..cycle.accuracy.refinement import cycle_with_calibrated_errors
 from ..orbit.measures import CycleMotion
-from ..orbit.mesh_choice import finer_orbit_mesh, regraded_coarser
+from ..orbit.mesh_choice import coarser_regraded_mesh, finer_orbit_mesh
 from ..orbit.newton import ConvergedOrbit, nontrivial_multipliers_and_error
-from ..orbit.orbit_mesh import OrbitMesh, mesh_limit_error, mesh_of
+from ..orbit.orbit_mesh import OrbitMesh, mesh_limit_error, mesh_of_orbit
 from ..unsolvable import MeshLimitReached
 from .arc_length_step import ARC_STEP_CONTROL, BranchCycle, branch_derivatives, tangent_at
 from .bordered.condition import BorderCondition
 from .bordered.corrected_linearisation import linearisation_of
 from .bordered.scale import ArcLengthScale
-from .branch_error_measurement import measured_branch_calibration, parameter_sensitivities
-from .branch_errors import BranchCalibration, branch_newton_tolerance
-from .branch_mesh_ahead import expected_error_growth, mesh_ahead
+from .branch_error_measurement import measured_branch_error_calibration, parameter_sensitivities
+from .branch_errors import BranchErrorCalibration, branch_newton_tolerance
+from .branch_mesh_ahead import expected_error_growth, mesh_for_next_cycles
 from .multiplier_sensitivity import MultiplierSensitivity
 from .settings import BRANCH_MESH_SETTINGS
 
 
-def first_measured_cycle(
+def first_cycle_with_measured_errors(
     solved: ConvergedOrbit, scale: ArcLengthScale, side: Array, arc_from_start: float, accuracy: float
 ) -> BranchCycle:
     """The solved orbit `solved` as the first cycle of a branch, with measured errors within the accuracy, on
@@ -37,77 +38,73 @@ def first_measured_cycle(
     parameter), (3,). arc_from_start: arc length from the special point where the branch starts; parameter and
     multipliers are quadratic in this arc length.
     """
-    derivatives = branch_derivatives(
-        solved, scale, tangent_at(solved.orbit, scale, side, linearisation_of(solved))
-    )
+    tangent = tangent_at(solved.orbit, scale, side, linearisation_of(solved))
+    derivatives = branch_derivatives(solved, scale, tangent)
     multipliers = nontrivial_multipliers_and_error(solved)[0]
     trivial_error = abs(multipliers[0] - 1) if len(multipliers) else 0.0
     # At the Hopf point the derivative of the parameter is 0 and a second multiplier is 1. Near the Hopf point
     # this derivative is linear, and the multiplier is quadratic, in the deflection.
     derivatives = replace(
         derivatives,
-        parameter_second_derivative=derivatives.parameter_rate / arc_from_start,
-        multiplier_rate=2 * trivial_error / arc_from_start,
+        parameter_second_derivative=derivatives.parameter_per_arc_length / arc_from_start,
+        multiplier_change_per_arc_length=2 * trivial_error / arc_from_start,
     )
-    calibration = measured_branch_calibration(solved, derivatives, accuracy, None)
+    calibration = measured_branch_error_calibration(solved, derivatives, accuracy, None)
     cycle = _cycle_with_branch_errors(calibration, solved, accuracy)
-    return solve_on_sufficient_mesh(
-        BranchCycle(
-            cycle=cycle,
-            derivatives=derivatives,
-            next_arc_length=ARC_STEP_CONTROL.first_length,
-            calibration=calibration,
-        ),
-        accuracy,
-    )
+    step = ARC_STEP_CONTROL.first_length
+    first = BranchCycle(cycle=cycle, derivatives=derivatives, next_step_length=step, calibration=calibration)
+    return solve_on_sufficient_mesh(first, accuracy)
 
 
-def is_measurement_due(point: BranchCycle, accuracy: float) -> bool:
+def is_error_measurement_due(point: BranchCycle, accuracy: float) -> bool:
     """Whether the errors of a cycle of the relative accuracy `accuracy` must be measured: the last measured
     cycle is too many steps away, or the errors have grown too much since that cycle."""
     settings = BRANCH_MESH_SETTINGS
-    growth = float(
-        point.calibration.at_equal_parameter.scaled_on_branch(point.orbit).space_time_error_growth.max()
-    )
+    errors = point.calibration.errors_at_equal_parameter.with_errors_scaled_on_branch(point.orbit)
+    growth = float(errors.space_time_error_growth.max())
+    max_growth = settings.max_error_growth_since_measurement
     # Small errors stay within the accuracy, even if they grow by the largest allowed factor.
-    has_small_errors = (
-        point.calibration.largest_weighted_error(accuracy) * settings.max_growth_since_measurement <= accuracy
-    )
-    max_steps = (
-        settings.max_steps_with_small_errors if has_small_errors else settings.max_steps_between_measurements
-    )
-    return point.steps_since_measured >= max_steps or growth > settings.max_growth_since_measurement
+    has_small_errors = point.calibration.largest_weighted_error(accuracy) * max_growth <= accuracy
+    max_steps = settings.max_steps_between_measurements
+    if has_small_errors:
+        max_steps = settings.max_unmeasured_steps_if_errors_small
+    return point.steps_since_error_measurement >= max_steps or growth > max_growth
 
 
 def with_measured_errors(point: BranchCycle, accuracy: float) -> BranchCycle:
     """The cycle `point` with its errors measured on two finer meshes; raises Unsolvable. accuracy: relative
     accuracy of the cycle."""
-    previous = point.calibration.at_equal_parameter
-    return with_calibration(
-        point,
-        measured_branch_calibration(point.cycle.converged_orbit, point.derivatives, accuracy, previous),
-        accuracy,
-    )
+    previous = point.calibration.errors_at_equal_parameter
+    solved = point.cycle.converged_orbit
+    calibration = measured_branch_error_calibration(solved, point.derivatives, accuracy, previous)
+    return with_errors_of_calibration(point, calibration, accuracy)
 
 
-def with_calibration(point: BranchCycle, calibration: BranchCalibration, accuracy: float) -> BranchCycle:
+def with_errors_of_calibration(
+    point: BranchCycle, calibration: BranchErrorCalibration, accuracy: float
+) -> BranchCycle:
     """The cycle `point`, solved to a relative accuracy, with the errors of `calibration`, which was measured
     or interpolated at this cycle. In the result the number of unmeasured steps is 0."""
-    cycle_before = point.cycle
-    cycle = _cycle_with_branch_errors(
-        calibration, cycle_before.converged_orbit, accuracy, cycle_before.motion
-    )
+    before = point.cycle
+    cycle = _cycle_with_branch_errors(calibration, before.converged_orbit, accuracy, before.motion)
     return replace(
-        point, cycle=cycle, calibration=calibration, steps_since_measured=0, arc_since_measured=0.0
+        point,
+        cycle=cycle,
+        calibration=calibration,
+        steps_since_error_measurement=0,
+        arc_length_since_error_measurement=0.0,
     )
 
 
 def _cycle_with_branch_errors(
-    calibration: BranchCalibration, solved: ConvergedOrbit, accuracy: float, motion: CycleMotion | None = None
+    calibration: BranchErrorCalibration,
+    solved: ConvergedOrbit,
+    accuracy: float,
+    motion: CycleMotion | None = None,
 ) -> RefinedCycle:
     """The solved orbit `solved` as a cycle, with the errors of a calibration measured or interpolated at this
     orbit. accuracy: relative accuracy. motion: motion of the orbit, if known."""
-    cycle = cycle_with_calibrated_errors(calibration.at_equal_parameter, solved, accuracy, motion)
+    cycle = cycle_with_calibrated_errors(calibration.errors_at_equal_parameter, solved, accuracy, motion)
     return replace(cycle, errors=replace(cycle.errors, period_error=calibration.period_error(accuracy)))
 
 
@@ -119,20 +116,19 @@ def solve_on_sufficient_mesh(
     equation that defines the same cycle on every mesh; by default the condition that its arc length is
     unchanged."""
     condition = condition or point.arc_length_condition(0.0)
-    for _ in range(BRANCH_MESH_SETTINGS.max_meshes):
-        if point.steps_since_measured:
+    count = BRANCH_MESH_SETTINGS.max_meshes_per_cycle
+    for _ in range(count):
+        if point.steps_since_error_measurement:
             point = with_measured_errors(point, accuracy)
         calibration = point.calibration
         if calibration.largest_weighted_error(accuracy) <= accuracy:
             return point
-        cheapest = calibration.cheapest_mesh(BRANCH_MESH_SETTINGS.planned_error_ratio * accuracy)
-        target = finer_orbit_mesh(calibration.mesh, regraded_coarser(cheapest, point.orbit))
+        cheapest = calibration.cheapest_mesh(BRANCH_MESH_SETTINGS.planned_error_per_accuracy * accuracy)
+        target = finer_orbit_mesh(calibration.mesh, coarser_regraded_mesh(cheapest, point.orbit))
         if not target.is_allowed:
             raise mesh_limit_error()
         point = solved_on_mesh(point, target, condition, accuracy)
-    raise MeshLimitReached(
-        f"none of {BRANCH_MESH_SETTINGS.max_meshes} successively finer meshes reaches the requested accuracy"
-    )
+    raise MeshLimitReached(f"none of {count} successively finer meshes reaches the requested accuracy")
 
 
 def solved_on_mesh(
@@ -145,24 +141,24 @@ def solved_on_mesh(
         mesh,
         point.cycle.converged_orbit,
         branch_newton_tolerance(accuracy),
-        allowed_matrix_distance(accuracy),
+        allowed_distance_from_matrix_orbit(accuracy),
     )
     tangent = tangent_at(solved.orbit, point.scale, point.unit_tangent, linearisation_of(solved))
     old_derivatives = point.derivatives
     derivatives = replace(
         branch_derivatives(solved, point.scale, tangent),
         parameter_second_derivative=old_derivatives.parameter_second_derivative,
-        multiplier_rate=old_derivatives.multiplier_rate,
+        multiplier_change_per_arc_length=old_derivatives.multiplier_change_per_arc_length,
     )
     return replace(
         point,
-        cycle=cycle_with_calibrated_errors(point.calibration.at_equal_parameter, solved, accuracy),
+        cycle=cycle_with_calibrated_errors(point.calibration.errors_at_equal_parameter, solved, accuracy),
         derivatives=derivatives,
-        steps_since_measured=1,
+        steps_since_error_measurement=1,
     )
 
 
-def with_errors_within_accuracy(
+def cycles_with_errors_within_accuracy(
     measured: BranchCycle, points: Sequence[BranchCycle], accuracy: float, condition: BorderCondition | None
 ) -> list[BranchCycle]:
     """The cycles `points` of a branch, all with errors within the accuracy; raises Unsolvable. measured: the
@@ -174,16 +170,18 @@ def with_errors_within_accuracy(
     unchanged.
     """
     *between, end = points
-    total_length = end.arc_since_measured
+    total_length = end.arc_length_since_error_measurement
     end = with_measured_errors(end, accuracy)
     cycles = [
-        _with_interpolated_errors(measured, point, end, point.arc_since_measured / total_length, accuracy)
+        _with_interpolated_errors(
+            measured, point, end, point.arc_length_since_error_measurement / total_length, accuracy
+        )
         for point in between
     ]
     growth = expected_error_growth(measured, points, end)
     # Solved again only after the interpolation, because the interpolated errors belong to the old mesh.
     end = solve_on_sufficient_mesh(end, accuracy, condition)
-    end = replace(end, next_mesh=mesh_ahead(end, growth, accuracy))
+    end = replace(end, next_mesh=mesh_for_next_cycles(end, growth, accuracy))
     solved_again = [
         point
         if point.calibration.largest_weighted_error(accuracy) <= accuracy
@@ -197,9 +195,9 @@ def _cycle_on_mesh_of(end: BranchCycle, point: BranchCycle, accuracy: float) -> 
     """The cycle `point`, whose estimated errors exceed the accuracy, solved again on the mesh of the later
     cycle `end`, with the errors of `end`; on a mesh chosen by its own measured errors if `end` has the same
     mesh, or if the errors of `end` are too large; raises Unsolvable."""
-    if mesh_of(end.orbit) == mesh_of(point.orbit):
+    if mesh_of_orbit(end.orbit) == mesh_of_orbit(point.orbit):
         return solve_on_sufficient_mesh(point, accuracy)
-    solved = solved_on_mesh(point, mesh_of(end.orbit), point.arc_length_condition(0.0), accuracy)
+    solved = solved_on_mesh(point, mesh_of_orbit(end.orbit), point.arc_length_condition(0.0), accuracy)
     # With the fraction 1 the errors are the errors of `end`, because the cycle now has the mesh of `end`.
     estimated = _with_interpolated_errors(end, solved, end, 1.0, accuracy)
     is_accurate = estimated.calibration.largest_weighted_error(accuracy) <= accuracy
@@ -219,20 +217,24 @@ def _with_interpolated_errors(
     errors are multiplied by the growth, or measured if the growth is large or the parameter changes slowly.
     """
     # Errors are interpolated only between cycles on one mesh.
-    if mesh_of(start.orbit) != mesh_of(point.orbit):
+    if mesh_of_orbit(start.orbit) != mesh_of_orbit(point.orbit):
         start = end
         fraction = 1.0
     growth = np.array(
         [
-            measured.calibration.at_equal_parameter.scaled_on_branch(point.orbit).space_time_error_growth
+            measured.calibration.errors_at_equal_parameter.with_errors_scaled_on_branch(
+                point.orbit
+            ).space_time_error_growth
             for measured in (start, end)
         ]
     ).min(axis=0)
     # Near a fold, errors at equal parameter grow with 1/rate; interpolation over a long step misses this.
-    is_slow = abs(point.parameter_rate) < BRANCH_MESH_SETTINGS.min_rate_ratio_for_interpolation * min(
-        abs(measured.parameter_rate) for measured in (start, end)
+    is_slow = abs(
+        point.parameter_per_arc_length
+    ) < BRANCH_MESH_SETTINGS.min_slope_ratio_for_interpolation * min(
+        abs(measured.parameter_per_arc_length) for measured in (start, end)
     )
-    if is_slow or growth.max() > BRANCH_MESH_SETTINGS.max_growth_since_measurement:
+    if is_slow or growth.max() > BRANCH_MESH_SETTINGS.max_error_growth_since_measurement:
         return with_measured_errors(point, accuracy)
     calibration = start.calibration.interpolate(
         end.calibration,
@@ -241,6 +243,6 @@ def _with_interpolated_errors(
         MultiplierSensitivity.of_cycle(point.cycle.converged_orbit),
     )
     if growth.max() > BRANCH_MESH_SETTINGS.max_uncorrected_tail_growth:
-        calibration = calibration.grown(growth)
-    interpolated = with_calibration(point, calibration, accuracy)
-    return replace(interpolated, steps_since_measured=point.steps_since_measured)
+        calibration = calibration.with_grown_errors(growth)
+    interpolated = with_errors_of_calibration(point, calibration, accuracy)
+    return replace(interpolated, steps_since_error_measurement=point.steps_since_error_measurement)

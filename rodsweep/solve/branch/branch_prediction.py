@@ -17,7 +17,7 @@ from ..cycle.accuracy.cycle_errors import CycleErrors
 from ..cycle.cycles_along_parameter import interpolated_change
 from ..orbit.normalised_orbit import extrapolated_change_weights
 from ..orbit.orbit import Orbit
-from ..orbit.orbit_mesh import mesh_of
+from ..orbit.orbit_mesh import mesh_of_orbit
 from .bordered.scale import ArcLengthScale
 
 
@@ -25,7 +25,7 @@ from .bordered.scale import ArcLengthScale
 class BranchPredictionSettings:
     """Settings for the prediction of cycles of a branch."""
 
-    min_cosine: float = 0.2
+    min_cosine_between_tangents: float = 0.2
     """An earlier cycle is used only if the cosine of the angle between its tangent and the tangent at the
     last cycle is at least this number: beyond, the arc length along the last tangent is no variable."""
 
@@ -45,13 +45,14 @@ class PreviousCycle:
 
 
 class HermiteNode(NamedTuple):
-    """An earlier cycle on the mesh of the last cycle. position: arc length along the tangent at the last
-    cycle, negative behind it. difference: orbit values and parameter coordinate minus those of the last
-    cycle, (N + 1,). slope: their derivative with respect to the position, (N + 1,)."""
+    """An earlier cycle on the mesh of the last cycle. arc_length: arc length along the tangent at the last
+    cycle, negative behind it. difference_from_last_cycle: orbit values and parameter coordinate minus those
+    of the last cycle, (N + 1,). difference_per_arc_length: their derivative with respect to the position, (N
+    + 1,)."""
 
-    position: float
-    difference: Array
-    slope: Array
+    arc_length: float
+    difference_from_last_cycle: Array
+    difference_per_arc_length: Array
 
 
 def hermite_nodes(
@@ -66,8 +67,8 @@ def hermite_nodes(
             break
         datum = _hermite_node(orbit, scale, unit_tangent, cycle)
         # The cycles must lie in order along the tangent; the nearest needs progress only.
-        last_position = data[-1].position if data else 0.0
-        if datum is None or not datum.position < last_position:
+        last_position = data[-1].arc_length if data else 0.0
+        if datum is None or not datum.arc_length < last_position:
             break
         data.append(datum)
     return data
@@ -78,14 +79,14 @@ def _hermite_node(
 ) -> HermiteNode | None:
     """The earlier cycle `cycle` as a datum for predictions from `orbit`; None if the branch has turned too
     far between the two. scale, unit_tangent: as in `hermite_nodes`, the latter (3,)."""
-    mesh = mesh_of(orbit)
+    mesh = mesh_of_orbit(orbit)
     name = scale.parameter_name
     earlier = mesh.interpolated_orbit(cycle.orbit)
     # Values and tangents on one mesh: the polynomial combines them node by node.
     slope = np.append(interpolated_change(cycle.orbit, cycle.tangent[:-1], mesh), cycle.tangent[-1])
     derivative = scale.directional_derivative(earlier, slope)
     rate = float(unit_tangent @ derivative)
-    if not rate > BRANCH_PREDICTION_SETTINGS.min_cosine * np.linalg.norm(derivative):
+    if not rate > BRANCH_PREDICTION_SETTINGS.min_cosine_between_tangents * np.linalg.norm(derivative):
         return None
     position = float(unit_tangent @ (scale.components(earlier) - scale.components(orbit)))
     coordinate_change = earlier.form.rod.coordinate(name) - orbit.form.rod.coordinate(name)
@@ -95,10 +96,17 @@ def _hermite_node(
 def predicted_change(tangent: Array, data: Sequence[HermiteNode], length: float) -> Array:
     """Predicted change, (N + 1,), of orbit values and parameter coordinate over the arc length `length`.
     tangent: tangent with unit arc length at the last cycle, (N + 1,). data: earlier cycles."""
-    positions = [0.0, *(datum.position for datum in data for _ in range(2))]
+    positions = [0.0, *(datum.arc_length for datum in data for _ in range(2))]
     is_slope = [1.0, *(order for _ in data for order in (0.0, 1.0))]
     weights = extrapolated_change_weights(np.array(positions), np.array(is_slope), length)
-    changes = [tangent, *(change for datum in data for change in (datum.difference, datum.slope))]
+    changes = [
+        tangent,
+        *(
+            change
+            for datum in data
+            for change in (datum.difference_from_last_cycle, datum.difference_per_arc_length)
+        ),
+    ]
     result: Array = weights @ np.array(changes)
     return result
 
@@ -110,6 +118,11 @@ def parameter_change_polynomial(
     tangent: as in `predicted_change`, (N + 1,)."""
     degree = 1 + 2 * len(data)
     lengths = np.linspace(*ends, degree + 1)
-    last_components = [HermiteNode(datum.position, datum.difference[-1:], datum.slope[-1:]) for datum in data]
+    last_components = [
+        HermiteNode(
+            datum.arc_length, datum.difference_from_last_cycle[-1:], datum.difference_per_arc_length[-1:]
+        )
+        for datum in data
+    ]
     changes = [predicted_change(tangent[-1:], last_components, length)[0] for length in lengths]
     return Polynomial.fit(lengths, changes, degree)

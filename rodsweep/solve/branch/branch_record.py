@@ -10,8 +10,8 @@ from ..unsolvable import Unsolvable
 from .arc_length_step import BranchCycle
 from .bordered.condition import BorderCondition
 from .branch_curve import BranchCurve, BranchEnd, StoredBranchCycle
-from .branch_mesh_choice import with_errors_within_accuracy
-from .special.special_point import SpecialKind, SpecialPoint
+from .branch_mesh_choice import cycles_with_errors_within_accuracy
+from .special.special_point import SpecialPoint, SpecialPointKind
 from .status import BranchEndReason, reason_of_failure
 
 
@@ -21,12 +21,12 @@ def branch_end_point(point: BranchCycle, reason: BranchEndReason, message: str =
     measures = point.cycle.measures
     value = getattr(point.orbit.form.rod, point.scale.parameter_name)
     return SpecialPoint(
-        kind=SpecialKind.end,
+        kind=SpecialPointKind.end,
         parameter_value=value,
         period=measures.period,
         tip_y_max=measures.tip_y_max,
         error=nan,
-        reason=reason,
+        end_reason=reason,
         message=message,
     )
 
@@ -49,7 +49,7 @@ class BranchRecord:
         self._unmeasured.append(point)
         self.curve.points.append(StoredBranchCycle.from_cycle(point, self.accuracy))
 
-    def assign_errors(self, condition: BorderCondition | None = None) -> BranchCycle:
+    def bring_errors_within_accuracy(self, condition: BorderCondition | None = None) -> BranchCycle:
         """Measures or interpolates the errors of all cycles appended since the last measurement, and solves
         cycles again on other meshes until all errors are within the accuracy. Returns the last cycle; raises
         Unsolvable.
@@ -58,7 +58,7 @@ class BranchRecord:
         length is unchanged.
         """
         if self._unmeasured:
-            points = with_errors_within_accuracy(
+            points = cycles_with_errors_within_accuracy(
                 self._last_measured, self._unmeasured, self.accuracy, condition
             )
             self.curve.points[-len(points) :] = [
@@ -68,17 +68,17 @@ class BranchRecord:
             self._unmeasured = []
         return self._last_measured
 
-    def end(self, end: BranchEnd) -> None:
+    def append_end(self, end: BranchEnd) -> None:
         """Appends the end of the branch, with errors. If the errors of the last cycles cannot be brought
         within the accuracy, these cycles are removed and the branch ends at the last measured cycle."""
         curve = self.curve
         try:
-            self.assign_errors()
+            self.bring_errors_within_accuracy()
         except Unsolvable as reason:
             curve.remove_last_cycles(len(self._unmeasured))
             message = f"the errors of the next cycles cannot be measured: {reason}"
             special = branch_end_point(self._last_measured, reason_of_failure(reason), message)
-            end = replace(end, special_point=special, complete=False)
+            end = replace(end, special_point=special, is_complete=False)
         special = end.special_point
         last_point = curve.points[-1]
         if np.isnan(special.error):
@@ -88,4 +88,4 @@ class BranchRecord:
             special = replace(
                 special, period_error=errors.period_error, tip_y_max_error=errors.amplitude_error
             )
-        curve.end(replace(end, special_point=special))
+        curve.append_end(replace(end, special_point=special))

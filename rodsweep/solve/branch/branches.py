@@ -13,13 +13,13 @@ from ...discretization.stress.form import has_small_rotational_drag
 from ...model.crushing import uncrushed_interval
 from ...model.rod import Rod
 from ..changes.threshold_kinds import Threshold
-from ..changes.thresholds_along_path import ThresholdSearchResult, find_axis_crossings
+from ..changes.thresholds_along_path import ThresholdSearchResult, find_imaginary_axis_crossings
 from ..orbit.matrix.workspace import NewtonWorkspace
-from ..point_outcome import FAILURES, cause_of, outcome_or_failure
+from ..point_outcome import FAILURE_EXCEPTIONS, cause_of, outcome_or_failure
 from .branch_curve import BranchCurve
 from .branch_limits import BranchLimits, BranchRequest
 from .branch_search import BranchSearch
-from .regions_beyond import regions_beyond
+from .regions_beyond_range import regions_beyond_range
 from .special.special_point import SPECIAL_POINT_SETTINGS, SpecialPoint
 from .start.hopf_point import HopfBranchStart, accuracy_near_hopf_points, hopf_branch_start
 from .status import BranchEndReason, BranchStatus
@@ -32,7 +32,7 @@ class BranchSettings:
     crushing_margin: float = 1e-4
     """A branch ends where the relative distance of F from the crushing force is this number, because the rod
     at rest is then almost crushed. Branches along F, k1 or taper have this margin."""
-    min_coordinate_unit_ratio: float = 0.01
+    min_coordinate_unit_per_range_length: float = 0.01
     """Smallest unit of the parameter coordinate in arc lengths, divided by the length of the range. With the
     coordinate itself as the unit, steps towards gamma3 = 0 become ever shorter and do not reach 0."""
     max_cycles_per_diagram_row: int = 500
@@ -45,20 +45,23 @@ BRANCH_SETTINGS = BranchSettings()
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BranchesOfRod:
     """Outcome of the task `branch` for one rod. crossings: Hopf points within the range, by ascending
-    parameter. unstable_at_start: number of unstable modes of the straight rod at the start, -1 if unknown.
-    proved: whether `crossings` is proved complete. curves: all branches. seconds: computing time."""
+    parameter. unstable_modes_at_start: number of unstable modes of the straight rod at the start, -1 if
+    unknown. are_crossings_proved_complete: whether `crossings` is proved complete. curves: all branches.
+    seconds: computing time."""
 
     status: BranchStatus
+    """Status of the first problem, in the order of `BranchStatus`; `ok` without a problem."""
     message: str = ""
+    """Sentence parts for the user about all problems; "" without a problem."""
     seconds: float = 0.0
     crossings: tuple[Threshold, ...] = ()
-    unstable_at_start: int = -1
-    proved: bool = False
+    unstable_modes_at_start: int = -1
+    are_crossings_proved_complete: bool = False
     curves: tuple[BranchCurve, ...] = field(default_factory=tuple)
     followed_range: tuple[float, float] = (nan, nan)
     """Smallest and largest value of the parameter up to which branches are followed, in and beyond the range:
     a branch that enters the range but was not found passes one of these values."""
-    folds_beyond: tuple[SpecialPoint, ...] = ()
+    folds_beyond_range: tuple[SpecialPoint, ...] = ()
     """Located folds of the branches followed beyond the range."""
 
 
@@ -72,7 +75,7 @@ def solve_branches(
     points `starts`; a failure becomes a status, never an exception. The rod's own value of this parameter is
     not used. workspace: memory of Newton's matrices, which rods may share; None: a new workspace."""
     memory = workspace or NewtonWorkspace()
-    memory.limit_work(request.max_work)
+    memory.limit_work(request.max_multiplications)
     try:
         return outcome_or_failure(
             lambda: _solve_branches_or_raise(rod, request, memory, starts),
@@ -102,17 +105,17 @@ def _solve_branches_or_raise(
     )
     if not low < high:
         reason = f"the force crushes the rod everywhere in the range of {request.along}"
-        return BranchesOfRod(status=BranchStatus.ok, message=reason, proved=True)
+        return BranchesOfRod(status=BranchStatus.ok, message=reason, are_crossings_proved_complete=True)
     # The rod's own value along the path may be one at which it is crushed.
     path = ParameterPath(rod.with_values(**{request.along: low}), request.along)
-    crossings = find_axis_crossings(path, low, high, request.certify)
+    crossings = find_imaginary_axis_crossings(path, low, high, request.certify)
     ends = (path.coordinate(low), path.coordinate(high))
     # The smallest drag of the range is at one of its ends.
     is_omega_always_unknown = any(has_small_rotational_drag(path.rod_at(end)) for end in ends)
     # The coordinate may pass 0, where a relative step would have no length.
-    unit = BRANCH_SETTINGS.min_coordinate_unit_ratio * abs(ends[1] - ends[0])
+    unit = BRANCH_SETTINGS.min_coordinate_unit_per_range_length * abs(ends[1] - ends[0])
     hopfs, failures = _hopf_branch_starts(path, crossings, is_omega_always_unknown, unit)
-    end_reasons = _end_reason(low > request.start), _end_reason(high < request.stop)
+    end_reasons = _range_end_reason(low > request.start), _range_end_reason(high < request.stop)
     # The compliance 1/k decreases with k, so both ends and their reasons change places.
     if path.is_compliance_path:
         ends = ends[::-1]
@@ -121,7 +124,7 @@ def _solve_branches_or_raise(
     limits = BranchLimits(
         hopfs, ends, end_reasons, accuracy, request.cycles, workspace, unit, is_omega_always_unknown
     )
-    regions = regions_beyond(path, limits, BRANCH_SETTINGS.crushing_margin)
+    regions = regions_beyond_range(path, limits, BRANCH_SETTINGS.crushing_margin)
     search = BranchSearch(limits, request.along, regions)
     search.follow_all(starts)
     status, message = _status_and_message(crossings, search.curves, failures + search.failures, request)
@@ -130,15 +133,15 @@ def _solve_branches_or_raise(
         message=message,
         crossings=crossings.thresholds,
         # A search that began later has counted at another value.
-        unstable_at_start=crossings.unstable_at_start if crossings.searched_interval[0] == low else -1,
-        proved=crossings.proved_to_the_end,
+        unstable_modes_at_start=crossings.unstable_at_start if crossings.searched_interval[0] == low else -1,
+        are_crossings_proved_complete=crossings.is_proved_to_the_end,
         curves=tuple(search.curves),
         followed_range=search.followed_range,
-        folds_beyond=tuple(search.folds_beyond),
+        folds_beyond_range=tuple(search.folds_beyond_range),
     )
 
 
-def _end_reason(is_crushed: bool) -> BranchEndReason:
+def _range_end_reason(is_crushed: bool) -> BranchEndReason:
     """Reason for the end of a branch at an end of the range, at which the force crushes the rod or not."""
     return BranchEndReason.crushed if is_crushed else BranchEndReason.range_end
 
@@ -153,7 +156,7 @@ def _hopf_branch_starts(
     for crossing in crossings.thresholds:
         try:
             hopfs.append(hopf_branch_start(path, crossing, is_omega_always_unknown, unit))
-        except FAILURES as error:
+        except FAILURE_EXCEPTIONS as error:
             place = f"{path.name} = {crossing.value:.12g}"
             failures.append(f"no branch is followed from the Hopf point at {place}: {cause_of(error)}")
     return hopfs, failures
@@ -177,16 +180,16 @@ def _status_and_message(
     is_inaccurate = any(
         point.error > tolerance * abs(point.parameter_value) or point.is_unlocated for point in special_points
     )
-    if any(not curve.are_circle_crossings_explained for curve in curves):
+    if any(not curve.are_unit_circle_crossings_explained for curve in curves):
         messages.append("multipliers cross the unit circle where no special point was found")
     applies_by_status = {
         BranchStatus.stopped: bool(failures)
-        or any(not curve.complete and not curve.list_full for curve in curves),
-        BranchStatus.list_full: any(curve.list_full for curve in curves)
+        or any(not curve.is_complete and not curve.reached_max_cycles for curve in curves),
+        BranchStatus.list_full: any(curve.reached_max_cycles for curve in curves)
         or len(special_points) > request.special,
         BranchStatus.special_undecided: is_inaccurate
-        or any(not curve.are_circle_crossings_explained for curve in curves),
-        BranchStatus.search_open: crossings.ended_early or (request.certify and not crossings.proved),
+        or any(not curve.are_unit_circle_crossings_explained for curve in curves),
+        BranchStatus.search_open: crossings.ended_early or (request.certify and not crossings.is_proved),
     }
     status = next((status for status, applies in applies_by_status.items() if applies), BranchStatus.ok)
     return status, "; ".join(filter(None, [*failures, *messages, crossings.doubt_text]))

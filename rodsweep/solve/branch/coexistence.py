@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ...arrays import Array
 from ...model.rod import Rod
 from ...wording import counted
-from ..changes.diagram.rows import DiagramRow, RodClass, RowRequest, crushed_row, solve_row
+from ..changes.diagram.rows import DiagramRow, RowRequest, StabilityClass, crushed_row, solve_row
 from ..changes.status import ThresholdStatus
 from ..orbit.matrix.workspace import NewtonWorkspace
 from .branch_curve import BranchCurve
@@ -42,16 +42,17 @@ class StableStates(IntEnum):
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CoexistenceRow:
     """Outcome for a row of a phase diagram. straight_rod_row: outcome for the straight rod. stable_states:
-    `StableStates` at each parameter value, (values,). special_points: special points of all branches.
-    followed_range: smallest and largest value of the parameter up to which branches are followed, as in
-    `BranchesOfRod`. message: for the user, or "". seconds: computing time."""
+    `StableStates` at each parameter value, (values,). special_points: special points of all branches. status:
+    of the search for thresholds if it has a problem, otherwise of the branches. followed_range: smallest and
+    largest value of the parameter up to which branches are followed, as in `BranchesOfRod`. message: for the
+    user, or "". seconds: computing time."""
 
     straight_rod_row: DiagramRow
     stable_states: NDArray[np.int8]
     special_points: tuple[SpecialPoint, ...] = ()
     status: CoexistenceStatus
     followed_range: tuple[float, float] = (math.nan, math.nan)
-    folds_beyond: tuple[SpecialPoint, ...] = ()
+    folds_beyond_range: tuple[SpecialPoint, ...] = ()
     """Located folds of the branches followed beyond the range of the row."""
     message: str = ""
     seconds: float = 0.0
@@ -63,21 +64,20 @@ def solve_coexistence(
     workspace: NewtonWorkspace | None = None,
     starts: Sequence[SpecialPoint] = (),
 ) -> CoexistenceRow:
-    """Stable states along one row of a phase diagram; a failure becomes a status, never an exception. At F =
-    0 there is no cycle.
-
-    workspace: memory of Newton's matrices. starts: special points from which further branches are followed.
-    """
+    """Stable states along one row of a phase diagram; a failure becomes a status, never an exception.
+    workspace: memory of Newton's matrices. starts: special points from which further branches are
+    followed."""
+    values = request.parameter_values
     row = solve_row(rod, request)
     start = _first_searched_value(row, request)
     branches = solve_branches(rod, _branch_request(start, request), workspace, starts)
-    cycles = stable_cycles_at(request.values, branches, request.certify)
-    cycles[request.values < start] = -1
-    forces = request.values if request.parameter_name == "F" else np.full(len(request.values), rod.F)
+    cycles = existence_of_stable_cycle(values, branches, request.certify)
+    cycles[values < start] = -1
+    forces = values if request.parameter_name == "F" else np.full(len(values), rod.F)
     # Without a force the elastic energy decreases until the rod is straight: there is no cycle.
     cycles[forces == 0] = 0
-    states = stable_states(row.rod_class, cycles)
-    undecided = request.values[(states == StableStates.undecided) & (row.rod_class != RodClass.undecided)]
+    states = stable_states(row.stability_class, cycles)
+    undecided = values[(states == StableStates.undecided) & (row.stability_class != StabilityClass.undecided)]
     status, message = _status_and_message_of_row(row, branches, request.max_special_points, undecided)
     return CoexistenceRow(
         straight_rod_row=row,
@@ -85,14 +85,14 @@ def solve_coexistence(
         special_points=special_points_of(branches),
         status=status,
         followed_range=branches.followed_range,
-        folds_beyond=branches.folds_beyond,
+        folds_beyond_range=branches.folds_beyond_range,
         message="; ".join(filter(None, [message, _undecided_values_text(request.parameter_name, undecided)])),
         seconds=row.seconds + branches.seconds,
     )
 
 
 def crushed_coexistence_row(values: Array) -> CoexistenceRow:
-    """A row in which the force crushes the rod at all `values`, (values,): it has no cycles."""
+    """A row in which the force crushes the rod at all `parameter_values`, (values,): it has no cycles."""
     states = np.full(len(values), StableStates.crushed, dtype=np.int8)
     return CoexistenceRow(
         straight_rod_row=crushed_row(values), stable_states=states, status=CoexistenceStatus.ok
@@ -107,7 +107,7 @@ def row_branches(
 ) -> BranchesOfRod:
     """All branches of cycles that start at Hopf points of a row, and the branches through the special points
     `starts`. workspace: memory of Newton's matrices."""
-    start = float(request.values[0])
+    start = float(request.parameter_values[0])
     if request.parameter_name == "F" and start < 0:
         start = _first_searched_value(solve_row(rod, request), request)
     return solve_branches(rod, _branch_request(start, request), workspace, starts)
@@ -116,9 +116,11 @@ def row_branches(
 def _first_searched_value(row: DiagramRow, request: RowRequest) -> float:
     """Value of the parameter from which a row was searched for thresholds: later than the first value if no
     a-priori bound or no mesh covers a strong pull."""
-    first = row.thresholds.search_result.searched_interval[0]
-    starts_late = row.thresholds.search_result.ended_early and request.values[0] < first < request.values[-1]
-    return float(first if starts_late else request.values[0])
+    result = row.thresholds.search_result
+    values = request.parameter_values
+    first = result.searched_interval[0]
+    starts_late = result.ended_early and values[0] < first < values[-1]
+    return float(first if starts_late else values[0])
 
 
 def _branch_request(start: float, request: RowRequest) -> BranchRequest:
@@ -126,7 +128,7 @@ def _branch_request(start: float, request: RowRequest) -> BranchRequest:
     return BranchRequest(
         along=request.parameter_name,
         start=start,
-        stop=float(request.values[-1]),
+        stop=float(request.parameter_values[-1]),
         accuracy=request.cycle_accuracy,
         certify=request.certify,
         cycles=BRANCH_SETTINGS.max_cycles_per_diagram_row,
@@ -137,13 +139,15 @@ def _branch_request(start: float, request: RowRequest) -> BranchRequest:
 def special_points_of(branches: BranchesOfRod) -> tuple[SpecialPoint, ...]:
     """Special points of all branches of a rod, in one tuple, branch after branch, each only once."""
     return tuple(
-        point for curve in branches.curves for point in curve.special_points[: -1 if curve.closed else None]
+        point
+        for curve in branches.curves
+        for point in curve.special_points[: -1 if curve.is_closed else None]
     )
 
 
 def _undecided_values_text(name: str, values: Array) -> str:
-    """Message about the `values` of the parameter `name`, (n,), at which the stable states are undecided
-    because of the cycles; empty for n = 0."""
+    """Message about the `parameter_values` of the parameter `name`, (n,), at which the stable states are
+    undecided because of the cycles; empty for n = 0."""
     if not len(values):
         return ""
     count = counted(len(values), "value")
@@ -172,29 +176,32 @@ def _status_and_message_of_row(
 @dataclass(frozen=True, slots=True)
 class StabilityInterval:
     """Interval of the parameter that a branch covers between two successive special points, with the
-    stability of the cycles. certain_range, possible_range: the interval, shortened and extended by the errors
-    of the special points. stability: 1 if the cycles are stable, 0 if unstable, -1 if undecided."""
+    stability of the cycles. range_shortened_by_errors, range_extended_by_errors: the interval, shortened and
+    extended by the errors of the special points. stability: 1 if the cycles are stable, 0 if unstable, -1 if
+    undecided."""
 
-    certain_range: tuple[float, float]
-    possible_range: tuple[float, float]
+    range_shortened_by_errors: tuple[float, float]
+    range_extended_by_errors: tuple[float, float]
     stability: int
 
 
-def stable_cycles_at(values: Array, branches: BranchesOfRod, certify: bool) -> NDArray[np.int8]:
+def existence_of_stable_cycle(values: Array, branches: BranchesOfRod, certify: bool) -> NDArray[np.int8]:
     """Existence of a stable cycle at each parameter value, (values,): 1 if a stable cycle exists, 0 if no
     branch has a stable cycle, -1 if undecided. branches: all branches of the row. certify: whether 0 requires
     a proof that no Hopf point is missing."""
     is_complete = branches.status in (BranchStatus.ok, BranchStatus.special_undecided)
-    is_known = is_complete and (branches.proved or not certify)
+    is_known = is_complete and (branches.are_crossings_proved_complete or not certify)
     existence = np.full(len(values), 0 if is_known else -1, dtype=np.int8)
     intervals = [interval for curve in branches.curves for interval in stability_intervals(curve)]
     # No stable cycle is claimed where the stability is undecided, or within the error of an interval's end.
     for interval in intervals:
         if interval.stability:
-            existence[(values >= interval.possible_range[0]) & (values <= interval.possible_range[1])] = -1
+            low, high = interval.range_extended_by_errors
+            existence[(values >= low) & (values <= high)] = -1
     for interval in intervals:
         if interval.stability > 0:
-            existence[(values > interval.certain_range[0]) & (values < interval.certain_range[1])] = 1
+            low, high = interval.range_shortened_by_errors
+            existence[(values > low) & (values < high)] = 1
     return existence
 
 
@@ -204,11 +211,10 @@ def stability_intervals(curve: BranchCurve) -> list[StabilityInterval]:
     intervals = []
     for first, second in zip(curve.special_points[:-1], curve.special_points[1:], strict=True):
         stabilities = {
-            point.min_unstable_multipliers
+            point.min_unstable_multiplier_count
             for point in curve.points[first.index_of_cycle_before + 1 : second.index_of_cycle_before + 1]
         } - {-1}
-        # Stability changes at special points only. If cycles between two special points disagree, it is
-        # undecided.
+        # Stability changes at special points only; if cycles between two of them disagree, it is undecided.
         stability = -1
         if stabilities == {0}:
             stability = 1
@@ -225,19 +231,20 @@ def stability_intervals(curve: BranchCurve) -> list[StabilityInterval]:
 
 
 def _sign_of_interval_shortening(point: SpecialPoint) -> int:
-    """Sign of the error of a special point in `certain_range`: 1 (the interval is shortened), or -1 at an end
-    of the parameter range, where the branch has a cycle exactly at the end (the interval is extended)."""
-    return -1 if point.reason is BranchEndReason.range_end else 1
+    """Sign of the error of a special point in `range_shortened_by_errors`: 1 (the interval is shortened), or
+    -1 at an end of the parameter range, where the branch has a cycle exactly at the end (the interval is
+    extended)."""
+    return -1 if point.end_reason is BranchEndReason.range_end else 1
 
 
 def stable_states(rod_classes: NDArray[np.int8], cycles: NDArray[np.int8]) -> NDArray[np.int8]:
-    """`StableStates` at each parameter value, (values,). rod_classes: `RodClass` of the straight rod at each
-    parameter value, (values,). cycles: 1 if a stable cycle exists at the parameter value, 0 if none exists,
-    -1 if undecided, (values,)."""
-    straight = (rod_classes == RodClass.monotone) | (rod_classes == RodClass.oscillatory)
+    """`StableStates` at each parameter value, (values,). rod_classes: `StabilityClass` of the straight rod at
+    each parameter value, (values,). cycles: 1 if a stable cycle exists at the parameter value, 0 if none
+    exists, -1 if undecided, (values,)."""
+    straight = (rod_classes == StabilityClass.monotone) | (rod_classes == StabilityClass.oscillatory)
     states = np.where(straight, StableStates.straight, StableStates.neither_known).astype(np.int8)
     # 1 for a straight rod plus 2 for a cycle is 3, both.
     states[cycles > 0] += StableStates.cycle
-    states[(cycles < 0) | (rod_classes == RodClass.undecided)] = StableStates.undecided
-    states[rod_classes == RodClass.crushed] = StableStates.crushed
+    states[(cycles < 0) | (rod_classes == StabilityClass.undecided)] = StableStates.undecided
+    states[rod_classes == StabilityClass.crushed] = StableStates.crushed
     return states

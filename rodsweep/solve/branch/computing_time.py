@@ -14,17 +14,17 @@ from dataclasses import dataclass
 class ComputingTimeSettings:
     """Exponents of the model of the computing time, fitted to measured times."""
 
-    distance_exponent: float = 0.75
+    hopf_distance_exponent: float = 0.75
     """Exponent of the relative distance d/D from the Hopf point in the fraction of the computing time of one
     branch."""
-    length_exponent: float = 0.5
+    branch_length_exponent: float = 0.5
     """Exponent of the length D of a branch in the computing time of this branch."""
 
 
 COMPUTING_TIME_SETTINGS = ComputingTimeSettings()
 
 
-ParameterRange = tuple[float, float]
+ParameterCoordinateRange = tuple[float, float]
 """Smallest and largest coordinate of the continuation parameter."""
 
 
@@ -33,15 +33,17 @@ def fraction_done(start: float, current: float, expected_end: float) -> float:
     `current`. start, expected_end: parameter coordinates at the start of the branch and at its expected
     end."""
     fraction = (current - start) / (expected_end - start) if expected_end != start else 1.0
-    return min(max(fraction, 0.0), 1.0) ** COMPUTING_TIME_SETTINGS.distance_exponent
+    return min(max(fraction, 0.0), 1.0) ** COMPUTING_TIME_SETTINGS.hopf_distance_exponent
 
 
-def fractions_before_branches(starts: Sequence[float], parameter_range: ParameterRange) -> list[float]:
+def time_fractions_before_branches(
+    starts: Sequence[float], parameter_range: ParameterCoordinateRange
+) -> list[float]:
     """Estimated fractions of the total computing time of all branches that have passed before each branch,
     and after the last branch, (branches + 1,). starts: parameter coordinates of the Hopf points where the
     branches start. parameter_range: range of the parameter coordinate."""
     computing_times = [
-        max(abs(end - start) for end in parameter_range) ** COMPUTING_TIME_SETTINGS.length_exponent
+        max(abs(end - start) for end in parameter_range) ** COMPUTING_TIME_SETTINGS.branch_length_exponent
         for start in starts
     ]
     times_before = [sum(computing_times[:branch_index]) for branch_index in range(len(computing_times) + 1)]

@@ -12,22 +12,22 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...arrays import Array
-from ..cycle.accuracy.refinement import allowed_matrix_distance
-from ..orbit.mesh_choice import cheapest_stage_count, mesh_from_tails
+from ..cycle.accuracy.newton_tolerances import allowed_distance_from_matrix_orbit
+from ..orbit.mesh_choice import cheapest_stage_count, mesh_from_coefficient_tails
 from ..orbit.newton import relative_change
 from ..orbit.orbit import Orbit
 from ..unsolvable import Unsolvable, WorkLimitReached
 from .arc_length_step import BranchCycle, tangent_at
 from .bordered.condition import BorderCondition, moved_orbit
 from .bordered.matrix import BorderedMatrix
-from .bordered.scale import ArcLengthScale, deflection_of
+from .bordered.scale import ArcLengthScale, deflection_at_time_zero
 from .branch_continuation import follow_from_cycle
 from .branch_curve import BranchCurve
 from .branch_errors import branch_newton_tolerance
 from .branch_limits import BranchLimits
-from .branch_mesh_choice import first_measured_cycle
+from .branch_mesh_choice import first_cycle_with_measured_errors
 from .settings import BRANCH_START_SETTINGS
-from .special.special_point import SpecialKind, SpecialPoint
+from .special.special_point import SpecialPoint, SpecialPointKind
 from .start.first_asymmetric_cycle import ASYMMETRIC_START_SETTINGS
 from .start.first_cycle import DEFLECTION_UNIT_VECTOR
 
@@ -36,10 +36,10 @@ from .start.first_cycle import DEFLECTION_UNIT_VECTOR
 class DetachedBranchSettings:
     """Settings for the first cycle of a detached branch."""
 
-    first_distances: tuple[float, ...] = (0.02, 0.005, 0.001, 2e-4)
+    first_cycle_arc_lengths: tuple[float, ...] = (0.02, 0.005, 0.001, 2e-4)
     """Arc lengths of the first cycle from the known special point, tried in this order: 0.02 is the first
     step length on all branches, and a small closed branch needs a shorter step."""
-    max_prediction_error_ratio: float = 0.5
+    max_prediction_error_per_step_length: float = 0.5
     """Largest difference between the first cycle and its prediction on the tangent, divided by the length of
     this step. If the difference is larger, the branch turns by about a right angle on this step, and the
     cycle may lie beyond another fold."""
@@ -63,7 +63,7 @@ def follow_detached_branch(start: SpecialPoint, name: str, limits: BranchLimits)
         raise Unsolvable(start.message or "the cycle of the special point is not known")
     if not start.orbit.is_symmetric:
         limits = replace(limits, accuracy=min(limits.accuracy, ASYMMETRIC_START_SETTINGS.max_accuracy))
-    return follow_in_both_directions(_first_cycle(start.orbit, name, limits), limits)
+    return follow_in_both_directions(_first_cycle_before_special_point(start.orbit, name, limits), limits)
 
 
 def complete_branch_through(
@@ -72,7 +72,7 @@ def complete_branch_through(
     """The branch of `follow_detached_branch` that passes `start` and is complete, solved to a higher accuracy
     if necessary; an incomplete one if no accuracy gives a complete one. None for a branch with `is_known`.
     Raises Unsolvable if no branch is found, or if the branch found does not pass `start`."""
-    must_pass_start = limits.locates_special_points or start.kind == SpecialKind.fold
+    must_pass_start = limits.locates_special_points or start.kind == SpecialPointKind.fold
     incomplete: BranchCurve | None = None
     reason: Unsolvable | None = None
     accuracy = limits.accuracy
@@ -89,7 +89,7 @@ def complete_branch_through(
             if is_known(curve):
                 return None
             if not must_pass_start or lies_on_a_branch(start, [curve]):
-                if curve.complete or curve.list_full:
+                if curve.is_complete or curve.reached_max_cycles:
                     return curve
                 incomplete = incomplete or curve
         accuracy *= DETACHED_BRANCH_SETTINGS.successive_accuracy_ratio
@@ -101,14 +101,16 @@ def complete_branch_through(
 def follow_in_both_directions(first_cycle: BranchCycle, limits: BranchLimits) -> BranchCurve:
     """The branch through the cycle `first_cycle`, which has measured errors, to its ends in both
     directions."""
-    curve = follow_from_cycle(BranchCurve(start_hopf=-1), first_cycle, limits)
-    if not curve.closed:
+    curve = follow_from_cycle(BranchCurve(start_hopf_index=-1), first_cycle, limits)
+    if not curve.is_closed:
         # The first cycle is part of both directions but counts once.
         remaining_limits = replace(limits, max_cycles=limits.max_cycles - len(curve.points) + 1)
         backward_curve = follow_from_cycle(
-            BranchCurve(start_hopf=-1), reversed_cycle(first_cycle), remaining_limits
+            BranchCurve(start_hopf_index=-1),
+            cycle_in_opposite_branch_direction(first_cycle),
+            remaining_limits,
         )
-        curve = backward_curve.joined_with(curve)
+        curve = backward_curve.joined_with_forward_branch(curve)
     return curve
 
 
@@ -117,14 +119,14 @@ def lies_on_a_branch(special: SpecialPoint, curves: Iterable[BranchCurve]) -> bo
     return any(special.is_same_as(other) for curve in curves for other in curve.special_points)
 
 
-def _first_cycle(orbit: Orbit, name: str, limits: BranchLimits) -> BranchCycle:
+def _first_cycle_before_special_point(orbit: Orbit, name: str, limits: BranchLimits) -> BranchCycle:
     """A cycle just before the special point with the orbit `orbit`, as the first cycle of a branch that leads
     through this point; raises Unsolvable."""
     tangent = _tangent_towards_larger_cycles(orbit, name, limits)
     reason: Unsolvable | None = None
-    for distance in DETACHED_BRANCH_SETTINGS.first_distances:
+    for distance in DETACHED_BRANCH_SETTINGS.first_cycle_arc_lengths:
         try:
-            return _cycle_on_other_side(tangent, distance, limits)
+            return _cycle_behind_orbit(tangent, distance, limits)
         except WorkLimitReached:
             raise
         except Unsolvable as error:
@@ -134,25 +136,25 @@ def _first_cycle(orbit: Orbit, name: str, limits: BranchLimits) -> BranchCycle:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _Tangent:
-    """Tangent of a branch at the orbit `orbit` with unit arc length in the units of `scale`. change: change
-    of orbit values and parameter coordinate, (N + 1,). side: this change in components (deflection, log
-    period, parameter), (3,)."""
+    """Tangent of a branch at the orbit `orbit` with unit arc length in the units of `scale`.
+    orbit_and_parameter_change: change of orbit values and parameter coordinate, (N + 1,). components: this
+    change in components (deflection, log period, parameter), (3,)."""
 
     orbit: Orbit
     scale: ArcLengthScale
-    change: Array
-    side: Array
+    orbit_and_parameter_change: Array
+    components: Array
 
 
 def _tangent_towards_larger_cycles(orbit: Orbit, name: str, limits: BranchLimits) -> _Tangent:
     """Tangent of a branch towards larger deflections, at an orbit on a mesh for the accuracy of the
     branch."""
-    mesh = mesh_from_tails(orbit, limits.accuracy, cheapest_stage_count(limits.accuracy))
+    mesh = mesh_from_coefficient_tails(orbit, limits.accuracy, cheapest_stage_count(limits.accuracy))
     orbit = mesh.interpolated_orbit(orbit)
     tip_y = abs(float(orbit.form.tip_coordinates(orbit.start_state)[1]))
     # The unit is given as a tip deflection; this ratio converts it to the deflection of the arc length.
     min_deflection_unit = (
-        abs(deflection_of(orbit)) * BRANCH_START_SETTINGS.min_amplitude_of_deflection_unit / tip_y
+        abs(deflection_at_time_zero(orbit)) * BRANCH_START_SETTINGS.amplitude_of_min_deflection_unit / tip_y
     )
     scale = ArcLengthScale.at_orbit(orbit, name, min_deflection_unit, limits.min_coordinate_unit)
     tangent = tangent_at(orbit, scale, DEFLECTION_UNIT_VECTOR, BorderedMatrix(orbit, scale, limits.workspace))
@@ -161,27 +163,34 @@ def _tangent_towards_larger_cycles(orbit: Orbit, name: str, limits: BranchLimits
     return _Tangent(orbit, scale, tangent / tangent_length, derivative / tangent_length)
 
 
-def _cycle_on_other_side(tangent: _Tangent, distance: float, limits: BranchLimits) -> BranchCycle:
+def _cycle_behind_orbit(tangent: _Tangent, distance: float, limits: BranchLimits) -> BranchCycle:
     """The cycle of a branch at the arc length `distance` behind the orbit of `tangent`, with measured errors;
     raises Unsolvable."""
     accuracy = limits.accuracy
-    condition = BorderCondition.at_arc_length(tangent.scale, tangent.side, tangent.orbit, -distance)
-    predicted = moved_orbit(tangent.orbit, tangent.scale.parameter_name, -distance * tangent.change)
-    solved_orbit = condition.solve_cycle(
-        predicted, branch_newton_tolerance(accuracy), limits.workspace, allowed_matrix_distance(accuracy)
+    condition = BorderCondition.at_arc_length(tangent.scale, tangent.components, tangent.orbit, -distance)
+    predicted = moved_orbit(
+        tangent.orbit, tangent.scale.parameter_name, -distance * tangent.orbit_and_parameter_change
     )
-    step_size = relative_change(tangent.orbit, distance * tangent.change[:-1])
+    solved_orbit = condition.solve_cycle(
+        predicted,
+        branch_newton_tolerance(accuracy),
+        limits.workspace,
+        allowed_distance_from_matrix_orbit(accuracy),
+    )
+    step_size = relative_change(tangent.orbit, distance * tangent.orbit_and_parameter_change[:-1])
     prediction_error = relative_change(predicted, solved_orbit.orbit.values - predicted.values)
     # Newton's method may have jumped to another branch.
-    if prediction_error > DETACHED_BRANCH_SETTINGS.max_prediction_error_ratio * step_size:
+    if prediction_error > DETACHED_BRANCH_SETTINGS.max_prediction_error_per_step_length * step_size:
         raise Unsolvable("the cycle found is far from its prediction")
     low, high = limits.coordinate_range
     if not low < solved_orbit.orbit.form.rod.coordinate(tangent.scale.parameter_name) < high:
         raise Unsolvable("the cycle found lies outside the range")
-    return first_measured_cycle(solved_orbit, tangent.scale, tangent.side, distance, accuracy)
+    return first_cycle_with_measured_errors(
+        solved_orbit, tangent.scale, tangent.components, distance, accuracy
+    )
 
 
-def reversed_cycle(cycle: BranchCycle) -> BranchCycle:
+def cycle_in_opposite_branch_direction(cycle: BranchCycle) -> BranchCycle:
     """The cycle of a branch, for the continuation in the opposite direction."""
     derivatives = cycle.derivatives
     turned_derivatives = replace(

@@ -5,10 +5,10 @@ Beyond such a point the branch continues through the mirror images of its cycles
 
 from dataclasses import replace
 
-from ..orbit.orbit_mesh import mesh_of
+from ..orbit.orbit_mesh import mesh_of_orbit
 from ..unsolvable import Unsolvable
 from .arc_length_step import ARC_STEP_CONTROL, BranchCycle, arc_length_between
-from .bordered.scale import deflection_of
+from .bordered.scale import deflection_at_time_zero
 from .branch_curve import BranchEnd
 from .branch_limits import BranchLimits
 from .branch_record import branch_end_point
@@ -20,15 +20,19 @@ from .range_end_near_hopf import (
 )
 from .settings import BRANCH_END_SETTINGS
 from .start.hopf_point import HopfBranchStart, hopf_as_special_point
-from .start.near_hopf_points import min_last_amplitude
+from .start.neighbouring_hopf_points import min_last_amplitude
 from .status import BranchEndReason
-from .symmetry_breaking import is_extrapolated_to, reaches_symmetric_cycle, symmetry_breaking_index_between
+from .symmetry_breaking import (
+    ends_within_extrapolation_tolerances,
+    reaches_symmetric_cycle,
+    symmetry_breaking_index_between,
+)
 
 
 def passes_hopf_point(start: BranchCycle, end: BranchCycle) -> bool:
     """Whether a Hopf point lies between two cycles: the bending moments at t = 0 then have opposite signs.
     The sign of the tip's y is no criterion: on a large cycle an extremum of y may pass through 0."""
-    mesh = mesh_of(end.orbit)
+    mesh = mesh_of_orbit(end.orbit)
     layout = end.orbit.form.layout
     # Moments can be multiplied only at the same nodes.
     start_moment = layout.stress_field(mesh.interpolated_orbit(start.orbit).start_state, "m3")
@@ -53,12 +57,12 @@ def accurate_end_before_hopf(start: BranchCycle, end: BranchCycle, limits: Branc
     """The end of a branch at the end of the range between two cycles, by the normal form of a Hopf point
     behind this end, if it is accurate and a cycle solved at the end of the range is not; otherwise None."""
     index = index_of_passed_range_end(end, limits.coordinate_range)
-    is_large = start.cycle.measures.tip_y_max > BRANCH_END_SETTINGS.max_last_amplitude
+    is_large = start.cycle.measures.tip_y_max > BRANCH_END_SETTINGS.max_amplitude_before_extrapolation
     if index < 0 or is_large or not start.orbit.is_symmetric:
         return None
     range_end = limits.coordinate_range[index]
-    for hopf in limits.hopfs_beyond:
-        if _shrinks_to(start, hopf, limits.accuracy) and not _has_fold_ahead(start, hopf, limits):
+    for hopf in limits.hopfs_beyond_range:
+        if _shrinks_to_hopf_point(start, hopf, limits.accuracy) and not _has_fold_ahead(start, hopf, limits):
             solved_errors = expected_errors_of_solved_cycle(start, range_end, hopf)
             branch_end = end_at_range_end_near_hopf(start, hopf, limits)
             is_accurate = has_accurate_range_end(branch_end, start, hopf, limits)
@@ -74,9 +78,9 @@ def _end_at_hopf_or_shorter_step(
     extrapolation. Raises Unsolvable."""
     half_length = arc_length_between(start, end) / 2
     shorter = (
-        replace(start, next_arc_length=half_length) if half_length >= ARC_STEP_CONTROL.min_length else None
+        replace(start, next_step_length=half_length) if half_length >= ARC_STEP_CONTROL.min_length else None
     )
-    if start.cycle.measures.tip_y_max > BRANCH_END_SETTINGS.max_last_amplitude:
+    if start.cycle.measures.tip_y_max > BRANCH_END_SETTINGS.max_amplitude_before_extrapolation:
         if shorter is None:
             raise Unsolvable(
                 "the branch jumps to its mirror image, and no shorter step along the branch is allowed"
@@ -87,7 +91,7 @@ def _end_at_hopf_or_shorter_step(
     if shorter is not None and not _is_smallest_to_solve(start, limits):
         return shorter  # the parabola through a smaller cycle is closer to the Hopf point
     reason = "the cycles shrink to zero amplitude, but no Hopf point is known there"
-    return BranchEnd(branch_end_point(start, BranchEndReason.no_cycle_found, reason), complete=False)
+    return BranchEnd(branch_end_point(start, BranchEndReason.no_cycle_found, reason), is_complete=False)
 
 
 def _known_hopf_end_or_shorter_step(
@@ -97,14 +101,14 @@ def _known_hopf_end_or_shorter_step(
     range before this point; `shorter` if `start` is not near enough; None if it leads to no known Hopf point.
     shorter: `start` with a shorter step, or None if no shorter step is allowed."""
     for number, hopf in enumerate(limits.hopfs):
-        if _shrinks_to(start, hopf, limits.accuracy):
+        if _shrinks_to_hopf_point(start, hopf, limits.accuracy):
             # The parameter must still turn before the Hopf point, which a smaller cycle shows.
             if _has_fold_ahead(start, hopf, limits) and shorter is not None:
                 return shorter
-            return BranchEnd(hopf_as_special_point(hopf), complete=True, end_hopf=number)
+            return BranchEnd(hopf_as_special_point(hopf), is_complete=True, end_hopf_index=number)
     # The branch ends at the end of the range then, which it passes before the Hopf point.
-    for hopf in limits.hopfs_beyond:
-        if _shrinks_to(start, hopf, limits.accuracy):
+    for hopf in limits.hopfs_beyond_range:
+        if _shrinks_to_hopf_point(start, hopf, limits.accuracy):
             end_before_hopf = end_at_range_end_near_hopf(start, hopf, limits)
             is_final = _is_smallest_to_solve(start, limits) or has_accurate_range_end(
                 end_before_hopf, start, hopf, limits
@@ -116,15 +120,15 @@ def _known_hopf_end_or_shorter_step(
     return None
 
 
-def _shrinks_to(start: BranchCycle, hopf: HopfBranchStart, accuracy: float) -> bool:
+def _shrinks_to_hopf_point(start: BranchCycle, hopf: HopfBranchStart, accuracy: float) -> bool:
     """Whether the parabola through the cycle `start` ends at the Hopf point `hopf`. accuracy: relative
     accuracy of the branch."""
     # Near a Hopf point parameter and period are quadratic in the deflection. From d to 0 the parabola
     # p = p0 + k d^2 changes by half as much as its tangent at d.
-    length = deflection_of(start.orbit) / (2 * start.unit_tangent[0] * start.scale.deflection_unit)
+    length = deflection_at_time_zero(start.orbit) / (2 * start.unit_tangent[0] * start.scale.deflection_unit)
     coordinate = start.parameter_coordinate - length * start.tangent[-1]
     period = start.orbit.period - length * start.tangent[-2]
-    return is_extrapolated_to(
+    return ends_within_extrapolation_tolerances(
         (coordinate, period),
         (start.parameter_coordinate, start.orbit.period),
         (hopf.parameter_coordinate, hopf.period),
@@ -136,7 +140,10 @@ def _has_fold_ahead(start: BranchCycle, hopf: HopfBranchStart, limits: BranchLim
     """Whether a branch has a fold between the cycle `start` and the Hopf point `hopf` where it ends: the
     parameter at `start` moves in the direction in which, by the normal form, it leaves the Hopf point. False
     for a cycle of the smallest amplitude, before which no fold is sought."""
-    return not _is_smallest_to_solve(start, limits) and start.parameter_rate * hopf.direction > 0
+    return (
+        not _is_smallest_to_solve(start, limits)
+        and start.parameter_per_arc_length * hopf.parameter_direction > 0
+    )
 
 
 def _is_smallest_to_solve(cycle: BranchCycle, limits: BranchLimits) -> bool:
@@ -151,11 +158,11 @@ def _end_at_breaking_or_shorter_step(
     near), or `start` with half the step, if `start` is too asymmetric. Raises Unsolvable."""
     index = symmetry_breaking_index_between(start, end, limits.breakings, limits.accuracy)
     if index is None:
-        return replace(start, next_arc_length=arc_length_between(start, end) / 2)
+        return replace(start, next_step_length=arc_length_between(start, end) / 2)
     if index >= 0:
         breaking = limits.breakings[index]
         # The message and the orbit belong to the point on the symmetric branch, where they are stored.
         special = replace(breaking.special_point, message="", orbit=None)
-        return BranchEnd(special, complete=True, end_breaking=breaking)
+        return BranchEnd(special, is_complete=True, end_breaking=breaking)
     message = "the cycles become symmetric, but no symmetry breaking is known there"
-    return BranchEnd(branch_end_point(start, BranchEndReason.no_cycle_found, message), complete=False)
+    return BranchEnd(branch_end_point(start, BranchEndReason.no_cycle_found, message), is_complete=False)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...determinant.exponents import EXPONENT_SETTINGS
-from ..cycle.accuracy.settings import CALIBRATION_SETTINGS
+from ..cycle.accuracy.settings import MESH_ERROR_CALIBRATION_SETTINGS
 from ..orbit.newton import ConvergedOrbit
 
 
@@ -31,17 +31,17 @@ MULTIPLIER_SENSITIVITY_SETTINGS = MultiplierSensitivitySettings()
 @dataclass(frozen=True, slots=True)
 class MultiplierSensitivity:
     """Sensitivity of the largest nontrivial multiplier of a cycle to errors of the mesh. modulus: modulus of
-    this multiplier over the period, at least 1. amplification: growth of its errors because another
-    multiplier is near, at least 1."""
+    this multiplier over the period, at least 1. amplification_by_near_multiplier: growth of its errors
+    because another multiplier is near, at least 1."""
 
     modulus: float
-    amplification: float
+    amplification_by_near_multiplier: float
 
     @classmethod
     def of_cycle(cls, solved: ConvergedOrbit) -> "MultiplierSensitivity":
         """The sensitivity at the cycle `solved`."""
         # Over a whole period h and -h coincide, although neither has an effect on the other.
-        multipliers = solved.matrix.multipliers_over_solved_part
+        multipliers = solved.matrix.multipliers_over_solved_time_interval
         nontrivial = np.delete(multipliers, int(np.argmin(np.abs(multipliers - 1))))
         if not len(nontrivial):
             return cls(1.0, 1.0)
@@ -51,20 +51,20 @@ class MultiplierSensitivity:
         distance = float(np.abs(others - nontrivial[index]).min()) if len(others) else np.inf
         limit = MULTIPLIER_SENSITIVITY_SETTINGS.max_coalescence_distance * modulus
         return cls(
-            max(modulus**solved.orbit.symmetry.period_parts, 1.0),
+            max(modulus**solved.orbit.symmetry.solved_parts_per_period, 1.0),
             max(limit / max(distance, EXPONENT_SETTINGS.min_divisor), 1.0),
         )
 
-    def error(self, error_quotient: float) -> float:
+    def error_from_quotient(self, error_quotient: float) -> float:
         """Error of the largest multiplier at this cycle. error_quotient: the error at a nearby cycle, divided
-        by `factor` at that cycle.
+        by `error_growth_factor` at that cycle.
 
         The error e of a multiplier at the relative distance d from another multiplier is the relative error
         D/d of the discriminant D = d^2, but at most the square root of the error of D, because the two
         multipliers may coincide.
         """
         relative_error = min(
-            self.amplification * error_quotient,
+            self.amplification_by_near_multiplier * error_quotient,
             max(
                 (MULTIPLIER_SENSITIVITY_SETTINGS.max_coalescence_distance * error_quotient) ** 0.5,
                 error_quotient,
@@ -72,7 +72,7 @@ class MultiplierSensitivity:
         )
         return self.modulus * relative_error
 
-    def measured_error(self, difference: float, removed_fraction: float) -> float:
+    def error_from_mesh_difference(self, difference: float, removed_fraction: float) -> float:
         """Error of the largest multiplier, without safety factor, from its difference between two meshes.
         removed_fraction: fraction of the error that the finer mesh removes.
 
@@ -83,12 +83,12 @@ class MultiplierSensitivity:
         """
         if difference <= self.modulus:
             return difference / removed_fraction
-        safety_factor = CALIBRATION_SETTINGS.safety_factor
+        safety_factor = MESH_ERROR_CALIBRATION_SETTINGS.error_safety_factor
         exponent = safety_factor * np.log1p(difference / self.modulus) / removed_fraction
         growth = np.expm1(min(exponent, EXPONENT_SETTINGS.max_exponent))
         return float(self.modulus * growth / safety_factor)
 
     @property
-    def factor(self) -> float:
+    def error_growth_factor(self) -> float:
         """Product of modulus and amplification."""
-        return self.modulus * self.amplification
+        return self.modulus * self.amplification_by_near_multiplier

@@ -7,11 +7,12 @@ from numpy.polynomial import Polynomial
 
 from ...arrays import list_of
 from ...model.parameters import PARAMETERS
-from ..continuation.curve import zero_along_step
-from ..cycle.accuracy.refinement import allowed_matrix_distance
+from ..continuation.curve import step_length_to_zero
+from ..cycle.accuracy.newton_tolerances import allowed_distance_from_matrix_orbit
 from ..orbit.orbit import Orbit
 from ..unsolvable import Unsolvable, WorkLimitReached
 from .arc_length_step import (
+    ARC_STEP_CONTROL,
     BranchCycle,
     arc_length_between,
     branch_cycle_with_calibrated_errors,
@@ -20,7 +21,7 @@ from .arc_length_step import (
 )
 from .bordered.condition import BorderCondition, moved_orbit
 from .bordered.corrected_linearisation import linearisation_of
-from .bordered.scale import ALONG_PARAMETER
+from .bordered.scale import PARAMETER_DIRECTION
 from .branch_errors import branch_newton_tolerance
 from .settings import BRANCH_END_SETTINGS
 from .special.branch_segment import BranchSegment
@@ -29,7 +30,7 @@ from .special.branch_segment import BranchSegment
 def range_end_condition(start: BranchCycle, limit: float) -> BorderCondition:
     """The condition that the parameter coordinate of a cycle equals the parameter coordinate `limit`, scaled
     with the units of the cycle `start`."""
-    return BorderCondition(start.scale, ALONG_PARAMETER, limit / start.scale.coordinate_unit)
+    return BorderCondition(start.scale, PARAMETER_DIRECTION, limit / start.scale.coordinate_unit)
 
 
 def index_of_passed_range_end(point: BranchCycle, range_ends: tuple[float, float]) -> int:
@@ -59,7 +60,7 @@ def cycle_at_range_end(
     if abs(end_distances[0]) <= tolerance * abs(end_distances[1]):
         inner_length = _step_length_into_range(beyond, segment.length)
         end_distances = beyond(inner_length), end_distances[1]
-    length = inner_length + zero_along_step(
+    length = inner_length + step_length_to_zero(
         lambda part: beyond(inner_length + part), end_distances, segment.length - inner_length, 0.0, tolerance
     )
     return _solved_at_range_end(start, segment.predicted_orbit(length), length, range_end, accuracy)
@@ -79,7 +80,7 @@ def _step_length_into_range(beyond: Callable[[float], float], step: float) -> fl
     return 0.0
 
 
-def cycle_at_end_beside_zero(start: BranchCycle, low: float, accuracy: float) -> BranchCycle | None:
+def cycle_at_range_end_beside_zero(start: BranchCycle, low: float, accuracy: float) -> BranchCycle | None:
     """The cycle at the smallest coordinate `low` of the range, for a parameter that cannot be negative, if
     the next step could pass the coordinate 0, where no rod is. None unless the tangent at `start` reaches 0
     within the next step; also None if no cycle is found, as when the branch folds before `low`. Raises
@@ -88,8 +89,8 @@ def cycle_at_end_beside_zero(start: BranchCycle, low: float, accuracy: float) ->
     coordinate = start.parameter_coordinate
     name = start.scale.parameter_name
     # -1 stands for all negative values, which a parameter allows or forbids together.
-    may_be_negative = PARAMETERS[name].allowed.contains(-1.0)
-    if may_be_negative or low < 0 or rate >= 0 or -coordinate / rate > start.next_arc_length:
+    may_be_negative = PARAMETERS[name].allowed_range.contains(-1.0)
+    if may_be_negative or low < 0 or rate >= 0 or -coordinate / rate > start.next_step_length:
         return None
     length = (low - coordinate) / rate
     change = length * start.tangent
@@ -102,6 +103,26 @@ def cycle_at_end_beside_zero(start: BranchCycle, low: float, accuracy: float) ->
         raise
     except Unsolvable:
         return None
+
+
+def cycle_with_step_into_range(
+    start: BranchCycle, range_ends: tuple[float, float], index: int, accuracy: float
+) -> BranchCycle | None:
+    """The cycle `start`, at the range end `range_ends[index]`, with a next step that ends within the range or
+    beyond its second end, although a fold may follow; None if the shortest step does not end there. accuracy:
+    relative accuracy."""
+    length = start.next_step_length
+    while length >= ARC_STEP_CONTROL.min_length:
+        try:
+            end = cycle_at_length(start, length, accuracy)
+            if index_of_passed_range_end(end, range_ends) != index:
+                return replace(start, next_step_length=length)
+        except WorkLimitReached:
+            return None
+        except Unsolvable:
+            pass  # the step is too long for the prediction
+        length /= 2
+    return None
 
 
 def cycle_within_range(
@@ -139,9 +160,9 @@ def _range_end_passed_before_fold(
     """Returns (index, length): index in `range_ends` of the range end that the branch is expected to pass
     between `start` and `end` by the cubic through both cycles, and the arc length from `start` at which it
     passes; (-1, 0.0) if the cubic passes no range end or if no fold lies between the two cycles."""
-    if start.parameter_rate * end.parameter_rate >= 0:
+    if start.parameter_per_arc_length * end.parameter_per_arc_length >= 0:
         return -1, 0.0
-    index = 1 if start.parameter_rate > 0 else 0
+    index = 1 if start.parameter_per_arc_length > 0 else 0
     length = arc_length_between(start, end)
     rate = float(start.scale.directional_derivative(end.orbit, end.tangent) @ start.unit_tangent)
     slopes = length * start.tangent[-1], length * end.tangent[-1] / rate
@@ -166,7 +187,10 @@ def _solved_at_range_end(
     """The cycle near the orbit `predicted`, at about the arc length `length` from `start`, that fulfils the
     condition `range_end`; raises Unsolvable."""
     solved_orbit = range_end.solve_cycle(
-        predicted, branch_newton_tolerance(accuracy), start.workspace, allowed_matrix_distance(accuracy)
+        predicted,
+        branch_newton_tolerance(accuracy),
+        start.workspace,
+        allowed_distance_from_matrix_orbit(accuracy),
     )
     tangent = tangent_at(solved_orbit.orbit, start.scale, start.unit_tangent, linearisation_of(solved_orbit))
     return branch_cycle_with_calibrated_errors(start, solved_orbit, tangent, length, length, accuracy)

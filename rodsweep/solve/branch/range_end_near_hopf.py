@@ -13,12 +13,12 @@ from ...model.parameters import PARAMETERS
 from ..cycle.accuracy.cycle_errors import CycleErrors
 from ..orbit.measures import CycleMotion
 from ..orbit.orbit import Orbit
-from ..orbit.orbit_mesh import mesh_of
+from ..orbit.orbit_mesh import mesh_of_orbit
 from .arc_length_step import BranchCycle
-from .branch_curve import BranchEnd, RangePassage
+from .branch_curve import BranchEnd, RangeEndPassage
 from .branch_limits import BranchLimits
 from .settings import BRANCH_END_SETTINGS
-from .special.special_point import SpecialKind, SpecialPoint
+from .special.special_point import SpecialPoint, SpecialPointKind
 from .start.hopf_point import HopfBranchStart
 
 
@@ -32,11 +32,11 @@ def end_at_range_end_near_hopf(
     distance = limits.coordinate_range[index] - hopf.parameter_coordinate
     start_distance = start.parameter_coordinate - hopf.parameter_coordinate
     fraction = distance / start_distance if start_distance else inf
-    if not 0 <= fraction < 1 or hopf.direction * distance < 0:
+    if not 0 <= fraction < 1 or hopf.parameter_direction * distance < 0:
         return None
-    special = _point_at_range_end(start, hopf, limits, index)
-    passage = RangePassage(start, index, limits.accuracy, hopf, special)
-    return BranchEnd(special, complete=True, range_passage=passage)
+    special = _normal_form_point_at_range_end(start, hopf, limits, index)
+    passage = RangeEndPassage(start, index, limits.accuracy, hopf, special)
+    return BranchEnd(special, is_complete=True, range_end_passage=passage)
 
 
 def has_accurate_range_end(
@@ -49,9 +49,9 @@ def has_accurate_range_end(
     A mesh displaces the Hopf point, so the errors of the largest y of its cycles grow with 1/distance from
     this point. The errors of the normal form decrease with the distance.
     """
-    if end is None or end.range_passage is None:
+    if end is None or end.range_end_passage is None:
         return False
-    range_end = limits.coordinate_range[end.range_passage.index]
+    range_end = limits.coordinate_range[end.range_end_passage.range_end_index]
     solved_errors = expected_errors_of_solved_cycle(start, range_end, hopf)
     errors = np.array([end.special_point.period_error, end.special_point.tip_y_max_error])
     return bool((errors <= np.maximum(limits.accuracy, solved_errors)).all())
@@ -62,20 +62,20 @@ def expected_errors_of_solved_cycle(start: BranchCycle, coordinate: float, hopf:
     coordinate `coordinate`, between the cycle `start` and the Hopf point `hopf`; inf at the Hopf point."""
     distance = abs(coordinate - hopf.parameter_coordinate)
     growth = _distance_from_hopf(start.orbit, hopf) / distance if distance else inf
-    return growth * _cycle_errors(start.cycle.errors)
+    return growth * _period_and_largest_tip_y_errors(start.cycle.errors)
 
 
-def _cycle_errors(errors: CycleErrors) -> Array:
+def _period_and_largest_tip_y_errors(errors: CycleErrors) -> Array:
     """Relative errors of period and largest tip y, (2,)."""
     return np.array([errors.period_error, errors.amplitude_error])
 
 
-def _point_at_range_end(
+def _normal_form_point_at_range_end(
     start: BranchCycle, hopf: HopfBranchStart, limits: BranchLimits, index: int
 ) -> SpecialPoint:
-    """The special point at the end `index` of the range: the normal form, corrected by its deviation from
-    the cycles near the Hopf point. The errors of the correction, of the coefficients of the normal form and
-    of the Hopf point are added."""
+    """The special point at the end `range_end_index` of the range: the normal form, corrected by its
+    deviation from the cycles near the Hopf point. The errors of the correction, of the coefficients of the
+    normal form and of the Hopf point are added."""
     coordinate = limits.coordinate_range[index]
     distance = abs(coordinate - hopf.parameter_coordinate)
     deviations, (period_error, amplitude_error) = _deviations_of_normal_form(start, hopf, distance)
@@ -85,14 +85,14 @@ def _point_at_range_end(
     displacement = hopf_error / (2 * distance) if distance else inf
     value = float(PARAMETERS[hopf.parameter_name].value(coordinate))
     return SpecialPoint(
-        kind=SpecialKind.end,
+        kind=SpecialPointKind.end,
         parameter_value=value,
         period=period,
         tip_y_max=amplitude,
         error=BRANCH_END_SETTINGS.relative_parameter_error_at_range_end * abs(value),
         period_error=period_error + hopf.period_error,
-        tip_y_max_error=amplitude_error + hopf.relative_coefficient_error + displacement,
-        reason=limits.end_reasons[index],
+        tip_y_max_error=amplitude_error + hopf.relative_amplitude_coefficient_error + displacement,
+        end_reason=limits.end_reasons[index],
     )
 
 
@@ -118,12 +118,12 @@ def _deviations_of_normal_form(
         cycle_distance = _distance_from_hopf(orbit, hopf)
         fraction = distance / cycle_distance
         normal_form = hopf.period_and_amplitude_at(orbit.form.rod.coordinate(hopf.parameter_name))
-        measured = orbit.period, CycleMotion(orbit).extrema["tip_y_max"]
+        measured = orbit.period, CycleMotion(orbit).tip_extrema["tip_y_max"]
         estimate = fraction * (np.array(normal_form) / measured - 1)
         higher_powers = abs(estimate - last_estimate) / (1 - fraction / last_fraction)
         # On a mesh the error of y grows with 1/distance at most. Cycles that are not measured have the errors
         # of another cycle. The error of the period does not grow.
-        on_mesh = [cycle for cycle in cycles if mesh_of(cycle[0]) == mesh_of(orbit)]
+        on_mesh = [cycle for cycle in cycles if mesh_of_orbit(cycle[0]) == mesh_of_orbit(orbit)]
         tip_y_error = max(
             _distance_from_hopf(other, hopf) * errors.amplitude_error for other, errors in on_mesh
         )
@@ -146,8 +146,8 @@ def _cycles_near_hopf(start: BranchCycle, hopf: HopfBranchStart) -> list[tuple[O
     while earlier is not None:
         # A fold lies between two cycles if the distance does not increase.
         is_farther = _distance_from_hopf(earlier.orbit, hopf) > _distance_from_hopf(cycles[-1][0], hopf)
-        y = CycleMotion(earlier.orbit).extrema["tip_y_max"]
-        if not is_farther or y > BRANCH_END_SETTINGS.max_last_amplitude:
+        y = CycleMotion(earlier.orbit).tip_extrema["tip_y_max"]
+        if not is_farther or y > BRANCH_END_SETTINGS.max_amplitude_before_extrapolation:
             break
         cycles.append((earlier.orbit, earlier.errors))
         earlier = earlier.previous

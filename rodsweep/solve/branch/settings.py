@@ -9,11 +9,11 @@ class BranchStartSettings:
 
     first_amplitudes: tuple[float, ...] = (0.02, 0.008, 0.003)
     """Amplitudes (largest tip y, in L) of the first cycle, tried in this order."""
-    max_amplitude_per_coefficient: float = 0.05
+    max_amplitude_per_amplitude_coefficient: float = 0.05
     """Upper limit of the amplitude of the first cycle, divided by
     |`HopfBranchStart.amplitude_coefficient`|. At larger amplitudes the third-order normal form is too
     inaccurate."""
-    max_first_amplitude_per_half_axis: float = 0.5
+    max_first_to_largest_amplitude_ratio: float = 0.5
     """Upper limit of the amplitude of the first cycle on a branch between two Hopf points close together,
     divided by the largest amplitude on this branch: the parameter then changes by a fifteenth of the distance
     between both points."""
@@ -21,33 +21,33 @@ class BranchStartSettings:
     """Near two Hopf points close together, the last cycle of a branch is moved towards its Hopf point, down
     to this fraction of half the axis of the ellipse or hyperbola of the cycles: at this amplitude the
     parabola of one Hopf point alone misses the parameter by 4 % of the distance from the Hopf point."""
-    min_amplitude_of_deflection_unit: float = 0.1
+    amplitude_of_min_deflection_unit: float = 0.1
     """The unit of deflection of an `ArcLengthScale` is at least the deflection that a cycle of this amplitude
     (largest tip y, in L) has by linear theory."""
-    allowed_amplitude_ratios: tuple[float, float] = 0.5, 2.0
+    allowed_amplitude_to_prediction_ratios: tuple[float, float] = 0.5, 2.0
     """Smallest and largest allowed ratio of the solved amplitude of the first cycle to the amplitude
     predicted by the normal form."""
     min_amplitude_before_fold: float = 5e-4
     """If the branch has a fold between its Hopf point and its first cycle, the first cycle is moved towards
     the Hopf point, down to this amplitude (largest tip y, in L); likewise the last cycle of a branch that
     ends at a Hopf point."""
-    max_harmless_amplitude_coefficient: float = 3.0
+    max_nondegenerate_amplitude_coefficient: float = 3.0
     """Largest amplitude coefficient |a| of a Hopf point, in L, that does not affect the accuracy of the
     cycles. A larger |a| means that a generalised Hopf point is close; a coarse mesh then displaces folds, or
     has folds that the rod does not have."""
     max_accuracy_if_degenerate: float = 5e-7
     """Largest relative accuracy of the cycles of a rod with a Hopf point of |a| =
-    `max_harmless_amplitude_coefficient`. For larger |a| the largest accuracy is proportional to 1/a^2, like
-    the distance of the fold from the Hopf point."""
+    `max_nondegenerate_amplitude_coefficient`. For larger |a| the largest accuracy is proportional to 1/a^2,
+    like the distance of the fold from the Hopf point."""
     min_accuracy_if_degenerate: float = 1e-8
     """Lower limit of the accuracy that is required because of a large |a|. With this limit, for ten rods at
     distances of 1e-7 to 1e-3 from a generalised Hopf point, no false fold was found, and all folds farther
     than 1e-11 F from the Hopf point were found."""
-    coefficient_accuracies: tuple[float, ...] = (1e-8, 1e-3)
+    landau_coefficient_accuracies: tuple[float, ...] = (1e-8, 1e-3)
     """Relative accuracies of the Landau coefficient of a Hopf point, tried in this order. The first one costs
     as much as the second (1.9 s for 88 Hopf points of random rods); a mesh that misses the eigenvalue at the
     first may identify it at the second."""
-    frequency_rounding: float = 1e-14
+    relative_frequency_rounding_error: float = 1e-14
     """Relative rounding error of the frequency at a Hopf point, which is computed as a root of the
     determinant D."""
 
@@ -64,25 +64,25 @@ class BranchErrorSettings:
     sensitivities, as near a Hopf point or a fold, the allowed errors at equal p are larger than the accuracy
     by the factor sensitivity/limit. A fifth above the documented limit, because a user estimates the
     sensitivity from cycles."""
-    min_deflection_rate_ratio: float = 0.1
+    min_deflection_per_parameter_change: float = 0.1
     """Lower limit of |d(deflection)/ds| in the parameter error at equal deflection, divided by
     |d(parameter)/ds|, s: arc length. Without this limit the error would be infinite where the deflection is
     stationary."""
     interpolation_safety_factor: float = 2.0
     """Safety factor on interpolated errors."""
-    min_error: float = 1e-16
+    min_error_for_logarithm: float = 1e-16
     """Lower limit of an error before its logarithm is taken; smaller errors are rounding errors."""
-    max_error_ratio: float = 30.0
+    max_error_ratio_for_interpolation: float = 30.0
     """Largest ratio of two measured errors between which errors are interpolated. If the ratio is larger, the
     smaller error is small only because errors change their sign near its cycle, and is replaced."""
-    newton_tolerance_ratio: float = 1e-4
+    newton_tolerance_per_accuracy: float = 1e-4
     """Tolerance of Newton's method for a cycle of a branch, also on the two finer meshes of an error
     measurement, divided by the accuracy. Near a fold or a Hopf point this tolerance over the derivative of
     the parameter is an error at equal parameter, and with 0.01 measured errors were mostly of this kind."""
     min_newton_tolerance: float = 1e-11
     """Lower limit of this tolerance, unless a single cycle of the same accuracy has a smaller one: cycles of
     strongly unstable branches have larger rounding errors."""
-    min_rate_near_zero_parameter: float = 0.1
+    min_slope_for_equal_parameter_near_zero: float = 0.1
     """Close to the parameter coordinate 0, cycles on finer meshes are solved at an equal parameter, not at an
     equal arc length, if the modulus of the derivative of the scaled parameter coordinate with respect to arc
     length exceeds this number, far from a fold."""
@@ -97,34 +97,35 @@ BRANCH_ERROR_SETTINGS = BranchErrorSettings()
 class BranchMeshSettings:
     """Settings for the choice of meshes on a branch, and of the cycles whose errors are measured."""
 
-    max_meshes: int = 8
+    max_meshes_per_cycle: int = 8
     """Maximum number of meshes tried for one cycle."""
-    max_cheaper_cost_ratio: float = 0.7
+    max_cost_ratio_of_cheaper_mesh: float = 0.7
     """A mesh that is expected to suffice is replaced by a cheaper mesh only if the ratio of the new cost to
     the current cost is at most this number."""
-    planned_error_ratio: float = 0.5
+    planned_error_per_accuracy: float = 0.5
     """Error for which a mesh is chosen, divided by the accuracy; below 1, so that the mesh suffices for the
     next cycles too."""
-    planned_error_ratio_of_cheaper_mesh: float = 0.25
+    planned_error_per_accuracy_if_cheaper: float = 0.25
     """The same number for a cheaper mesh that replaces a sufficient one: a mesh that turns out not to suffice
     costs several solutions."""
-    min_rate_ratio_for_interpolation: float = 0.2
+    min_slope_ratio_for_interpolation: float = 0.2
     """Errors are interpolated at a cycle only if |d(parameter)/ds|, s: arc length, is at least this number
     times the smaller of the two values at the measured cycles. Near a fold the derivative tends to 0, and
     errors measured far from the fold are no bound."""
     max_uncorrected_tail_growth: float = 2.0
     """Interpolated errors are multiplied by the growth that the coefficient tails predict, if it exceeds this
-    factor since each of the two measured cycles; beyond `max_growth_since_measurement` they are measured."""
+    factor since each of the two measured cycles; beyond `max_error_growth_since_measurement` they are
+    measured."""
     max_steps_between_measurements: int = 3
     """Maximum number of steps between two cycles with measured errors."""
-    max_steps_with_small_errors: int = 4
+    max_unmeasured_steps_if_errors_small: int = 4
     """The same number if the last measured errors are so small that they stay within the accuracy when they
-    grow by `max_growth_since_measurement`. With 6 or 8 steps errors that change their sign between two
+    grow by `max_error_growth_since_measurement`. With 6 or 8 steps errors that change their sign between two
     measured cycles exceeded their estimates, by up to 4 times."""
-    max_planned_growth: float = 4.0
+    max_planned_error_growth: float = 4.0
     """Largest expected growth of the errors up to the next measured cycle for which a finer mesh is
     chosen."""
-    max_growth_since_measurement: float = 4.0
+    max_error_growth_since_measurement: float = 4.0
     """Errors are measured again if the coefficient tails predict that the errors have grown by more than this
     factor since the last measurement."""
 
@@ -137,7 +138,7 @@ class BranchEndSettings:
     """Settings for the ends of a branch at a Hopf point, at a symmetry breaking, or at an end of the
     parameter range."""
 
-    max_last_amplitude: float = 0.06
+    max_amplitude_before_extrapolation: float = 0.06
     """The Hopf point at the end of a branch is extrapolated only from a cycle whose largest tip y, in L, is
     at most this number; otherwise the step is shortened."""
     max_last_asymmetry_per_moment: float = 0.2
@@ -149,18 +150,18 @@ class BranchEndSettings:
     lost_asymmetry_ratio: float = 0.1
     """A step has reached or passed a symmetric cycle if the ratio of the asymmetry at its end to the
     asymmetry at its start is less than this number."""
-    allowed_asymmetry_ratios: tuple[float, float] = 0.5, 2.0
+    allowed_asymmetry_to_prediction_ratios: tuple[float, float] = 0.5, 2.0
     """Smallest and largest allowed ratio of the solved to the predicted asymmetry of the first asymmetric
     cycle."""
-    extrapolation_tolerance: float = 0.3
+    relative_extrapolation_tolerance: float = 0.3
     """Tolerance of the extrapolated parameter and period of a Hopf point or a symmetry breaking, divided by
     the difference between their values at the last cycle and at this point."""
     extrapolated_parameter_tolerance: float = 1e-6
-    """Relative tolerance of the extrapolated parameter, added to the tolerance by `extrapolation_tolerance`;
-    the larger of this number and the accuracy is used."""
+    """Relative tolerance of the extrapolated parameter, added to the tolerance by
+    `relative_extrapolation_tolerance`; the larger of this number and the accuracy is used."""
     extrapolated_period_tolerance: float = 1e-3
-    """Relative tolerance of the extrapolated period, added to the tolerance by `extrapolation_tolerance`; the
-    larger of this number and the accuracy is used."""
+    """Relative tolerance of the extrapolated period, added to the tolerance by
+    `relative_extrapolation_tolerance`; the larger of this number and the accuracy is used."""
     range_end_step_tolerance: float = 1e-6
     """Tolerance of the predicted arc length to the end of the parameter range, divided by the step. Newton's
     method then solves the cycle exactly at this end."""
@@ -171,10 +172,10 @@ class BranchEndSettings:
     estimates."""
     relative_parameter_error_at_range_end: float = 1e-15
     """Relative error of the parameter at an end of the range."""
-    max_peak_shift_fraction: float = 0.05
+    max_peak_shift_in_periods: float = 0.05
     """If the times of the largest tip y of two successive cycles differ by more than this fraction of the
     period, the largest tip y is attained at different maxima of y(t)."""
-    max_step_with_corner: float = 0.02
+    max_step_with_amplitude_corner: float = 0.02
     """Longest last step, in arc length, if the curve of the largest tip y has a corner on this step; a longer
     step is halved."""
 
@@ -192,14 +193,15 @@ class BeyondRangeSettings:
     force."""
     max_cycles: int = 200
     """Maximum number of cycles on all branches beyond one end of the range."""
-    work_ratio: float = 1.0
+    work_limit_per_work_within_range: float = 1.0
     """Limit of the work beyond one end of the range, divided by the work on the branches within the range."""
     min_work_limit: float = 100.0
-    """Smallest limit of the work beyond one end of the range, in `WORK_UNIT`: some seconds, ten times the
-    work on a usual branch. A range without a Hopf point has no branches of its own."""
+    """Smallest limit of the work beyond one end of the range, in `MULTIPLICATIONS_PER_WORK_UNIT`: some
+    seconds, ten times the work on a usual branch. A range without a Hopf point has no branches of its own."""
     min_asymmetric_work_limit: float = 400.0
     """Smallest limit of the work on the branches of asymmetric cycles beyond one end of the range, in
-    `WORK_UNIT`: their cycles are solved over the whole period, more accurately beside a fold."""
+    `MULTIPLICATIONS_PER_WORK_UNIT`: their cycles are solved over the whole period, more accurately beside a
+    fold."""
 
 
 BEYOND_RANGE_SETTINGS = BeyondRangeSettings()

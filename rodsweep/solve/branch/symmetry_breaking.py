@@ -19,7 +19,7 @@ from ..orbit.symmetry import NO_SYMMETRY
 from ..unsolvable import Unsolvable
 from .arc_length_step import ARC_STEP_CONTROL, BranchCycle, arc_length_between
 from .settings import BRANCH_END_SETTINGS
-from .special.special_point import SpecialKind, SpecialPoint
+from .special.special_point import SpecialPoint, SpecialPointKind
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +30,7 @@ class SymmetryBreaking:
     branch_number: int
     special_point_index: int
     special_point: SpecialPoint
+    """The symmetry breaking as a special point of its branch, with the symmetric cycle."""
 
 
 def symmetry_breakings_in(branches: Sequence[Sequence[SpecialPoint]]) -> list[SymmetryBreaking]:
@@ -39,7 +40,7 @@ def symmetry_breakings_in(branches: Sequence[Sequence[SpecialPoint]]) -> list[Sy
         SymmetryBreaking(branch_number, index, point)
         for branch_number, special in enumerate(branches, 1)
         for index, point in enumerate(special)
-        if point.kind == SpecialKind.symmetry_breaking and point.orbit is not None
+        if point.kind == SpecialPointKind.symmetry_breaking and point.orbit is not None
     ]
 
 
@@ -47,7 +48,7 @@ def extended_to_whole_period(orbit: Orbit) -> Orbit:
     """A symmetric orbit, which stores half a period, extended by its symmetry to the whole period and to
     twice as many time intervals."""
     interval_count = 2 * orbit.interval_count
-    grading = orbit.grading.doubled
+    grading = orbit.grading.over_two_solved_parts
     # In units of half a period, which the symmetric orbit covers.
     times = 2 * node_times(interval_count, orbit.stage_count, grading)
     is_second_half = times > 1
@@ -58,7 +59,7 @@ def extended_to_whole_period(orbit: Orbit) -> Orbit:
     return replace(orbit, symmetry=NO_SYMMETRY, interval_count=interval_count, values=values, grading=grading)
 
 
-def asymmetry(orbit: Orbit) -> Array:
+def bending_moment_asymmetry(orbit: Orbit) -> Array:
     """Asymmetry of an orbit: bending moments at t = 0 plus bending moments half a period later, (nodes,); 0
     for a symmetric orbit."""
     return _bending_moments(orbit.start_state, orbit) + _bending_moments(
@@ -78,22 +79,27 @@ def reaches_symmetric_cycle(
     """Whether an asymmetric branch reaches or passes a symmetric cycle between two cycles: the asymmetry
     changes sign or almost vanishes; or the parameter turns back near a symmetry breaking in `breakings`,
     because a mesh without the symmetry of the cycle perturbs the crossing of the branches."""
-    start_asymmetry = asymmetry(start.orbit)
+    start_asymmetry = bending_moment_asymmetry(start.orbit)
     # The scalar product needs both asymmetries at the same nodes.
     orbit_on_mesh = end.orbit.on_mesh(start.orbit.form.mesh, end.orbit.interval_count, end.orbit.stage_count)
     # The asymmetry changes sign where the branch passes a symmetric cycle, and is small near this cycle.
     max_asymmetry = BRANCH_END_SETTINGS.lost_asymmetry_ratio * float(start_asymmetry @ start_asymmetry)
-    if float(asymmetry(orbit_on_mesh) @ start_asymmetry) < max_asymmetry:
+    if float(bending_moment_asymmetry(orbit_on_mesh) @ start_asymmetry) < max_asymmetry:
         return True
     # Past the symmetric cycle the branch runs back as its own mirror image, so the parameter turns there.
-    turns_back = start.parameter_rate * end.parameter_rate < 0 and _is_nearly_symmetric(start)
+    turns_back = start.parameter_per_arc_length * end.parameter_per_arc_length < 0 and _is_nearly_symmetric(
+        start
+    )
     return turns_back and _symmetry_breaking_index_ahead(start, breakings, accuracy) >= 0
 
 
 def _asymmetry_per_bending_moment(start: BranchCycle) -> float:
     """Largest nodal asymmetry of a cycle, divided by its largest bending moment."""
     orbit = start.orbit
-    return float(np.abs(asymmetry(orbit)).max() / np.abs(_bending_moments(orbit.all_states, orbit)).max())
+    return float(
+        np.abs(bending_moment_asymmetry(orbit)).max()
+        / np.abs(_bending_moments(orbit.all_states, orbit)).max()
+    )
 
 
 def _is_nearly_symmetric(start: BranchCycle) -> bool:
@@ -116,7 +122,7 @@ def symmetry_breaking_index_between(
     return None
 
 
-def is_extrapolated_to(
+def ends_within_extrapolation_tolerances(
     extrapolated: tuple[float, float], last: tuple[float, float], end: tuple[float, float], accuracy: float
 ) -> bool:
     """Whether a branch ends at a Hopf point or a symmetry breaking, within tolerances.
@@ -129,7 +135,7 @@ def is_extrapolated_to(
     tolerances = settings.extrapolated_parameter_tolerance, settings.extrapolated_period_tolerance
     return all(
         abs(value - end_value)
-        <= settings.extrapolation_tolerance * abs(last_value - end_value)
+        <= settings.relative_extrapolation_tolerance * abs(last_value - end_value)
         + max(tolerance, accuracy) * abs(end_value)
         for value, last_value, end_value, tolerance in zip(extrapolated, last, end, tolerances, strict=True)
     )
@@ -141,9 +147,9 @@ def _symmetry_breaking_index_ahead(
     """Index of the first symmetry breaking in `breakings` with the parameter and period, within tolerances,
     at which the extrapolated asymmetry vanishes; -1 if no entry fits or the asymmetry does not decrease."""
     orbit = start.orbit
-    current_asymmetry = asymmetry(orbit)
+    current_asymmetry = bending_moment_asymmetry(orbit)
     # The asymmetry is linear in the states, so that of the tangent is its derivative.
-    change = asymmetry(replace(orbit, values=start.tangent[:-1]))
+    change = bending_moment_asymmetry(replace(orbit, values=start.tangent[:-1]))
     # Minus half the derivative of the squared asymmetry: positive if a symmetric cycle lies ahead.
     decrease = -float(current_asymmetry @ change)
     if decrease <= 0:
@@ -158,7 +164,7 @@ def _symmetry_breaking_index_ahead(
             continue
         symmetric_coordinate = symmetric_orbit.form.rod.coordinate(start.scale.parameter_name)
         symmetric = symmetric_coordinate, symmetric_orbit.period
-        if is_extrapolated_to(
+        if ends_within_extrapolation_tolerances(
             (coordinate, period), (start.parameter_coordinate, orbit.period), symmetric, accuracy
         ):
             return index

@@ -19,7 +19,7 @@ import numpy as np
 from ..spectrum.search import SpectrumRequest
 from ..spectrum.status import SpectrumStatus
 from ..unsolvable import Unsolvable
-from .exchange import double_eigenvalue_between, overtaking_between
+from .exchange_newton import double_eigenvalue_between, overtaking_between
 from .path_problem import PathProblem
 from .sample_interpolation import (
     excludes_exchange,
@@ -40,7 +40,7 @@ number is a constant, because with fewer eigenvalues it would be unknown which e
 class LeaderExchangeSettings:
     """Settings of the search for exchanges of the leading eigenvalue between samples."""
 
-    accuracy: float = 1e-6
+    eigenvalue_accuracy: float = 1e-6
     """Relative accuracy of the eigenvalues at a sample, before the refinement by Newton's method on D."""
     close_sample_path_fraction: float = 2e-4
     """Two samples are close if their distance, as a fraction of the path's length, is at most this number.
@@ -51,16 +51,16 @@ class LeaderExchangeSettings:
     max_samples_without_spacing_limit: int = 1000
     """With more samples than this number, a sample is added only between samples farther apart than
     `close_sample_path_fraction`."""
-    distance_to_exchange_fraction: float = 1e-3
+    sample_offset_interval_fraction: float = 1e-3
     """Where further exchanges may lie between two samples, samples are added on both sides of the exchange
     found, at this fraction of the interval."""
     min_interval_fraction_with_two_exchanges: float = 1e-9
     """Like `min_interval_fraction`, if the interpolation does not exclude two exchanges between the
     samples."""
-    min_part_ratio: float = 0.05
+    min_subinterval_fraction: float = 0.05
     """An added sample divides its interval into parts that are at least this fraction of the interval: a
     minimum of the interpolant may coincide with a sample."""
-    max_distance_in_errors: float = 10.0
+    max_newton_displacement_in_errors: float = 10.0
     """The eigenvalue found by Newton's method is rejected as a different eigenvalue if its distance from the
     start exceeds this multiple of the start's error estimate and `max_relative_newton_displacement` times
     |w|."""
@@ -94,7 +94,9 @@ class LeaderExchangeSearch:
         return self.samples[p]
 
     def _solve_sample(self, p: float) -> SpectrumSample:
-        request = SpectrumRequest(SAMPLED_MODE_COUNT, LEADER_EXCHANGE_SETTINGS.accuracy, self.certify)
+        request = SpectrumRequest(
+            SAMPLED_MODE_COUNT, LEADER_EXCHANGE_SETTINGS.eigenvalue_accuracy, self.certify
+        )
         spectrum = self.problem.spectrum(p, request)
         # With a mode on the imaginary axis the status is undecided, but no mode is missing.
         self.leading_eigenvalues_proved &= spectrum.certified or spectrum.status == SpectrumStatus.undecided
@@ -107,15 +109,15 @@ class LeaderExchangeSearch:
         slope = np.empty(SAMPLED_MODE_COUNT, dtype=complex)
         for i, guess in enumerate(spectrum.eigenvalues):
             # Newton's method may jump to another eigenvalue, as in a cluster; the first value then stays.
-            refined_w, slope[i], _ = self.problem.eigenvalue(complex(guess), p)
-            error = LEADER_EXCHANGE_SETTINGS.max_distance_in_errors * spectrum.error_estimate[i]
+            refined_w, slope[i], _ = self.problem.eigenvalue_with_slope_and_error(complex(guess), p)
+            error = LEADER_EXCHANGE_SETTINGS.max_newton_displacement_in_errors * spectrum.error_estimate[i]
             max_distance = max(error, LEADER_EXCHANGE_SETTINGS.max_relative_newton_displacement * abs(guess))
             distances = np.abs(spectrum.eigenvalues - refined_w)
             if distances[i] <= min(max_distance, distances.min()):
                 w[i] = refined_w
         return SpectrumSample(p, w, slope, *self.problem.relaxation_time_and_slope(p))
 
-    def exchanges(self, edges: list[float]) -> tuple[list[Threshold], SearchEnd]:
+    def exchanges_and_search_end(self, edges: list[float]) -> tuple[list[Threshold], SearchEnd]:
         """Returns (exchanges, end of the search). exchanges: all exchanges by increasing p, for p from the
         first of `edges` to the end of the search. Raises Unsolvable if the search ends at the first edge."""
         exchanges: list[Threshold] = []
@@ -125,7 +127,7 @@ class LeaderExchangeSearch:
             try:
                 exchanges += self._search_interval(a, b, intervals)
             except Unsolvable as reason:
-                intervals.limit_search_below((a, b), str(reason))
+                intervals.retry_left_half_only((a, b), str(reason))
         return exchanges, intervals.end
 
     def _search_interval(self, a: float, b: float, intervals: IntervalQueue) -> list[Threshold]:
@@ -161,7 +163,7 @@ class LeaderExchangeSearch:
                     f"no point was found near {self.path.text_at(a)} at which the leading eigenvalue turns "
                     "from real to complex or back"
                 )
-        min_part_ratio = LEADER_EXCHANGE_SETTINGS.min_part_ratio
+        min_part_ratio = LEADER_EXCHANGE_SETTINGS.min_subinterval_fraction
         middle = a + min(max(fraction, min_part_ratio), 1 - min_part_ratio) * (b - a)
         intervals.add_subintervals((a, middle), (middle, b))
         return []
@@ -180,7 +182,7 @@ class LeaderExchangeSearch:
             self.leading_eigenvalues_proved = False
             return [exchange]
         p = self.path.coordinate(exchange.value)
-        distance = LEADER_EXCHANGE_SETTINGS.distance_to_exchange_fraction * length
+        distance = LEADER_EXCHANGE_SETTINGS.sample_offset_interval_fraction * length
         sample_p = sorted({left.p, max(left.p, p - distance), min(right.p, p + distance), right.p})
         intervals.add_subintervals(*pairwise(sample_p))
         return []
@@ -214,6 +216,6 @@ class LeaderExchangeSearch:
                 self.leading_eigenvalues_proved = (
                     self.leading_eigenvalues_proved and count.number == next_index
                 )
-                value, error = self.path.value(exchange.p, exchange.error_of_p)
+                value, error = self.path.value_and_error(exchange.p, exchange.error_of_p)
                 return Threshold(value, kind, exchange.frequency, exchange.growth_rate, error)
         return None

@@ -32,7 +32,7 @@ class PathProblem(ABC):
         little."""
 
     @abstractmethod
-    def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
+    def eigenvalue_with_slope_and_error(self, guess: complex, p: float) -> tuple[complex, complex, float]:
         """Returns (eigenvalue w near `guess`, dw/dp, error of w) of the rod at p."""
 
     @abstractmethod
@@ -44,7 +44,7 @@ class PathProblem(ABC):
     def count_right_of(self, line: float, p: float) -> EigenvalueCount:
         """Number of eigenvalues with Re w > `line` of the rod at p."""
 
-    def known_count_near_middle(self, low: float, high: float) -> int | None:
+    def known_unstable_count_near_middle(self, low: float, high: float) -> int | None:
         """Number of unstable modes already proved at a path variable near the middle between `low` and
         `high`; None if no such number is known."""
         return None
@@ -61,7 +61,7 @@ class UniformPath(PathProblem):
     def interval_edges(self, low: float, high: float) -> list[float]:
         return [a for a, _ in path_intervals(self.path, low, high)] + [high]
 
-    def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
+    def eigenvalue_with_slope_and_error(self, guess: complex, p: float) -> tuple[complex, complex, float]:
         coefficients = coefficients_at(p, self.path.origin, self.path.direction)
         return eigenvalue_by_newton(guess, coefficients, self.path.direction)
 

@@ -39,7 +39,9 @@ class NextSample(NamedTuple):
     explain the end values and exclude exchanges of the leading eigenvalue. may_hold_two_exchanges: whether
     two exchanges may lie between the samples."""
 
-    position: float
+    interval_fraction: float
+    """Position between the two samples as a fraction of their interval, from 0 to 1; 0 for no further
+    sample."""
     may_hold_two_exchanges: bool
 
 
@@ -62,7 +64,7 @@ def next_sample_between(left: SpectrumSample, right: SpectrumSample) -> NextSamp
             continue
         smallest_value = min(abs(a[0]), abs(b[0]))
         # By the trapezoidal rule smooth slopes explain the change between the samples.
-        unexplained_change = unexplained_difference(a, b, distance)
+        unexplained_change = deviation_from_trapezoidal_rule(a, b, distance)
         # The gap is mirrored to be positive, so that one test, of a minimum, serves both signs.
         sign = math.copysign(distance, a[0])
         minimum, fraction = cubic_minimum_and_position(abs(a[0]), abs(b[0]), sign * a[1], sign * b[1])
@@ -82,11 +84,11 @@ def excludes_exchange(left: SpectrumSample, right: SpectrumSample, may_hold_two_
     `next_sample_between` asks for a sample between them and returns `may_hold_two_exchanges`. The leading
     eigenvalue must be real at both samples, or a pair at both samples."""
     return two_pairs_exchange_lead(left, right) or (
-        not may_hold_two_exchanges and next_two_stay_below(left, right)
+        not may_hold_two_exchanges and next_two_stay_below_leader(left, right)
     )
 
 
-def next_two_stay_below(left: SpectrumSample, right: SpectrumSample) -> bool:
+def next_two_stay_below_leader(left: SpectrumSample, right: SpectrumSample) -> bool:
     """Whether the slopes exclude that the two eigenvalues after the leading eigenvalue or pair take the lead
     between two samples, whether these two eigenvalues are real or a complex pair. The leading eigenvalue must
     be real at both samples, or a pair at both samples."""
@@ -157,7 +159,7 @@ def _stays_positive(left: tuple[float, float], right: tuple[float, float], dista
     (a, slope_a), (b, slope_b) = left, right
     smallest_value = min(a, b)
     minimum, _ = cubic_minimum_and_position(a, b, distance * slope_a, distance * slope_b)
-    unexplained_change = unexplained_difference(left, right, distance)
+    unexplained_change = deviation_from_trapezoidal_rule(left, right, distance)
     return (
         # The limit 0 refuses a negative value at a sample, for which the first part alone would hold.
         minimum >= SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * smallest_value > 0
@@ -172,12 +174,14 @@ def _changes_sign_once(left: tuple[float, float], right: tuple[float, float], di
     change = abs(right[0] - left[0])
     return (
         left[0] * right[0] < 0
-        and unexplained_difference(left, right, distance)
+        and deviation_from_trapezoidal_rule(left, right, distance)
         <= SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * change
     )
 
 
-def unexplained_difference(left: tuple[float, float], right: tuple[float, float], distance: float) -> float:
+def deviation_from_trapezoidal_rule(
+    left: tuple[float, float], right: tuple[float, float], distance: float
+) -> float:
     """Modulus of the change of a quantity between two samples, minus its change by the trapezoidal rule.
     left, right: (value, slope) at the samples. distance: distance of the samples."""
     return abs(right[0] - left[0] - distance * (left[1] + right[1]) / 2)

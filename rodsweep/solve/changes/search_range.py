@@ -28,9 +28,9 @@ SEARCH_RANGE_SETTINGS = SearchRangeSettings()
 class CrushingEndSettings:
     """Settings for the end of a search just below the force that crushes the rod."""
 
-    crushing_margin: float = 1e-6
+    relative_crushing_margin: float = 1e-6
     """A search ends at this relative distance below the crushing force; at F = k1 the rod is crushed."""
-    crushing_tolerance: float = 1e-12
+    relative_crushing_tolerance: float = 1e-12
     """F and the crushing force are treated as equal if their relative difference is at most this number: on a
     grid of F and k1 the two forces may differ by rounding alone."""
 
@@ -38,9 +38,9 @@ class CrushingEndSettings:
 CRUSHING_END_SETTINGS = CrushingEndSettings()
 
 
-def end_below_crushing(rod: Rod, F: float) -> float:
+def search_end_below_crushing(rod: Rod, F: float) -> float:
     """Largest force of a search up to F, in k3/L^2: F, or a force just below the crushing force of `rod`."""
-    return min(F, rod.crushing_force * (1 - CRUSHING_END_SETTINGS.crushing_margin))
+    return min(F, rod.crushing_force * (1 - CRUSHING_END_SETTINGS.relative_crushing_margin))
 
 
 class SearchEnd(NamedTuple):
@@ -93,7 +93,7 @@ class IntervalQueue:
         self._halvings = SEARCH_RANGE_SETTINGS.max_halvings_after_failure
         self.end = SearchEnd(p, reason)
 
-    def limit_search_below(self, interval: tuple[float, float], reason: str) -> None:
+    def retry_left_half_only(self, interval: tuple[float, float], reason: str) -> None:
         """Limits the search to parameters below the current `interval`, whose search failed; its left half is
         still searched. reason: why the search failed."""
         self._queue.clear()

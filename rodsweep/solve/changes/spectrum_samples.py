@@ -14,7 +14,7 @@ class SpectrumSampleSettings:
     min_computed_modes: int = 4
     """Minimum number of leading eigenvalues computed for one arm of a path (`arm.axis_modes`); at least two
     more than the number of unstable modes are computed."""
-    arm_accuracy: float = 1e-6
+    arm_eigenvalue_accuracy: float = 1e-6
     """Relative accuracy of the eigenvalues of one arm, before the refinement by Newton's method on D."""
     interpolation_tolerance: float = 0.25
     """Tolerance of the interpolation between two samples. The cubic must stay above this fraction of the
@@ -37,7 +37,7 @@ class SpectrumSample:
 
     p: float
     w: Complex
-    slope: Complex
+    slopes: Complex
     relaxation_time: float = 1.0
     relaxation_time_slope: float = 0.0
 
@@ -50,13 +50,13 @@ class SpectrumSample:
         """Returns (tau^2 (w1 - w2)^2, derivative of this product with respect to p), tau: `relaxation_time`,
         for the two leading eigenvalues w1, w2; None if w1 is real and w2 is complex."""
         if self.oscillates:
-            gap, slope = self._times_relaxation_time(2 * self.w[0].imag, 2 * self.slope[0].imag)
+            gap, slope = self._times_relaxation_time(2 * self.w[0].imag, 2 * self.slopes[0].imag)
             # (w1 - w2)^2 is negative for a pair, positive for two real eigenvalues, and smooth through 0.
             return -(gap**2), -2 * gap * slope
         if self.w[1].imag != 0:
             return None
         gap, slope = self._times_relaxation_time(
-            (self.w[0] - self.w[1]).real, (self.slope[0] - self.slope[1]).real
+            (self.w[0] - self.w[1]).real, (self.slopes[0] - self.slopes[1]).real
         )
         # The derivative of w itself is infinite at a double eigenvalue, that of the square is not.
         return gap**2, 2 * gap * slope
@@ -84,8 +84,8 @@ class SpectrumSample:
         # they are not.
         if not (a.imag == b.imag == 0 or a.imag * b.imag < 0):
             return None
-        slope_a, slope_b = list_of(self.slope[first : first + 2])
-        leading_growth, slope = float(self.w[0].real), float(self.slope[0].real)
+        slope_a, slope_b = list_of(self.slopes[first : first + 2])
+        leading_growth, slope = float(self.w[0].real), float(self.slopes[0].real)
         # For a pair this is the squared distance, for two real ones it is positive while both stay below.
         product = ((leading_growth - a) * (leading_growth - b)).real
         product_slope = (
@@ -102,7 +102,9 @@ class SpectrumSample:
     def scaled_growth_gap(self, i: int, j: int) -> tuple[float, float]:
         """Returns (tau Re(w - v), derivative of this product with respect to p), tau: `relaxation_time`, for
         the eigenvalues w and v with the indices i and j."""
-        return self._times_relaxation_time((self.w[i] - self.w[j]).real, (self.slope[i] - self.slope[j]).real)
+        return self._times_relaxation_time(
+            (self.w[i] - self.w[j]).real, (self.slopes[i] - self.slopes[j]).real
+        )
 
     def scaled_growth_gap_of_leading_pair(self) -> tuple[float, float]:
         """Returns (tau Re((w1 + w2)/2 - w3), derivative of this product with respect to p), tau:
@@ -115,12 +117,12 @@ class SpectrumSample:
     def scaled_squared_frequency(self, i: int) -> tuple[float, float]:
         """Returns (tau^2 (Im w)^2, its derivative with respect to p), tau: `relaxation_time`, for w =
         `self.w[i]`."""
-        frequency, slope = self._times_relaxation_time(self.w[i].imag, self.slope[i].imag)
+        frequency, slope = self._times_relaxation_time(self.w[i].imag, self.slopes[i].imag)
         return frequency**2, 2 * frequency * slope
 
     def _times_relaxation_time(self, value: float, slope: float) -> tuple[float, float]:
         """Returns (tau value, derivative of this product with respect to p) for a quantity `value` with the
-        derivative `slope`; the factor tau, the `relaxation_time`, preserves zeros and signs."""
+        derivative `slopes`; the factor tau, the `relaxation_time`, preserves zeros and signs."""
         return float(value * self.relaxation_time), float(
             slope * self.relaxation_time + value * self.relaxation_time_slope
         )

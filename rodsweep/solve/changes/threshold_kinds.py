@@ -61,6 +61,7 @@ class Threshold:
 
     value: float
     kind: ThresholdKind
+    """Kind of the change of the spectrum, named for increasing parameter."""
     frequency: float
     growth_rate: float
     error: float

@@ -9,7 +9,7 @@ from functools import cache
 from ...determinant.parameter_path import ParameterPath
 from ...model.rod import Rod
 from ..point_outcome import outcome_or_failure
-from .search_range import end_below_crushing
+from .search_range import search_end_below_crushing
 from .status import ThresholdStatus
 from .threshold_kinds import Threshold, ThresholdKind
 from .thresholds_along_path import ThresholdSearchResult, find_thresholds
@@ -34,9 +34,12 @@ class Thresholds:
 
     status: ThresholdStatus
     search_result: ThresholdSearchResult
+    """Thresholds and unstable modes found by the search, with the searched interval and the doubts."""
     end: float
     seconds: float = 0.0
+    """Wall-clock time of the search, in s."""
     message: str = ""
+    """Cause of a failure or of doubts about the list; empty otherwise."""
 
     @property
     def thresholds(self) -> tuple[Threshold, ...]:
@@ -48,7 +51,7 @@ def solve_thresholds(rod: Rod, request: ThresholdsRequest) -> Thresholds:
     """All thresholds of `rod` for forces from 0 to `request.F_max`, or to just below the crushing force if
     smaller; a failure is returned as a status, never raised."""
     # At the crushing force the axial stretch is 0 and the equations are singular.
-    end = end_below_crushing(rod, request.F_max)
+    end = search_end_below_crushing(rod, request.F_max)
 
     def search() -> Thresholds:
         result = find_thresholds(ParameterPath(rod, "F"), 0.0, end, request.certify, request.max_thresholds)
@@ -60,7 +63,7 @@ def solve_thresholds(rod: Rod, request: ThresholdsRequest) -> Thresholds:
 def empty_thresholds(status: ThresholdStatus, end: float, message: str = "") -> Thresholds:
     """A result without thresholds, for a rod that needs no search or whose search failed. end: parameter
     value at the end of the search, NaN after a failure. message: reason for a failure."""
-    result = ThresholdSearchResult(proved=status == ThresholdStatus.ok)
+    result = ThresholdSearchResult(is_proved=status == ThresholdStatus.ok)
     return Thresholds(status=status, search_result=result, end=end, message=message)
 
 
@@ -83,7 +86,7 @@ def thresholds_with_status(
     # A proof is checked last: an inaccurate list is worse than an unproved one.
     elif accuracy_text:
         status = ThresholdStatus.accuracy_not_reached
-    elif certify and not result.proved:
+    elif certify and not result.is_proved:
         status = ThresholdStatus.not_certified
     # A more serious status does not say that a stored threshold is inaccurate, so the message says it.
     hidden_text = accuracy_text if status != ThresholdStatus.accuracy_not_reached else ""

@@ -8,9 +8,9 @@ nonuniform arms from `arm.crossings`; exchanges from `leader_exchanges`. Winding
 import math
 from dataclasses import dataclass, replace
 
-from ...determinant.certificate.covering import Box, cover_with_boxes
+from ...determinant.certificate.covering import CrossingBox, cover_with_boxes
 from ...determinant.certificate.first_crossing_boxes import first_crossing_boxes
-from ...determinant.parameter_path import ParameterPath, coefficients_at, determinant_along_path
+from ...determinant.parameter_path import ParameterPath, coefficients_at, determinant_value_on_path
 from ...determinant.roots.newton import LocatedEigenvalue
 from ..unsolvable import Unsolvable
 from .arm.crossings import CrossingSearch
@@ -26,10 +26,10 @@ from .unstable_modes import UnstableModeCounter
 class ThresholdSettings:
     """Settings of the search for all thresholds along a path."""
 
-    sample_shift_fraction: float = 1e-4
+    sample_to_crossing_path_fraction: float = 1e-4
     """Samples are added at this distance, as a fraction of the path, on both sides of a crossing whose pair
     must lead but does not lead in the list."""
-    max_merged_gap_per_parameter: float = 1e-5
+    max_relative_merged_gap: float = 1e-5
     """Undecided boxes are merged if the gap between them is at most this number times the parameter."""
 
 
@@ -53,40 +53,42 @@ class ThresholdSearchResult:
     unstable_at_end: int = -1
     oscillates_at_start: bool = False
     """Whether a complex pair leads at the start of the path."""
-    proved: bool
+    is_proved: bool
     """Whether the crossings are complete, all counts agree, and each leading eigenvalue leads."""
-    evaluation_count: int = 0
+    determinant_evaluation_count: int = 0
     """Number of evaluations of the determinant D for the boxes."""
-    solve_count: int = 0
+    eigenvalue_solve_count: int = 0
     """Number of solved eigenvalue problems."""
     doubt_text: str = ""
     """Reasons why the list is not proved or the search ended early."""
 
     @property
-    def proved_to_the_end(self) -> bool:
+    def is_proved_to_the_end(self) -> bool:
         """Whether the list is proved complete in the whole requested interval."""
-        return self.proved and not self.ended_early
+        return self.is_proved and not self.ended_early
 
 
 @dataclass(frozen=True, slots=True)
 class PathCrossings:
-    """Crossings of the imaginary axis along `path`. gaps: intervals of the parameter that may contain further
-    crossings. search_end: end of the search. evaluation_count: number of evaluations of D in the covering."""
+    """Crossings of the imaginary axis along `path`. undecided_intervals: of the parameter, with possible
+    further crossings. search_end: end of the search. determinant_evaluation_count: number of evaluations of D
+    in the covering."""
 
     path: ParameterPath
     crossings: list[Threshold]
-    gaps: list[tuple[float, float]]
+    undecided_intervals: list[tuple[float, float]]
     search_end: SearchEnd
-    evaluation_count: int = 0
+    determinant_evaluation_count: int = 0
 
     def restricted_to(self, search_end: SearchEnd) -> "PathCrossings":
         """The crossings and gaps up to `search_end`, an earlier end of the search or the current end."""
         if search_end.p == self.search_end.p:
             return self
-        crossings = [c for c in self.crossings if self.path.coordinate(c.value) <= search_end.p]
+        coordinate = self.path.coordinate
+        crossings = [c for c in self.crossings if coordinate(c.value) <= search_end.p]
         # A gap that only begins before the end is kept: its part within the searched range is still open.
-        gaps = [gap for gap in self.gaps if min(map(self.path.coordinate, gap)) <= search_end.p]
-        return replace(self, crossings=crossings, gaps=gaps, search_end=search_end)
+        gaps = [gap for gap in self.undecided_intervals if min(map(coordinate, gap)) <= search_end.p]
+        return replace(self, crossings=crossings, undecided_intervals=gaps, search_end=search_end)
 
     def searched_interval(self, start: float, stop: float) -> tuple[float, float]:
         """The searched part (low, high) of the requested parameter interval from `start` to `stop`."""
@@ -111,49 +113,46 @@ def find_thresholds(
     edges = problem.interval_edges(low, high)
     # A second round, with samples close to it, only if a pair on the axis was not found to lead.
     for _ in range(2):
-        exchanges, end = search.exchanges(
-            [*(p for p in edges if p < crossings.search_end.p), crossings.search_end.p]
-        )
+        end_p = crossings.search_end.p
+        exchanges, end = search.exchanges_and_search_end([*(p for p in edges if p < end_p), end_p])
         crossings = crossings.restricted_to(end) if end.reason else crossings
         ends = crossings.searched_interval(start, stop)
-        counter = UnstableModeCounter(problem, crossings.gaps, certify)
+        counter = UnstableModeCounter(problem, crossings.undecided_intervals, certify)
         # Without load the operator is self-adjoint and negative: no mode is unstable, no count is needed.
-        start_count = (
-            0 if path.name == "F" and start == 0 else counter.count_at_start(*ends, crossings.crossings)
-        )
+        is_unloaded = path.name == "F" and start == 0
+        start_count = 0 if is_unloaded else counter.count_at_start(*ends, crossings.crossings)
         oscillates = search.sample_at(path.coordinate(ends[0])).oscillates
         ordered = sorted(exchanges + crossings.crossings, key=lambda c: c.value)
-        thresholds, end_count = counter.crossings_with_counts(ordered, ends, start_count)
+        thresholds, end_count = counter.thresholds_with_counts_and_end_count(ordered, ends, start_count)
         missed_p = _crossings_contradicting_exchanges(path, thresholds, oscillates, start_count)
         if not missed_p:
             break
-        sample_p = [
-            p + s * THRESHOLD_SETTINGS.sample_shift_fraction * (high - low) for p in missed_p for s in (-1, 1)
-        ]
+        distance = THRESHOLD_SETTINGS.sample_to_crossing_path_fraction * (high - low)
+        sample_p = [p + sign * distance for p in missed_p for sign in (-1, 1)]
         edges = sorted({*edges, *(p for p in sample_p if low < p < high)})
     else:
         counter.doubts.append("a pair crosses the imaginary axis, but another eigenvalue grows faster")
     if certify and not search.leading_eigenvalues_proved:
         counter.doubts.append("it is not proved everywhere in the range which eigenvalue leads")
     result = _search_result(crossings, (start, stop), counter, thresholds, (start_count, end_count))
-    return replace(result, oscillates_at_start=oscillates, solve_count=problem.solve_count)
+    return replace(result, oscillates_at_start=oscillates, eigenvalue_solve_count=problem.solve_count)
 
 
-def find_axis_crossings(
+def find_imaginary_axis_crossings(
     path: ParameterPath, start: float, stop: float, certify: bool = True, max_crossings: float = math.inf
 ) -> ThresholdSearchResult:
     """Crossings of the imaginary axis by pairs between the parameter values `start` and `stop`, without
     exchanges of the leading eigenvalue, in half the time of `find_thresholds`. certify: whether a proof is
-    requested. The result is `proved` if boxes without a further crossing cover the region and every count
+    requested. The result is `is_proved` if boxes without a further crossing cover the region and every count
     agrees. The search ends early, or raises Unsolvable, for the reasons of `find_thresholds`."""
     low, high = sorted((path.coordinate(start), path.coordinate(stop)))
     problem = path_problem(path)
     path_crossings = _crossings(problem, (low, high), certify, max_crossings)
-    counter = UnstableModeCounter(problem, path_crossings.gaps, certify)
+    counter = UnstableModeCounter(problem, path_crossings.undecided_intervals, certify)
     ends = path_crossings.searched_interval(start, stop)
     ordered = sorted(path_crossings.crossings, key=lambda c: c.value)
     count = 0 if path.name == "F" and start == 0 else counter.count_at_start(*ends, ordered)
-    crossings, end_count = counter.crossings_with_counts(ordered, ends, count)
+    crossings, end_count = counter.thresholds_with_counts_and_end_count(ordered, ends, count)
     return _search_result(path_crossings, (start, stop), counter, crossings, (count, end_count))
 
 
@@ -179,8 +178,8 @@ def _search_result(
         open_range=(min(starts), max(ends)),
         unstable_at_start=end_counts[0],
         unstable_at_end=end_counts[1],
-        proved=counter.certify and not counter.gaps and not counter.doubts and is_known,
-        evaluation_count=crossings.evaluation_count,
+        is_proved=counter.certify and not counter.gaps and not counter.doubts and is_known,
+        determinant_evaluation_count=crossings.determinant_evaluation_count,
         doubt_text="; ".join(filter(None, (message, *counter.doubts))),
     )
 
@@ -193,7 +192,7 @@ def _crossings(
     if not isinstance(problem, ArmPath):
         return _crossings_by_covering(problem.path, *p_ends)
     search = CrossingSearch(problem, certify)
-    crossings, search_end = search.crossings(problem.interval_edges(*p_ends), max_crossings)
+    crossings, search_end = search.crossings_and_search_end(problem.interval_edges(*p_ends), max_crossings)
     value = problem.path.parameter.value
     gaps = [(min(gap), max(gap)) for gap in ((value(a), value(b)) for a, b in search.gaps)]
     return PathCrossings(problem.path, crossings, gaps, search_end)
@@ -233,17 +232,17 @@ def _crossings_contradicting_exchanges(
 def _hopf_crossing(path: ParameterPath, zero: LocatedEigenvalue) -> Threshold:
     """Crossing of the imaginary axis at `zero`, a zero of D on this axis."""
     coefficients = coefficients_at(zero.p, path.origin, path.direction)
-    value = determinant_along_path(complex(0.0, zero.eta_or_x), coefficients, path.direction)
+    value = determinant_value_on_path(complex(0.0, zero.eta_or_x), coefficients, path.direction)
     kind = crossing_kind(path, (-value.D_p / value.D_w).real > 0)  # dw/dp = -D_p/D_w
-    parameter_value, error = path.value(zero.p, zero.error_of_p)
-    return Threshold(parameter_value, kind, zero.eta_or_x, 0.0, error, frequency_error=zero.error)
+    parameter_value, error = path.value_and_error(zero.p, zero.error_of_p)
+    return Threshold(parameter_value, kind, zero.eta_or_x, 0.0, error, frequency_error=zero.error_of_eta_or_x)
 
 
-def _undecided_intervals(path: ParameterPath, undecided: list[Box]) -> list[tuple[float, float]]:
+def _undecided_intervals(path: ParameterPath, undecided: list[CrossingBox]) -> list[tuple[float, float]]:
     """Disjoint intervals of the parameter covered by the boxes `undecided`."""
     gaps: list[tuple[float, float]] = []
     for a, b in sorted(sorted((path.coordinate(box.p_from), path.coordinate(box.p_to))) for box in undecided):
-        if gaps and a <= gaps[-1][1] * (1 + THRESHOLD_SETTINGS.max_merged_gap_per_parameter):
+        if gaps and a <= gaps[-1][1] * (1 + THRESHOLD_SETTINGS.max_relative_merged_gap):
             gaps[-1] = gaps[-1][0], max(b, gaps[-1][1])
         else:
             gaps.append((a, b))

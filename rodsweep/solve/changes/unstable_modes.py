@@ -17,13 +17,13 @@ if TYPE_CHECKING:
 class UnstableModeCountSettings:
     """Settings for counts of unstable modes between thresholds."""
 
-    count_positions: tuple[float, ...] = (0.5, 0.3, 0.7)
+    count_interval_fractions: tuple[float, ...] = (0.5, 0.3, 0.7)
     """Positions between two crossings, as fractions of the interval, at which the unstable modes are counted,
     in this order, until a count is decided."""
     min_relative_crossing_distance: float = 1e-3
     """Modes are not counted between two crossings at path variables a < b if (b - a)/|b| is at most this
     number, because a pair is then too close to the imaginary axis."""
-    strip_half_width: float = 1e-5
+    relative_strip_half_width: float = 1e-5
     """Distance from the imaginary axis, divided by a pair's frequency, at which modes are counted on both
     sides of the pair. The count on the axis is undecided for pairs within some 1e-6."""
 
@@ -53,23 +53,23 @@ class UnstableModeCounter:
         """Number of unstable modes at a position between the parameter values a and b, known already or by
         the winding number; -1 if the count is undecided at all positions tried."""
         # For nonuniform arms the search for crossings has counted the modes of some rods already.
-        known_count = self.problem.known_count_near_middle(
+        known_count = self.problem.known_unstable_count_near_middle(
             *sorted((self.path.coordinate(a), self.path.coordinate(b)))
         )
         if known_count is not None:
             return known_count
         # Near a pair almost on the axis a count is undecided, and another position may be farther from it.
-        for fraction in UNSTABLE_MODE_COUNT_SETTINGS.count_positions:
+        for fraction in UNSTABLE_MODE_COUNT_SETTINGS.count_interval_fractions:
             number = self.count_at(a + fraction * (b - a))
             if number >= 0:
                 return number
         return -1
 
-    def count_beside_pair(self, a: float, b: float, frequency: float, expected: int) -> int:
+    def expected_count_if_confirmed(self, a: float, b: float, frequency: float, expected: int) -> int:
         """`expected`, if counts on both sides of the imaginary axis show that in the middle between the
         parameter values a and b exactly one pair is near the axis, and that with or without this pair
         `expected` modes are unstable; otherwise -1. frequency of the pair, in 1/tau2."""
-        distance = UNSTABLE_MODE_COUNT_SETTINGS.strip_half_width * frequency
+        distance = UNSTABLE_MODE_COUNT_SETTINGS.relative_strip_half_width * frequency
         middle = self.path.coordinate((a + b) / 2)
         right = self.problem.count_right_of(distance, middle).number
         left = self.problem.count_right_of(-distance, middle).number
@@ -100,7 +100,7 @@ class UnstableModeCounter:
                 change += _change_of_count(ordered[index].kind)
         return -1
 
-    def crossings_with_counts(
+    def thresholds_with_counts_and_end_count(
         self, ordered_thresholds: list[Threshold], parameter_ends: tuple[float, float], unstable_count: int
     ) -> tuple[tuple[Threshold, ...], int]:
         """Returns (thresholds, at_end). thresholds: as `ordered_thresholds`, with `unstable_after` set, and
@@ -147,7 +147,7 @@ class UnstableModeCounter:
             return count
         # Between two close Hopf points their pair may be too near the axis at all positions.
         if count < 0 and frequency:
-            count = self.count_beside_pair(a, b, frequency, unstable_count)
+            count = self.expected_count_if_confirmed(a, b, frequency, unstable_count)
         if count != unstable_count:
             undecided_text = "the count of unstable modes is undecided"
             count_text = f"{count} modes are unstable" if count >= 0 else undecided_text

@@ -19,7 +19,7 @@ from typing import Generic, NamedTuple, Protocol, TypeVar
 import numpy as np
 
 from ...arrays import Array
-from ..point_outcome import FAILURES
+from ..point_outcome import FAILURE_EXCEPTIONS
 from ..unsolvable import Unsolvable
 
 Solution = TypeVar("Solution")
@@ -42,14 +42,16 @@ class CurveProblem(Protocol[Solution]):
         """The solution one step of the length `length` beyond `previous[-1]`; raises Unsolvable if Newton's
         method fails."""
 
-    def margins(self, solution: Solution) -> Array:
+    def margins_to_curve_end(self, solution: Solution) -> Array:
         """Signed distances, (margins,), of a solution from the limits of the curve; a negative distance means
         that the solution is beyond this limit."""
 
-    def located_zero(self, previous: Sequence[Solution], outer: Solution, margin: int) -> Solution | None:
+    def point_at_zero_margin(
+        self, previous: Sequence[Solution], outer: Solution, margin: int
+    ) -> Solution | None:
         """The solution between `previous[-1]` and `outer` at which the margin with the index `margin` is 0;
-        None if `previous[-1]` is to be the last solution. Raises an error of FAILURES if no solution is
-        found: the step is then repeated with half its length."""
+        None if `previous[-1]` is to be the last solution. Raises an error of FAILURE_EXCEPTIONS if no
+        solution is found: the step is then repeated with half its length."""
 
     def is_closed_by(self, previous: Sequence[Solution], solution: Solution) -> bool:
         """Whether the first solution of the curve lies on the step from `previous[-1]` to the next solution
@@ -66,9 +68,9 @@ class StepControl:
     """Longest step length."""
     min_length: float
     """Shortest step length: the curve ends if a step fails and half its length would be below this limit."""
-    target_error: float = inf
+    target_prediction_error: float = inf
     """The length of the next step is chosen for this prediction error."""
-    max_error: float = inf
+    max_prediction_error: float = inf
     """Largest prediction error of an accepted step; with a larger error the solution may belong to another
     curve."""
     prediction_order: int = 1
@@ -99,7 +101,7 @@ class StepControl:
         """The result `result` itself; raises Unsolvable if its prediction error or angle is so large that the
         solution may lie on another curve."""
         # Negated, so that an error of nan is refused.
-        if not result.prediction_error <= self.max_error:
+        if not result.prediction_error <= self.max_prediction_error:
             raise Unsolvable("the corrected solution is too far from its prediction")
         if not _angle(result.turn_cosine) <= self.max_angle:
             raise Unsolvable("the tangent of the curve turns by too large an angle in one step")
@@ -110,9 +112,9 @@ class StepControl:
         limits of the ratio to the last length and at most `max_length`. length: length of the last, accepted
         step. result: result of the last step. solution_count: number of solutions so far."""
         # The error of a prediction from m solutions is proportional to the m-th power of the step.
-        error_ratio = (self.target_error / max(result.prediction_error, self.min_error_or_angle)) ** (
-            1 / min(self.prediction_order, solution_count)
-        )
+        error_ratio = (
+            self.target_prediction_error / max(result.prediction_error, self.min_error_or_angle)
+        ) ** (1 / min(self.prediction_order, solution_count))
         angle_ratio = self.target_angle / max(_angle(result.turn_cosine), self.min_error_or_angle)
         factor = min(max(min(error_ratio, angle_ratio), self.min_length_ratio), self.max_length_ratio)
         return min(self.max_length, length * factor)
@@ -138,7 +140,7 @@ class Curve(Generic[Solution]):
     has its start as the last solution, too.
 
     margin_index: index of the margin that becomes negative at the end; -1 for another end. The last solution
-    is the solution at the zero of this margin, if `located_zero` returns one.
+    is the solution at the zero of this margin, if `point_at_zero_margin` returns one.
     """
 
     solutions: list[Solution]
@@ -146,18 +148,19 @@ class Curve(Generic[Solution]):
     margin_index: int = -1
 
 
-def advance(
+def next_solution_and_step_length(
     step: Callable[[float], StepResult[Solution]], length: float, control: StepControl
 ) -> tuple[StepResult[Solution], float]:
     """(next solution of a curve, length of the successful step); raises the error of the last step if no step
     succeeds. length: first step length, at most `control.max_length`. A step that fails, or whose prediction
     error or angle is too large, is repeated with half the length, if `control.min_length` allows. step:
-    function that returns the solution one step of a given length ahead, or raises an error of FAILURES."""
+    function that returns the solution one step of a given length ahead, or raises an error of
+    FAILURE_EXCEPTIONS."""
     length = min(length, control.max_length)
     while True:
         try:
             return control.require_small_errors(step(length)), length
-        except FAILURES:
+        except FAILURE_EXCEPTIONS:
             if length / 2 < control.min_length:
                 raise
             length /= 2
@@ -173,19 +176,19 @@ def follow_curve(
     called before every step with all solutions so far. control: step length control."""
     solutions = [start]
     length = control.first_length
-    margins = problem.margins(start)
+    margins = problem.margins_to_curve_end(start)
     while len(solutions) < control.max_solutions:
         report(solutions)
         try:
-            result, length = advance(partial(problem.step, solutions), length, control)
-        except FAILURES:
+            result, length = next_solution_and_step_length(partial(problem.step, solutions), length, control)
+        except FAILURE_EXCEPTIONS:
             return Curve(solutions, StopReason.no_further_solution)
-        new_margins = problem.margins(result.solution)
+        new_margins = problem.margins_to_curve_end(result.solution)
         crossed_margin = first_crossed_margin(margins, new_margins)
         if crossed_margin >= 0:
             try:
-                last_solution = problem.located_zero(solutions, result.solution, crossed_margin)
-            except FAILURES:
+                last_solution = problem.point_at_zero_margin(solutions, result.solution, crossed_margin)
+            except FAILURE_EXCEPTIONS:
                 if length / 2 < control.min_length:
                     return Curve(solutions, StopReason.no_further_solution)
                 length /= 2
@@ -219,7 +222,7 @@ def first_crossed_margin(margins_before: Array, margins_after: Array) -> int:
     return first if fraction[first] < inf else -1
 
 
-def zero_along_step(
+def step_length_to_zero(
     value: Callable[[float], float],
     ends: tuple[float, float],
     length: float,

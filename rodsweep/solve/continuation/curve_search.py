@@ -21,14 +21,14 @@ class CurveTracingProblem(Protocol[AnyCurve]):
     def next_seed(self, untraced: Sequence[int]) -> int:
         """Index of the seed point from which the next curve is traced, one of the indices `untraced`."""
 
-    def missing_items(self, seed: int) -> list[int]:
+    def missing_work_items(self, seed: int) -> list[int]:
         """Numbers of the work items (parts of a curve) whose results are missing for the curve through the
         seed point `seed`."""
 
     def curve(self, seed: int) -> AnyCurve | None:
         """The curve through the seed point `seed`; None if this curve cannot be traced."""
 
-    def distance(self, curve: AnyCurve, seed: int) -> float:
+    def distance_along_row(self, curve: AnyCurve, seed: int) -> float:
         """Distance of the seed point `seed` from a curve along its row, divided by the length of a row; inf
         if no point of the curve is near."""
 
@@ -38,12 +38,12 @@ class CurveTracingProblem(Protocol[AnyCurve]):
 
 @dataclass(frozen=True, slots=True)
 class TracedCurves(Generic[AnyCurve]):
-    """All curves through the seed points of a plane. max_seed_distance_in_rows: largest distance of a seed
-    point from its curve, divided by the length of a row; 0 if no seed point lies on a curve.
+    """All curves through the seed points of a plane. max_seed_distance_per_row_length: largest distance of a
+    seed point from its curve, divided by the length of a row; 0 if no seed point lies on a curve.
     untraced_seed_count: number of seed points that lie on no traced curve."""
 
     curves: tuple[AnyCurve, ...]
-    max_seed_distance_in_rows: float
+    max_seed_distance_per_row_length: float
     untraced_seed_count: int
 
 
@@ -51,15 +51,15 @@ class TracedCurves(Generic[AnyCurve]):
 class CurveTracingState(Generic[AnyCurve]):
     """State of the search for curves through seed points.
 
-    tolerance: a seed point lies on a curve if its distance is at most this number. distances: distance of
-    each seed point from the nearest curve so far, by index. curves: curves traced so far, each only once.
-    missing_items: numbers of the work items whose missing results stopped the search. untried_seeds: indices
-    of the seed points that lie on no curve so far and were not tried, without the seed point at which the
-    search stopped.
+    tolerance: a seed point lies on a curve if its distance is at most this number. seed_distances_along_row:
+    distance of each seed point from the nearest curve so far, by index. curves: curves traced so far, each
+    only once. missing_items: numbers of the work items whose missing results stopped the search.
+    untried_seeds: indices of the seed points that lie on no curve so far and were not tried, without the seed
+    point at which the search stopped.
     """
 
     tolerance: float
-    distances: dict[int, float]
+    seed_distances_along_row: dict[int, float]
     curves: list[AnyCurve] = field(default_factory=list)
     missing_items: list[int] = field(default_factory=list)
     untried_seeds: list[int] = field(default_factory=list)
@@ -69,9 +69,13 @@ class CurveTracingState(Generic[AnyCurve]):
         """All curves, with the largest distance of a seed point from its curve and the number of untraced
         seed points; valid if `missing_items` is empty."""
         # Distances beyond the tolerance belong to seeds on no curve.
-        seed_distances = [distance for distance in self.distances.values() if distance <= self.tolerance]
+        seed_distances = [
+            distance for distance in self.seed_distances_along_row.values() if distance <= self.tolerance
+        ]
         return TracedCurves(
-            tuple(self.curves), max(seed_distances, default=0.0), len(self.distances) - len(seed_distances)
+            tuple(self.curves),
+            max(seed_distances, default=0.0),
+            len(self.seed_distances_along_row) - len(seed_distances),
         )
 
 
@@ -84,10 +88,12 @@ def trace_all_curves(
     search: CurveTracingState[AnyCurve] = CurveTracingState(tolerance, dict.fromkeys(seeds, math.inf))
     tried_seeds: set[int] = set()
     while untraced := [
-        i for i, distance in search.distances.items() if distance > tolerance and i not in tried_seeds
+        i
+        for i, distance in search.seed_distances_along_row.items()
+        if distance > tolerance and i not in tried_seeds
     ]:
         seed = problem.next_seed(untraced)
-        search.missing_items = problem.missing_items(seed)
+        search.missing_items = problem.missing_work_items(seed)
         if search.missing_items:
             # Idle processes may trace curves from these seeds meanwhile. Some seeds may lie on the missing
             # curve.
@@ -98,9 +104,9 @@ def trace_all_curves(
         curve = problem.curve(seed)
         if curve is None:
             continue
-        for i, distance in search.distances.items():
+        for i, distance in search.seed_distances_along_row.items():
             if distance > tolerance:
-                search.distances[i] = min(distance, problem.distance(curve, i))
+                search.seed_distances_along_row[i] = min(distance, problem.distance_along_row(curve, i))
         # A seed just beyond the tolerance leads to a curve that is known already.
         if not any(problem.are_identical(curve, other) for other in search.curves):
             search.curves.append(curve)

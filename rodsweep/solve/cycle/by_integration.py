@@ -39,16 +39,16 @@ from .settled_motion import (
 )
 from .status import IntegratedCycleStatus
 from .straight_rod import straight_rod_stability
-from .transient.motion_mesh import integrable_rod, motion_mesh
+from .transient.motion_mesh import motion_mesh, rod_for_time_integration
 from .transient.orbit_from_motion import collocation_states
-from .transient.returns import (
+from .transient.poincare_returns import (
     RETURN_SETTINGS,
-    compared_run_length,
     not_settled_text,
-    recurrence,
-    return_limit,
+    poincare_section_crossings,
+    return_count_of_compared_run,
+    returns_per_period_and_distance,
     run_failure,
-    section_crossings,
+    run_limit_by_returns,
     tip_angle_row,
 )
 from .transient.transient_settings import TRANSIENT_SETTINGS
@@ -61,7 +61,7 @@ def solve_by_integration(rod: Rod, request: CycleRequest) -> CycleOutcome:
         destroy_integrators()  # after an error inside PETSc its objects are unusable
         return CycleOutcome(status=IntegratedCycleStatus.failed, message=cause)
 
-    return outcome_or_failure(lambda: _IntegrationUntilSettled(rod, request).cycle(), failed)
+    return outcome_or_failure(lambda: _IntegrationUntilSettled(rod, request).cycle_outcome(), failed)
 
 
 class _IntegrationUntilSettled:
@@ -70,17 +70,17 @@ class _IntegrationUntilSettled:
     def __init__(self, rod: Rod, request: CycleRequest) -> None:
         self.request = request
         self.limiting_rod = rod
-        self.rod = integrable_rod(rod)
+        self.rod = rod_for_time_integration(rod)
         self.mesh = motion_mesh(rod, request.accuracy)
-        tolerance = INTEGRATION_SETTINGS.local_tolerance_ratio * request.accuracy
+        tolerance = INTEGRATION_SETTINGS.local_tolerance_per_accuracy * request.accuracy
         self.scheme = TimeScheme("arkimex", "5", tolerance=tolerance)
         self.system = ExplicitSystem(self.rod, self.mesh)
         self.leading_mode = leading_mode(self.system)
         self.return_count = self.settled_count = 0  # returns so far, and until the motion last settled
         self.return_times = ReturnTimeEstimate(self.leading_mode.period)
-        self.intervals_per_return = INTEGRATION_SETTINGS.measurement_intervals_per_return
+        self.time_intervals_per_return = INTEGRATION_SETTINGS.measurement_intervals_per_return
 
-    def cycle(self) -> CycleOutcome:
+    def cycle_outcome(self) -> CycleOutcome:
         """The outcome for the rod: the cycle with its errors, or the status of a motion without a cycle."""
         # Exact; an eigenvalue of the mesh has errors up to 1e-3.
         w = straight_rod_stability(self.limiting_rod).w
@@ -88,18 +88,17 @@ class _IntegrationUntilSettled:
             status=IntegratedCycleStatus.straight, linear_growth_rate=w.real, linear_frequency=w.imag
         )
         try:
-            z = relax_fast_components(
-                self.system, self.leading_mode.state(self.request.amplitude), self.leading_mode.period
-            )
+            start = self.leading_mode.state(self.request.amplitude)
+            z = relax_fast_components(self.system, start, self.leading_mode.period)
             settled = self._integrate_until_settled(z)
-            motion = self._measured_path(settled)
+            motion = self._cycle_of_settled_motion(settled)
             is_nearby_rod = self.rod != self.limiting_rod
             error_ratio = INTEGRATION_SETTINGS.nearby_rod_error_over_accuracy if is_nearby_rod else 1.0
             tolerance = self.request.accuracy * error_ratio
-            for _ in range(INTEGRATION_SETTINGS.max_comparisons):
+            for _ in range(INTEGRATION_SETTINGS.max_integration_comparisons):
                 settled = self._settled_on_finer_mesh(settled)
                 coarser_motion = motion
-                motion = self._measured_path(settled)
+                motion = self._cycle_of_settled_motion(settled)
                 settled_distance = max_settled_distance_from_cycle(self.request.accuracy)
                 errors = errors_of_two_integrations(coarser_motion, motion, settled_distance)
                 if errors.largest_weighted_error <= tolerance:
@@ -113,9 +112,10 @@ class _IntegrationUntilSettled:
     def _settled_on_finer_mesh(self, settled: SettledMotion) -> SettledMotion:
         """The motion `settled`, continued on a finer mesh with a smaller tolerance until it settles again."""
         coarser_system = self.system
-        self.mesh = mesh_with_edges(self.mesh.edges, self.mesh.order + INTEGRATION_SETTINGS.order_increase)
+        order = self.mesh.order + INTEGRATION_SETTINGS.element_order_increase
+        self.mesh = mesh_with_edges(self.mesh.edges, order)
         self.scheme = with_reduced_tolerance(self.scheme)
-        self.intervals_per_return *= INTEGRATION_SETTINGS.measurement_interval_ratio
+        self.time_intervals_per_return *= INTEGRATION_SETTINGS.measurement_interval_count_ratio
         self.system = ExplicitSystem(self.rod, self.mesh)
         z = self.system.state_of_stresses(coarser_system.stresses_on_mesh(self.system.mesh, settled.state))
         return self._integrate_until_settled(relax_fast_components(self.system, z, self.leading_mode.period))
@@ -124,31 +124,28 @@ class _IntegrationUntilSettled:
         """The settled motion from the state z, (unknowns,); raises NoCycleFound."""
         past_moments: deque[Array] = deque(maxlen=RETURN_SETTINGS.max_returns_per_period + 1)
         angle_row = tip_angle_row(self.system)
-        time_step = self.leading_mode.period / TRANSIENT_SETTINGS.first_steps_per_period
+        time_step = self.leading_mode.period / TRANSIENT_SETTINGS.first_time_steps_per_period
         distances = ReturnDistances(self.scheme.tolerance)
         max_returns = self.request.most_periods
         while self.return_count < max_returns:
             report(lambda: SolvePosition(f"{self.return_count} of at most {max_returns} returns of the tip"))
-            returns = compared_run_length(max_returns - self.return_count)
-            run = self._integrate(
-                z,
-                TRANSIENT_SETTINGS.max_run_duration_ratio * returns * self.return_times.time_per_return,
-                time_step,
-                return_limit(angle_row, z, returns),
-            )
+            returns = return_count_of_compared_run(max_returns - self.return_count)
+            limit = run_limit_by_returns(angle_row, z, returns)
+            run = self._integrate(z, self._max_run_duration(returns), time_step, limit)
             z = run.states[-1]
             # The last time step of a run is the first time step of the next run, which continues the motion.
             time_step = float(run.times[-1] - run.times[-2])
-            times, states = self._crossings(run)
+            times, states = self._upward_tip_angle_crossings(run)
             self.return_times.record_run(times, float(run.times[-1]))
             past_moments.extend(self.system.layout.stress_field(states, "m3"))
             self.return_count += max(len(states), 1)
-            if self.leading_mode.w.real < 0 and np.linalg.norm(z) < RETURN_SETTINGS.max_straight_norm:
+            has_decayed = np.linalg.norm(z) < RETURN_SETTINGS.max_state_norm_of_straight_rod
+            if self.leading_mode.w.real < 0 and has_decayed:
                 raise NoCycleFound(IntegratedCycleStatus.straight, "the motion has decayed to rounding error")
             if len(past_moments) <= TRANSIENT_SETTINGS.returns_per_run:
                 continue
-            returns_per_repetition, distance = recurrence(list(past_moments))
-            distances.record_test(distance, returns_per_repetition / returns)
+            returns_per_repetition, distance = returns_per_period_and_distance(list(past_moments))
+            distances.record_distance(distance, returns_per_repetition / returns)
             if distances.have_settled(self.request.accuracy):
                 self.settled_count = self.return_count
                 return SettledMotion(z, returns_per_repetition, time_step)
@@ -159,6 +156,11 @@ class _IntegrationUntilSettled:
         message = not_settled_text(self.return_count, len(past_moments), distances.last, self.settled_count)
         raise NoCycleFound(IntegratedCycleStatus.not_settled, message)
 
+    def _max_run_duration(self, returns: int) -> float:
+        """Largest duration of a run over `returns` returns, in tau2."""
+        max_ratio = TRANSIENT_SETTINGS.max_actual_to_expected_run_duration
+        return max_ratio * returns * self.return_times.time_per_return
+
     def _integrate(
         self, z: Array, duration: float, step: float, limit: RunLimit, scheme: TimeScheme | None = None
     ) -> Trajectory:
@@ -166,18 +168,16 @@ class _IntegrationUntilSettled:
         NoCycleFound if the run fails. step: first time step, in tau2. scheme: None for `self.scheme`."""
         run = integrator(self.system.mesh, scheme or self.scheme).run(self.system, z, duration, step, limit)
         if failure := run_failure(self.system, run, self.return_count):
-            status = (
-                IntegratedCycleStatus.left_the_model
-                if failure.left_the_model
-                else IntegratedCycleStatus.failed
-            )
+            status = IntegratedCycleStatus.failed
+            if failure.left_the_model:
+                status = IntegratedCycleStatus.left_the_model
             raise NoCycleFound(status, failure.message)
         return run
 
-    def _crossings(self, run: Trajectory) -> tuple[Array, Array]:
+    def _upward_tip_angle_crossings(self, run: Trajectory) -> tuple[Array, Array]:
         """Returns (times, states), (k,) and (k, unknowns), at which the tip's theta rises through 0 on a run.
         The motion is integrated to these times, because cubic interpolation is less accurate."""
-        times = section_crossings(self.system, run)[0]
+        times = poincare_section_crossings(self.system, run)[0]
         angle_row = tip_angle_row(self.system)
         states = np.empty((len(times), self.system.unknown_count))
         for i, time in enumerate(times):
@@ -193,15 +193,15 @@ class _IntegrationUntilSettled:
             states[i] = z - delay * rates
         return times, states
 
-    def _measured_path(self, settled: SettledMotion) -> CycleMotion:
+    def _cycle_of_settled_motion(self, settled: SettledMotion) -> CycleMotion:
         """The cycle of a settled motion, from a further run of more than a period; raises NoCycleFound."""
         count = settled.returns_per_period + 2
-        limit = return_limit(tip_angle_row(self.system), settled.state, count)
-        tolerance = min(self.scheme.tolerance, INTEGRATION_SETTINGS.max_measurement_tolerance)
-        duration = TRANSIENT_SETTINGS.max_run_duration_ratio * count * self.return_times.time_per_return
+        limit = run_limit_by_returns(tip_angle_row(self.system), settled.state, count)
+        tolerance = min(self.scheme.tolerance, INTEGRATION_SETTINGS.max_local_tolerance_of_measured_run)
+        duration = self._max_run_duration(count)
         scheme = replace(self.scheme, tolerance=tolerance)
         run = self._integrate(settled.state, duration, settled.last_time_step, limit, scheme)
-        times = self._crossings(run)[0]
+        times = self._upward_tip_angle_crossings(run)[0]
         if len(times) <= settled.returns_per_period:
             raise NoCycleFound(
                 IntegratedCycleStatus.not_settled,
@@ -210,27 +210,24 @@ class _IntegrationUntilSettled:
         period = float(times[settled.returns_per_period] - times[0])
         spline = CubicSpline(run.times, run.states)
         stages = INTEGRATION_SETTINGS.measurement_stage_count
-        states = spline(
-            times[0] + period * node_times(self.intervals_per_return * settled.returns_per_period, stages)
-        )
+        interval_count = self.time_intervals_per_return * settled.returns_per_period
+        states = spline(times[0] + period * node_times(interval_count, stages))
         form = StressForm(self.rod, self.system.mesh)
-        return CycleMotion(
-            Orbit.from_states(
-                form, NO_SYMMETRY, period, collocation_states(self.system, form, states), stages
-            )
-        )
+        states = collocation_states(self.system, form, states)
+        return CycleMotion(Orbit.from_states(form, NO_SYMMETRY, period, states, stages))
 
     def _errors_with_limiting_rod_error(
         self, settled: SettledMotion, cycle: CycleMotion, errors: CycleErrors
     ) -> CycleErrors:
         """`errors` plus the error of integrating a nearby rod instead of a limiting rod; raises
         NoCycleFound."""
-        self.rod = integrable_rod(self.limiting_rod, INTEGRATION_SETTINGS.second_rod_limit_distance_ratio)
+        self.rod = rod_for_time_integration(
+            self.limiting_rod, INTEGRATION_SETTINGS.second_rod_limit_distance_ratio
+        )
         self.system = ExplicitSystem(self.rod, self.mesh)
         z = relax_fast_components(self.system, settled.state, self.leading_mode.period)
-        limit_errors = errors_of_two_integrations(
-            cycle, self._measured_path(self._integrate_until_settled(z)), 0.0
-        )
+        second_cycle = self._cycle_of_settled_motion(self._integrate_until_settled(z))
+        limit_errors = errors_of_two_integrations(cycle, second_cycle, 0.0)
         return CycleErrors(
             errors.period_error + limit_errors.period_error,
             errors.amplitude_error + limit_errors.amplitude_error,

@@ -11,8 +11,8 @@ from ..orbit.measures import CycleMeasures, CycleMotion
 from ..status import PointStatus
 from .accuracy.cycle_errors import UNKNOWN_ERRORS, CycleErrors
 from .accuracy.refined_cycle import RefinedCycle
-from .neighbour import CycleStart
-from .second_state import SecondState
+from .cycle_of_neighbouring_rod import CycleStart
+from .second_state import SecondStableState
 from .status import CycleStatus
 
 
@@ -95,6 +95,7 @@ class CycleOutcome:
     """
 
     status: PointStatus
+    """Final state of the rod, or reason why it is not known."""
     message: str = ""
     seconds: float = 0.0
     linear_growth_rate: float = nan
@@ -103,15 +104,17 @@ class CycleOutcome:
     """Frequency of the leading mode of the straight rod, in 1/tau2."""
     periods: int = 0
     """Number of returns of the tip in the integrated motion; 0 if no motion was integrated."""
-    second_state: int = SecondState.not_known
-    """Second stable state of the rod, as a value of `SecondState`."""
+    second_state: int = SecondStableState.not_known
+    """Second stable state of the rod, as a value of `SecondStableState`."""
     subcritical_F: float = nan
     """Force, in k3/L^2, of the subcritical Hopf point that makes a second stable state possible; NaN if no
     such Hopf point is known."""
     elements: int = 0
     order: int = 0
     measures: CycleMeasures = CycleMeasures()
+    """Period, extrema, harmonics and powers of the cycle; NaN if no cycle is known."""
     errors: CycleErrors = UNKNOWN_ERRORS
+    """Error estimates of the cycle; NaN if no cycle is known."""
     multiplier: float = nan
     """Modulus of the largest nontrivial Floquet multiplier."""
     multipliers: Complex | None = None
@@ -124,17 +127,17 @@ class CycleOutcome:
     the integrated motion; NaN for other motions."""
     tip: Array | None = None
     """x, y (in L) and theta of the tip at equidistant times over a period, (3, samples)."""
-    energy: Array | None = None
+    energy_and_powers: Array | None = None
     """Elastic energy, in k3/L, injected power and dissipated power, in k3/(L tau2), at equidistant times over
     a period, (3, samples)."""
     shape: Array | None = None
     """x, y (in L) and theta of the rod at equidistant times over a period, (3, shapes, nodes)."""
-    transient: Array | None = None
+    transient_tip_path: Array | None = None
     """Time in tau2, and x, y (in L) and theta of the tip, at equidistant times of the integrated motion,
     (4, transient); None if no path was requested or no motion was integrated."""
     motion_shapes: MotionShapes | None = None
     """Shapes of the rod from the start of the motion, if requested."""
-    neighbour: CycleStart | None = None
+    start_for_next_rod: CycleStart | None = None
     """Data of this cycle from which the search for the next rod of a chain starts; None outside a chain."""
 
 
@@ -157,7 +160,9 @@ def with_measures(
         measures=replace(measures, harmonic_amplitude=amplitudes),
         errors=errors,
         tip=motion.tip_x_y_theta_from_mean_crossing(request.samples) if request.samples else None,
-        energy=motion.energy_and_powers_from_mean_crossing(request.samples) if request.samples else None,
+        energy_and_powers=motion.energy_and_powers_from_mean_crossing(request.samples)
+        if request.samples
+        else None,
         shape=motion.shapes_from_mean_crossing(request.shapes, request.nodes) if request.shapes else None,
     )
 
@@ -184,7 +189,7 @@ def with_multipliers(cycle: CycleOutcome, refined: RefinedCycle) -> CycleOutcome
     multipliers[np.abs(multipliers) < MULTIPLIER_LIST_SETTINGS.min_modulus] = NO_MULTIPLIER
     return replace(
         cycle,
-        multiplier=refined.largest_multiplier,
+        multiplier=refined.largest_multiplier_modulus,
         multipliers=multipliers,
         trivial_multiplier_error=refined.trivial_multiplier_error,
         errors=replace(cycle.errors, multiplier_error=refined.errors.multiplier_error),
@@ -199,7 +204,9 @@ class TransientOutcome:
     its oscillation; NaN for other motions."""
 
     status: CycleStatus
+    """Kind of the motion's final state, or reason why it is not known."""
     message: str
+    """Explanation of the status for the user; may be ""."""
     return_count: int
     cycle: RefinedCycle | None = None
     unstable_cycle: RefinedCycle | None = None

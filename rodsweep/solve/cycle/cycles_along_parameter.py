@@ -13,19 +13,19 @@ import numpy as np
 
 from ...arrays import Array
 from ...discretization.stress.form import StressForm
-from ..continuation.curve import StepControl, StepResult, advance
+from ..continuation.curve import StepControl, StepResult, next_solution_and_step_length
 from ..orbit.matrix.workspace import NewtonWorkspace
-from ..orbit.newton import ConvergedOrbit, newton, newton_step_if_matrix_distant, relative_change
+from ..orbit.newton import ConvergedOrbit, newton_step_if_matrix_distant, relative_change, solve_by_newton
 from ..orbit.normalised_orbit import (
     extrapolated_change_weights,
     normalised_orbit_values,
-    normalised_tangent,
     predicted_normalised_values,
     reflection_arrays,
+    tangent_of_normalised_orbit,
     values_from_normalised,
 )
 from ..orbit.orbit import Orbit
-from ..orbit.orbit_mesh import OrbitMesh, mesh_of
+from ..orbit.orbit_mesh import OrbitMesh, mesh_of_orbit
 from ..unsolvable import Unsolvable
 
 
@@ -36,7 +36,7 @@ class CyclePredictionSettings:
     max_distance_from_prediction: float = 0.3
     """Largest relative distance of a cycle from its prediction; a cycle at a larger distance is rejected,
     because the cycle may lie on another branch."""
-    max_matrix_distance: float = 1e-2
+    max_distance_from_matrix_orbit: float = 1e-2
     """The tangent is computed from Newton's last matrix if the matrix was assembled at most at this relative
     distance from the solution; otherwise a new matrix is assembled."""
     max_earlier_orbits: int = 4
@@ -53,15 +53,15 @@ PARAMETER_STEP_CONTROL = StepControl(
     first_length=0.5,
     max_length=1.0,
     min_length=2.0**-6,
-    target_error=0.15,
+    target_prediction_error=0.15,
     prediction_order=3,
     max_angle=inf,
     max_length_ratio=3.0,
     max_solutions=100,
 )
 """Control of the steps into which a parameter change is divided; a step length is a fraction of this change.
-Newton's method needs two matrices for a prediction error of `target_error`. `max_error` is infinite, because
-`orbit_near_prediction` already rejects cycles far from the prediction."""
+Newton's method needs two matrices for a prediction error of `target_prediction_error`. `max_error` is
+infinite, because `orbit_near_prediction` already rejects cycles far from the prediction."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +81,7 @@ class CyclePredictor:
     values_and_derivatives: Array
 
     @property
-    def normalised_tangent(self) -> Array:
+    def tangent_of_normalised_orbit(self) -> Array:
         """Parameter derivative of the normalised values at the solved orbit, (N + 1,)."""
         return self.values_and_derivatives[0]
 
@@ -91,7 +91,7 @@ class CyclePredictor:
         the squared size, (N + 1,)."""
         return normalised_orbit_values(self.orbit)
 
-    def weights(self, step: float) -> Array:
+    def prediction_weights(self, step: float) -> Array:
         """Weights, (m,), of the rows of `values_and_derivatives` in the predicted change over a step of the
         parameter coordinate; see `extrapolated_change_weights`."""
         weights: Array = extrapolated_change_weights(self.parameter_offsets, self.derivative_orders, step)
@@ -106,7 +106,10 @@ class CyclePredictor:
         """
         step = form.rod.coordinate(name) - self.orbit.form.rod.coordinate(name)
         values = predicted_normalised_values(
-            self.normalised_values, self.values_and_derivatives, self.derivative_orders, self.weights(step)
+            self.normalised_values,
+            self.values_and_derivatives,
+            self.derivative_orders,
+            self.prediction_weights(step),
         )
         # The last value, the squared size, goes linearly through 0 at a Hopf point, where cycles end.
         if not values[-1] > 0:
@@ -119,7 +122,7 @@ class CyclePredictor:
     def on_mesh(self, target: OrbitMesh) -> "CyclePredictor":
         """This predictor with the solved orbit and all values and derivatives interpolated to the mesh
         `target`."""
-        if target == mesh_of(self.orbit):
+        if target == mesh_of_orbit(self.orbit):
             return self
         rows = [
             np.append(interpolated_change(self.orbit, row[:-1], target), row[-1])
@@ -148,16 +151,19 @@ def predictor_from(solved: ConvergedOrbit, previous: CyclePredictor | None, name
     orbit = solved.orbit
     if solved.matrix.tangent is None:
         raise ValueError("the orbit was solved without its tangent")
-    tangent = normalised_tangent(orbit, solved.matrix.tangent)
+    tangent = tangent_of_normalised_orbit(orbit, solved.matrix.tangent)
     step = orbit.form.rod.coordinate(name) - previous.orbit.form.rod.coordinate(name) if previous else 0.0
     if previous is None or step == 0:
         return CyclePredictor(orbit, np.zeros(1), np.ones(1), tangent[None])
-    last_predictor = previous.on_mesh(mesh_of(orbit))
+    last_predictor = previous.on_mesh(mesh_of_orbit(orbit))
     # Earlier orbits have other meshes; only their tangents are interpolated to a new mesh.
     # `on_mesh` returns the predictor itself if the mesh is the same.
     if last_predictor is not previous:
         return CyclePredictor(
-            orbit, np.array([0.0, -step]), np.ones(2), np.array([tangent, last_predictor.normalised_tangent])
+            orbit,
+            np.array([0.0, -step]),
+            np.ones(2),
+            np.array([tangent, last_predictor.tangent_of_normalised_orbit]),
         )
     older_indices = np.flatnonzero(previous.derivative_orders == 0)[
         : CYCLE_PREDICTION_SETTINGS.max_earlier_orbits - 1
@@ -168,7 +174,7 @@ def predictor_from(solved: ConvergedOrbit, previous: CyclePredictor | None, name
     orders = [1.0] + [0.0] * (1 + len(older_indices))
     if 1 + len(older_indices) < CYCLE_PREDICTION_SETTINGS.min_orbits_replacing_second_tangent:
         offsets.append(-step)
-        rows.append(previous.normalised_tangent)
+        rows.append(previous.tangent_of_normalised_orbit)
         orders.append(1.0)
     return CyclePredictor(orbit, np.array(offsets), np.array(orders), np.array(rows))
 
@@ -187,7 +193,7 @@ def orbit_near_prediction(
     """The orbit near `predicted` with its tangent along the parameter `name`, by Newton's method to
     a relative tolerance; raises Unsolvable if the method does not converge, or if the orbit is farther from
     `predicted` than CYCLE_PREDICTION_SETTINGS.max_distance_from_prediction."""
-    solved = newton(predicted, tolerance, workspace, name)
+    solved = solve_by_newton(predicted, tolerance, workspace, name)
     if _prediction_error(predicted, solved) > CYCLE_PREDICTION_SETTINGS.max_distance_from_prediction:
         raise Unsolvable("the cycle is too far from its prediction")
     return solved
@@ -198,7 +204,7 @@ def _prediction_error(predicted: Orbit, solved: ConvergedOrbit) -> float:
     return relative_change(predicted, solved.orbit.values - predicted.values)
 
 
-def orbit_in_steps(
+def orbit_followed_in_parameter_steps(
     start: CyclePredictor, form: StressForm, name: str, tolerance: float, workspace: NewtonWorkspace
 ) -> ConvergedOrbit:
     """The orbit of the rod in `form`, followed from the orbit of `start` in several steps of the parameter
@@ -211,6 +217,8 @@ def orbit_in_steps(
     fraction = 0.0
     length = PARAMETER_STEP_CONTROL.first_length
     predictor = start
+    control = PARAMETER_STEP_CONTROL
+    max_distance = CYCLE_PREDICTION_SETTINGS.max_distance_from_matrix_orbit
 
     def step(length: float) -> StepResult[ConvergedOrbit]:
         end_fraction = fraction + length
@@ -222,9 +230,10 @@ def orbit_in_steps(
         solved = orbit_near_prediction(predicted, tolerance, workspace, name)
         return StepResult(solved, _prediction_error(predicted, solved), 1.0)
 
-    for _ in range(PARAMETER_STEP_CONTROL.max_solutions):
+    for _ in range(control.max_solutions):
+        length = min(length, 1.0 - fraction)
         try:
-            solved_orbit, length = advance(step, min(length, 1.0 - fraction), PARAMETER_STEP_CONTROL)
+            solved_orbit, length = next_solution_and_step_length(step, length, control)
         except Unsolvable as reason:
             raise Unsolvable(
                 "the branch of cycles cannot be followed: it ends, has a fold, or needs shorter steps"
@@ -232,16 +241,7 @@ def orbit_in_steps(
         fraction += length
         if fraction >= 1.0:
             return solved_orbit.solution
-        predictor = predictor_from(
-            newton_step_if_matrix_distant(
-                solved_orbit.solution, CYCLE_PREDICTION_SETTINGS.max_matrix_distance, name
-            ),
-            predictor,
-            name,
-        )
-        length = PARAMETER_STEP_CONTROL.next_length(
-            length, solved_orbit, PARAMETER_STEP_CONTROL.prediction_order
-        )
-    raise Unsolvable(
-        f"the branch of cycles was not followed to its end in {PARAMETER_STEP_CONTROL.max_solutions} steps"
-    )
+        solved = newton_step_if_matrix_distant(solved_orbit.solution, max_distance, name)
+        predictor = predictor_from(solved, predictor, name)
+        length = control.next_length(length, solved_orbit, control.prediction_order)
+    raise Unsolvable(f"the branch of cycles was not followed to its end in {control.max_solutions} steps")

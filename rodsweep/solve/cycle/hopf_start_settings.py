@@ -10,21 +10,22 @@ from ..orbit.matrix.workspace import require_enough_stages
 class HopfStartSettings:
     """Settings for the search for the Hopf point below a force, and for Newton's method from this point."""
 
-    relative_scan_decrease: float = 0.07
+    relative_force_decrease_in_scan: float = 0.07
     """Relative decrease between successive forces at which the search evaluates the leading growth rate."""
     min_force: float = 1e-2
     """Force, in k3/L^2, at which the search for a Hopf point ends: at smaller forces no rod oscillates,
     because F nu (nu + F c2) must exceed the order of pi^2; nu: stretch, c2 = 1/k2."""
-    hopf_tolerance: float = 1e-6
-    """A Hopf point is accepted if |Re w| and |Im w - frequency| <= hopf_tolerance |w|; w: leading eigenvalue
-    at this point. Bisection ends at this relative width of the interval of the force."""
+    relative_hopf_eigenvalue_tolerance: float = 1e-6
+    """A Hopf point is accepted if |Re w| and |Im w - frequency| <= relative_hopf_eigenvalue_tolerance |w|; w:
+    leading eigenvalue at this point. Bisection ends at this relative width of the interval of the force."""
     max_newton_steps: int = 15
     """Maximum number of Newton steps to a Hopf point."""
     converged_growth_in_errors: float = 4.0
     """Newton's method for the Hopf point has converged if |Re w| <= converged_growth_in_errors times the
     error estimate of w."""
-    converged_force_step: float = 1e-15
-    """Newton's method for the Hopf point has also converged if |step of F| <= converged_force_step |F|."""
+    relative_converged_force_step: float = 1e-15
+    """Newton's method for the Hopf point has also converged if |step of F| <= relative_converged_force_step
+    |F|."""
     normal_form_accuracy: float = 1e-3
     """Relative accuracy of the normal form's coefficients; the truncation error of the normal form is
     larger."""
@@ -44,19 +45,19 @@ class HopfStartSettings:
     order if Newton's method fails from all `start_force_distances`. Rods of small axial drag have y = 0.6 at
     a relative distance of 1e-3 above the Hopf point; 14 of 16 such rods reach their cycle from one of these
     orbits. The other two have y > 1 already at 3e-4 by the normal form, which then fails everywhere."""
-    stage_ratio: float = 3.0
+    force_distance_ratio_of_stage: float = 3.0
     """Relative distance of the force from the Hopf point at the end of a stage, divided by that at its
     start."""
-    squared_amplitude_ratios: tuple[float, float] = 0.3, 3.0
+    allowed_squared_amplitude_ratios: tuple[float, float] = 0.3, 3.0
     """Smallest and largest allowed ratio of the squared largest y of the solved orbit to the squared largest
     y of the normal form."""
-    max_direct_force_distance: float = 1e-2
+    max_direct_start_force_distance: float = 1e-2
     """Up to this relative distance of the force above the Hopf point, Newton's method starts from the normal
     form's orbit at the given force itself, with an error of its amplitude of 1 percent for most rods."""
-    max_direct_y: float = 0.7
+    max_direct_start_tip_y: float = 0.7
     """If the largest y of the normal form's orbit at the given force, in L, is larger, Newton's method does
     not start there: the largest y of cycles of rods of small axial drag is then below half of it."""
-    coarse_interval_count: int = 8
+    coarse_time_interval_count: int = 8
     """Number of time intervals of the coarse mesh, over half a period."""
     coarse_stage_count: int = 3
     """Number of collocation stages per interval of the coarse mesh."""

@@ -10,14 +10,14 @@ class IntegrationSettings:
     """Settings for a limit cycle by time integration alone: tolerances, convergence to the cycle, comparison
     of two integrations."""
 
-    local_tolerance_ratio: float = 0.01
+    local_tolerance_per_accuracy: float = 0.01
     """Local tolerance of the integrator divided by the requested accuracy; the errors of a cycle reach ten
     times the local tolerance."""
     successive_tolerance_ratio: float = 0.2
     """Local tolerance of an integration divided by the tolerance of the previous integration."""
-    order_increase: int = 2
+    element_order_increase: int = 2
     """Increase of the element order from an integration to the next, finer integration."""
-    max_comparisons: int = 3
+    max_integration_comparisons: int = 3
     """Maximum number of comparisons of two successive integrations of increasing accuracy."""
     settled_distance_over_accuracy: float = 0.1
     """A motion has settled if its relative distance from the cycle is at most this fraction of the
@@ -25,7 +25,7 @@ class IntegrationSettings:
     return_error_over_tolerance: float = 10.0
     """Relative distance between two returns that integration errors alone may cause, divided by the local
     tolerance."""
-    min_distances_below_integration_error: int = 3
+    min_count_of_distances_below_error: int = 3
     """Number of successive distances below the distance that integration errors may cause, which show that
     the integration errors are smaller."""
     max_integration_error_ratio: float = 3.0
@@ -42,7 +42,7 @@ class IntegrationSettings:
     """A limiting rod is approximated by an integrated rod and, for the error estimate, by a second rod that
     is farther from the limit by this factor. Cycles change in proportion to the distance from the limit, so
     with the factor 2 the difference of the two cycles is the error of the nearer rod."""
-    max_measurement_tolerance: float = 2e-8
+    max_local_tolerance_of_measured_run: float = 2e-8
     """Largest local tolerance of the integration from which the cycle is measured. With a larger tolerance,
     the time steps (20 per period at an accuracy of 1e-3) are too long for cubic interpolation: time
     derivatives had errors of 1 to 5 % (`test_marched.py`)."""
@@ -51,7 +51,7 @@ class IntegrationSettings:
     measurement_intervals_per_return: int = 48
     """Number of time intervals, per return of the tip, of the orbit from which the first cycle is
     measured."""
-    measurement_interval_ratio: int = 2
+    measurement_interval_count_ratio: int = 2
     """Factor by which this number grows from a cycle to the next, finer one, so that the difference of the
     two contains the error of the measurement."""
 

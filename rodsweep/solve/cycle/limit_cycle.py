@@ -3,10 +3,10 @@
 The search starts from the leading eigenmode or from the cycle of a neighbour, the previous rod of a chain.
 From the eigenmode the motion is integrated until the motion approaches a cycle (`transient_integration`);
 near a Hopf point the normal form predicts the cycle instead (`small_motion`). The cycle of a neighbour
-predicts the cycle of this rod by continuation (`neighbour`). Newton's method then solves for the periodic
-orbit on meshes chosen for the requested accuracy (`accuracy`). An orbit is accepted as a stable cycle only by
-its Floquet multipliers: near a Hopf point, where motions decay slowly, two successive peaks of the motion may
-agree although no cycle exists.
+predicts the cycle of this rod by continuation (`start_for_next_rod`). Newton's method then solves for the
+periodic orbit on meshes chosen for the requested accuracy (`accuracy`). An orbit is accepted as a stable
+cycle only by its Floquet multipliers: near a Hopf point, where motions decay slowly, two successive peaks of
+the motion may agree although no cycle exists.
 """
 
 from contextlib import suppress
@@ -14,14 +14,15 @@ from dataclasses import replace
 
 from ...discretization.stress.form import StressForm
 from ...model.rod import Rod
-from ..motion.fixed_tip import bent_state_with_tip_at
 from ..motion.integrator import destroy_integrators
+from ..motion.tip_target import bent_state_with_tip_at
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..point_outcome import outcome_or_failure
 from ..spectrum.path.leader_in_range import next_range
 from ..unsolvable import Unsolvable
 from .accuracy.refined_cycle import RefinedCycle
 from .accuracy.refinement import refined_cycle
+from .cycle_of_neighbouring_rod import CycleStart, cycle_from_neighbour
 from .cycle_outcome import (
     CycleOutcome,
     CycleRequest,
@@ -30,8 +31,7 @@ from .cycle_outcome import (
     with_cycle_quantities,
     with_multipliers,
 )
-from .hopf_start import hopf_point_below, orbit_from_hopf
-from .neighbour import CycleStart, cycle_from_neighbour
+from .hopf_start import hopf_point_below_force, orbit_from_hopf
 from .second_state import second_state
 from .small_motion import reason_for_decay, stable_cycle_near_hopf
 from .status import CycleStatus
@@ -90,7 +90,7 @@ def _solve_cycle_or_raise(
     workspace: NewtonWorkspace,
 ) -> CycleOutcome:
     w = stability.w
-    straight = _straight_outcome(w)
+    straight = _outcome_at_straight_rod(w)
     if request.start == "hopf":
         return _cycle_from_hopf(_form_on_motion_mesh(rod), request, straight, stability, workspace)
     refined = None
@@ -102,14 +102,14 @@ def _solve_cycle_or_raise(
     elif neighbour is None and not request.is_motion_recorded:
         refined = stable_cycle_near_hopf(_form_on_motion_mesh(rod), w, request, parameter_name, workspace)
     # A motion ends at a stable cycle only; an unstable one is a hint for the integration below.
-    if refined is not None and refined.verdict(request.accuracy)[0] == CycleStatus.cycle:
+    if refined is not None and refined.status_and_message(request.accuracy)[0] == CycleStatus.cycle:
         cycle = with_cycle_quantities(replace(straight, status=CycleStatus.cycle), refined, request)
-        return _with_neighbour(cycle, refined, neighbour, parameter_name, request.accuracy, stability)
+        return _with_next_start(cycle, refined, neighbour, parameter_name, request.accuracy, stability)
     is_from_mode = neighbour is None and request.tip is None
     decay_reason = reason_for_decay(rod, w, request.amplitude) if is_from_mode else ""
     if decay_reason and not request.is_motion_recorded:
         return replace(straight, message=decay_reason)
-    unstable_cycle = refined if refined is not None and refined.stable is False else None
+    unstable_cycle = refined if refined is not None and refined.is_stable is False else None
     for form in (StressForm(rod, mesh) for mesh in motion_meshes(rod, request.transient > 0)):
         # On too coarse a mesh a motion may repeat where finer meshes have no cycle.
         transient = TransientIntegration(form, stability, request, parameter_name, unstable_cycle, workspace)
@@ -123,10 +123,10 @@ def _solve_cycle_or_raise(
     if end.cycle is None:
         return cycle if end.unstable_cycle is None else with_multipliers(cycle, end.unstable_cycle)
     cycle = with_cycle_quantities(cycle, end.cycle, request)
-    return _with_neighbour(cycle, end.cycle, None, parameter_name, request.accuracy, stability)
+    return _with_next_start(cycle, end.cycle, None, parameter_name, request.accuracy, stability)
 
 
-def _straight_outcome(w: complex) -> CycleOutcome:
+def _outcome_at_straight_rod(w: complex) -> CycleOutcome:
     """Outcome of a motion that ends at the straight rod, with the leading eigenvalue w of this rod."""
     return CycleOutcome(status=CycleStatus.straight, linear_growth_rate=w.real, linear_frequency=abs(w.imag))
 
@@ -147,7 +147,9 @@ def _with_motion_data(
         periods=end.return_count,
         elements=transient.form.mesh.element_count,
         order=transient.form.mesh.order,
-        transient=trace.at_equal_times(request.transient) if isinstance(trace, TipTrace) else None,
+        transient_tip_path=trace.path_at_equidistant_times(request.transient)
+        if isinstance(trace, TipTrace)
+        else None,
         motion_shapes=_motion_shapes(transient, trace, request) if isinstance(trace, ShapeTrace) else None,
     )
 
@@ -158,7 +160,7 @@ def _motion_shapes(transient: TransientIntegration, trace: ShapeTrace, request: 
     return trace.motion_shapes(return_times, transient.leading_mode.period, request.frames, request.nodes)
 
 
-def _with_neighbour(
+def _with_next_start(
     cycle: CycleOutcome,
     refined: RefinedCycle,
     previous: CycleStart | None,
@@ -179,13 +181,13 @@ def _with_neighbour(
         previous_rod = previous.predictor.orbit.form.rod
         arm_range = next_range(rod, previous_rod, parameter_name, stability.arm_range, eigenvalues)
         start = replace(start, arm_range=arm_range)
-    return replace(cycle, neighbour=start)
+    return replace(cycle, start_for_next_rod=start)
 
 
 def _with_status_by_spectrum(cycle: CycleOutcome, stability: StraightRodStability) -> CycleOutcome:
     """The outcome `cycle`, with the status `not_settled` and a reason instead of the status `straight` unless
     the spectrum proves the straight rod stable."""
-    if cycle.status != CycleStatus.straight or stability.stable:
+    if cycle.status != CycleStatus.straight or stability.is_stable:
         return cycle
     return replace(cycle, status=CycleStatus.not_settled, message=stability.unproved_stability_text)
 
@@ -193,7 +195,7 @@ def _with_status_by_spectrum(cycle: CycleOutcome, stability: StraightRodStabilit
 def _with_second_state(rod: Rod, cycle: CycleOutcome, stability: StraightRodStability) -> CycleOutcome:
     """The outcome `cycle` with the second stable state of the rod, as far as known, and a message about this
     state."""
-    state, F, reason = second_state(rod, cycle.status, stability.stable)
+    state, F, reason = second_state(rod, cycle.status, stability.is_stable)
     message = "; ".join(filter(None, (cycle.message, reason)))
     return replace(cycle, second_state=int(state), subcritical_F=F, message=message)
 
@@ -211,14 +213,14 @@ def _cycle_from_hopf(
     cycle is found. stability: stability of the straight rod, for the status if there is no Hopf point.
     """
     try:
-        hopf = hopf_point_below(form.rod)
+        hopf = hopf_point_below_force(form.rod)
         if hopf is None:
-            status = CycleStatus.straight if stability.stable else CycleStatus.not_settled
+            status = CycleStatus.straight if stability.is_stable else CycleStatus.not_settled
             return replace(outcome, status=status, message="there is no Hopf point at a smaller force")
         refined = refined_cycle(orbit_from_hopf(form, hopf, workspace), request.accuracy, workspace)
     except Unsolvable as reason:
         return replace(outcome, status=CycleStatus.not_settled, message=str(reason))
-    status, message = refined.verdict(request.accuracy)
+    status, message = refined.status_and_message(request.accuracy)
     return with_cycle_quantities(replace(outcome, status=status, message=message), refined, request)
 
 
@@ -235,4 +237,4 @@ def _outcome_of_motion(
     else:
         orbit = neighbour.predictor.orbit
         start = system.state_of_stresses(orbit.form.stresses_on_mesh(system.mesh, orbit.start_state))
-    return classify_quasiperiodic(transient.follow(start), transient)
+    return classify_quasiperiodic(transient.integrate_to_outcome(start), transient)

@@ -27,8 +27,8 @@ def warm_up() -> None:
     request = REFERENCE_REQUEST
     cycle = solve_cycle(rod, request, None, "F")
     # The second solve loads the code for the continuation along a chain.
-    if cycle.neighbour is not None:
-        solve_cycle(replace(rod, F=1.01 * rod.F), request, cycle.neighbour, "F")
+    if cycle.start_for_next_rod is not None:
+        solve_cycle(replace(rod, F=1.01 * rod.F), request, cycle.start_for_next_rod, "F")
     deviation = abs(cycle.measures.period / REFERENCE_PERIOD - 1)
     is_reproduced = cycle.status == CycleStatus.cycle and deviation < request.accuracy
     options = user_options_text(CYCLE_OPTIONS_PREFIX)

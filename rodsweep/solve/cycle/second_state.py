@@ -10,12 +10,12 @@ from math import nan
 
 from ...model.rod import Rod
 from ..hopf.subcritical_hopf import SubcriticalHopf, subcritical_hopf_near
-from ..point_outcome import FAILURES
+from ..point_outcome import FAILURE_EXCEPTIONS
 from ..status import PointStatus
 from .status import CycleStatus
 
 
-class SecondState(IntEnum):
+class SecondStableState(IntEnum):
     """Second stable state of a rod, as far as known; the result file stores the value. not_known: the search
     failed, or the stability of the straight rod is not known. none_known: no second stable state is known.
     straight: the straight rod. cycle_possible: a cycle may exist, because a subcritical Hopf point is
@@ -29,7 +29,7 @@ class SecondState(IntEnum):
 
 def second_state(
     rod: Rod, status: PointStatus, is_straight_stable: bool | None
-) -> tuple[SecondState, float, str]:
+) -> tuple[SecondStableState, float, str]:
     """Returns (state, F, message). state: second stable state of the rod. F: force of a subcritical Hopf
     point, in k3/L^2, or NaN. message: for the user, or "".
 
@@ -37,23 +37,23 @@ def second_state(
     is stable; None if not known.
     """
     if status == CycleStatus.failed or is_straight_stable is None:
-        return SecondState.not_known, nan, ""
+        return SecondStableState.not_known, nan, ""
     if not is_straight_stable:
-        return SecondState.none_known, nan, ""
+        return SecondStableState.none_known, nan, ""
     if status != CycleStatus.straight:
-        return SecondState.straight, nan, "the straight rod is stable as well"
+        return SecondStableState.straight, nan, "the straight rod is stable as well"
     try:
         hopf = subcritical_hopf_near(rod)
-    except FAILURES:
-        return SecondState.not_known, nan, ""
+    except FAILURE_EXCEPTIONS:
+        return SecondStableState.not_known, nan, ""
     if hopf is None:
-        return SecondState.none_known, nan, ""
-    return SecondState.cycle_possible, hopf.F, _second_state_sentence(hopf)
+        return SecondStableState.none_known, nan, ""
+    return SecondStableState.cycle_possible, hopf.F, _second_state_sentence(hopf)
 
 
 def _second_state_sentence(hopf: SubcriticalHopf) -> str:
     return (
         f"the Hopf point at F = {hopf.F:.9g} is subcritical: an unstable cycle exists, with a largest y of "
-        f"about {hopf.unstable_y:.2g} L by the normal form, and from a start at larger y the rod may reach "
-        "a stable cycle; the task `branch` follows the branch of these cycles"
+        f"about {hopf.unstable_cycle_y:.2g} L by the normal form, and from a start at larger y the rod may "
+        "reach a stable cycle; the task `branch` follows the branch of these cycles"
     )

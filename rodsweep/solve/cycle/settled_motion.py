@@ -77,7 +77,7 @@ class ReturnDistances:
         self._below_error: list[float] = []
         self._near_error: list[float] = []
 
-    def record_test(self, distance: float, period_ratio: float) -> None:
+    def record_distance(self, distance: float, period_ratio: float) -> None:
         """Records the distance at a test. period_ratio: period divided by the time between two tests."""
         if self._previous > self.integration_error:
             # Below the integration error the quotient of two distances is not the contraction rate.
@@ -92,8 +92,8 @@ class ReturnDistances:
             self._below_error = []
         else:
             self._below_error.append(distance)
-        last_distances = self._below_error[-INTEGRATION_SETTINGS.min_distances_below_integration_error :]
-        if len(last_distances) == INTEGRATION_SETTINGS.min_distances_below_integration_error and isfinite(
+        last_distances = self._below_error[-INTEGRATION_SETTINGS.min_count_of_distances_below_error :]
+        if len(last_distances) == INTEGRATION_SETTINGS.min_count_of_distances_below_error and isfinite(
             self._last_above_error
         ):
             # Distances that stay small are no coincidence, so the integration_error is smaller than assumed.
@@ -102,10 +102,10 @@ class ReturnDistances:
             self.contraction_rate = min(self.contraction_rate, rate)
         limit = INTEGRATION_SETTINGS.max_integration_error_ratio * self.integration_error
         self._near_error = [*self._near_error, distance] if distance <= limit else []
-        near = self._near_error[-INTEGRATION_SETTINGS.min_distances_below_integration_error :]
+        near = self._near_error[-INTEGRATION_SETTINGS.min_count_of_distances_below_error :]
         # The distances of a motion that approaches a cycle slowly decrease.
         self.are_integration_errors = (
-            len(near) == INTEGRATION_SETTINGS.min_distances_below_integration_error and near[-1] >= near[0]
+            len(near) == INTEGRATION_SETTINGS.min_count_of_distances_below_error and near[-1] >= near[0]
         )
         self.last = self._previous = distance
 

@@ -25,10 +25,10 @@ from .transient.transient_settings import TRANSIENT_SETTINGS
 class MotionDecaySettings:
     """Settings for the proof that a small motion decays to the straight rod."""
 
-    max_cubic_growth_ratio: float = 0.02
-    """A motion decays if Re w < 0 and |Re c| a^2 < max_cubic_growth_ratio |Re w|. a: tip's y at the start, w:
-    leading eigenvalue, c: cubic coefficient of the normal form, with max_cubic_growth_ratio as relative
-    accuracy."""
+    max_cubic_to_linear_growth_ratio: float = 0.02
+    """A motion decays if Re w < 0 and |Re c| a^2 < max_cubic_to_linear_growth_ratio |Re w|. a: tip's y at the
+    start, w: leading eigenvalue, c: cubic coefficient of the normal form, with
+    max_cubic_to_linear_growth_ratio as relative accuracy."""
 
 
 MOTION_DECAY_SETTINGS = MotionDecaySettings()
@@ -53,10 +53,10 @@ def stable_cycle_near_hopf(
         )
     except Unsolvable:
         return None
-    is_stable = cycle.verdict(request.accuracy)[0] == CycleStatus.cycle
+    is_stable = cycle.status_and_message(request.accuracy)[0] == CycleStatus.cycle
     return (
         cycle
-        if is_stable and 1 - cycle.largest_multiplier >= TRANSIENT_SETTINGS.min_unit_circle_distance
+        if is_stable and 1 - cycle.largest_multiplier_modulus >= TRANSIENT_SETTINGS.min_unit_circle_distance
         else None
     )
 
@@ -70,12 +70,12 @@ def reason_for_decay(rod: Rod, w: complex, amplitude: float) -> str:
     if not (w.real < 0 < w.imag):
         return ""
     try:
-        normal = normal_form_by_mesh_rule(rod, w, MOTION_DECAY_SETTINGS.max_cubic_growth_ratio)
+        normal = normal_form_by_mesh_rule(rod, w, MOTION_DECAY_SETTINGS.max_cubic_to_linear_growth_ratio)
     except Unsolvable:
         return ""
     # d|z|/dt = (Re w + Re c |z|^2) |z|: while the cubic term is small, the motion can only decay.
     cubic_ratio = abs(normal.landau.real) * amplitude**2 / -w.real
-    if cubic_ratio >= MOTION_DECAY_SETTINGS.max_cubic_growth_ratio:
+    if cubic_ratio >= MOTION_DECAY_SETTINGS.max_cubic_to_linear_growth_ratio:
         return ""
     return (
         f"the motion decays: at its start the cubic term is only {cubic_ratio:.0e} of the linear decay rate"

@@ -27,7 +27,7 @@ from ..spectrum.search import SpectrumRequest, solve_spectrum
 class StraightRodSettings:
     """Settings for the stability of the straight rod by its leading eigenvalue."""
 
-    min_axis_distance_in_errors: float = 4.0
+    min_growth_rate_in_errors: float = 4.0
     """The sign of the growth rate Re w is certain if |Re w| exceeds this number times the error estimate of
     the leading eigenvalue w. The task spectrum has the same criterion."""
     accuracy: float = 1e-9
@@ -57,19 +57,19 @@ class StraightRodStability:
     """
 
     w: complex
-    error: float
+    eigenvalue_error: float
     message: str = ""
     followed_eigenvalues: Complex = field(default_factory=NO_EIGENVALUES.copy, compare=False)
     arm_range: ArmRange | None = field(default=None, compare=False)
 
     @property
-    def stable(self) -> bool | None:
+    def is_stable(self) -> bool | None:
         """Whether all small motions about the straight rod decay; None if the growth rate is unknown or 0
         within its error."""
         # The error estimate may be smaller than the rounding of w itself.
         margin = max(
-            STRAIGHT_ROD_SETTINGS.min_axis_distance_in_errors * self.error,
-            ROOT_SETTINGS.axis_tolerance * abs(self.w),
+            STRAIGHT_ROD_SETTINGS.min_growth_rate_in_errors * self.eigenvalue_error,
+            ROOT_SETTINGS.imaginary_axis_tolerance * abs(self.w),
         )
         # A NaN satisfies no comparison, so an unknown eigenvalue gives None.
         return self.w.real < 0 if abs(self.w.real) > margin else None
@@ -77,21 +77,21 @@ class StraightRodStability:
     def growth_rate(self, default: float) -> float:
         """Growth rate of the leading mode, in 1/tau2; 0 if its sign is undecided, `default` if the
         eigenvalue is unknown."""
-        if isnan(self.error):
+        if isnan(self.eigenvalue_error):
             return default
         # A sign within the error must not choose a time scheme or an end state.
-        return 0.0 if self.stable is None else self.w.real
+        return 0.0 if self.is_stable is None else self.w.real
 
     @property
     def unproved_stability_text(self) -> str:
         """Message that the straight rod is not proved stable although its integrated motion decays; "" if the
         straight rod is stable."""
-        if self.stable:
+        if self.is_stable:
             return ""
-        if isnan(self.error):
+        if isnan(self.eigenvalue_error):
             return f"the stability of the straight rod is not known: {self.message}"
-        rate = f"the straight rod's growth rate is {self.w.real:.2g} +- {self.error:.0e}"
-        if self.stable is None:
+        rate = f"the straight rod's growth rate is {self.w.real:.2g} +- {self.eigenvalue_error:.0e}"
+        if self.is_stable is None:
             return f"{rate}, so the stability of the straight rod is undecided"
         return f"{rate}, so the straight rod is unstable, although the integrated motion decays"
 
@@ -118,7 +118,7 @@ def straight_rod_stability(
             leading_w.w,
             leading_w.error,
             followed_eigenvalues=leading_w.eigenvalues,
-            arm_range=NO_RANGE if leading_w.is_counted else None,
+            arm_range=NO_RANGE if leading_w.is_proved_by_count else None,
         )
     spectrum = solve_spectrum(rod, request)
     if isnan(spectrum.error_estimate[0]):
@@ -139,13 +139,13 @@ def straight_rod_stability_in_chain(
         rod, near_eigenvalues, STRAIGHT_ROD_SETTINGS.accuracy, parameter_name, arm_range
     )
     if leading_w is None:
-        failed_range = arm_range._replace(failures=arm_range.failures + 1)
+        failed_range = arm_range._replace(successive_failure_count=arm_range.successive_failure_count + 1)
         return replace(straight_rod_stability(rod, near_eigenvalues), arm_range=failed_range)
     return StraightRodStability(
         leading_w.w,
         leading_w.error,
         followed_eigenvalues=leading_w.eigenvalues,
-        arm_range=arm_range._replace(failures=0.0),
+        arm_range=arm_range._replace(successive_failure_count=0.0),
     )
 
 

@@ -18,7 +18,7 @@ from ...determinant.stability_boundary import StabilityBoundary
 from ...model.rod import Rod
 from ...solve_progress import SolvePosition, report
 from ..continuation.curve import StepResult, StopReason, follow_curve
-from ..point_outcome import FAILURES
+from ..point_outcome import FAILURE_EXCEPTIONS
 from ..unsolvable import Unsolvable
 from .bautin_points import BAUTIN_POINT_SETTINGS, BautinPoint, HopfNormalForms
 from .bautin_settings import BAUTIN_SETTINGS, BAUTIN_STEP_CONTROL
@@ -47,13 +47,13 @@ END_BY_STOP_REASON = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BautinCurvePoint:
-    """A generalised Hopf point over three parameters. v: continuation coordinates, (4,): three scaled
-    parameters, log frequency. values, errors: both parameters of the plane, then the third parameter, (3,).
-    frequency in 1/tau2, landau_imag = Im c in 1/(tau2 L^2)."""
+    """A generalised Hopf point over three parameters. scaled_point: continuation coordinates, (4,): three
+    scaled parameters, log frequency. parameter_values, parameter_errors: both parameters of the plane, then
+    the third parameter, (3,). frequency in 1/tau2, landau_imag = Im c in 1/(tau2 L^2)."""
 
-    v: Array
-    values: Array
-    errors: Array
+    scaled_point: Array
+    parameter_values: Array
+    parameter_errors: Array
     frequency: float
     landau_imag: float
 
@@ -63,31 +63,35 @@ class BautinCurve:
     """Points of a curve in order, and the reasons for its two ends."""
 
     points: tuple[BautinCurvePoint, ...]
+    """Points of the curve from its first to its last end, with the points at the requested values."""
     end_reasons: tuple[BautinEndReason, BautinEndReason]
+    """Reasons for the ends at the first and at the last point."""
 
 
 @dataclass(frozen=True, slots=True)
 class BautinProblem:
     """Problem for `follow_curve`: generalised Hopf points over three parameters. axes: these parameters, with
-    their ranges. rod: rod with all other parameters. requested_values: values of the third parameter of
-    further points, (m,). accuracy: relative accuracy of c. direction_sign: sign of the first step along the
-    third parameter."""
+    their ranges. rod: rod with all other parameters. third_parameter_values: values of the third parameter of
+    further points, (m,). landau_accuracy: relative accuracy of c. first_step_sign: sign of the first step
+    along the third parameter."""
 
     rod: Rod
     axes: tuple[PlaneAxis, PlaneAxis, PlaneAxis]
-    requested_values: Array
-    accuracy: float
-    direction_sign: float = 1.0
+    third_parameter_values: Array
+    landau_accuracy: float
+    first_step_sign: float = 1.0
 
-    def curve_point(self, point: BautinPoint, index: int, value: float) -> BautinCurvePoint:
+    def as_curve_point(self, point: BautinPoint, index: int, value: float) -> BautinCurvePoint:
         """`point` of the plane of both other parameters as a point of a curve. value: value of the parameter
         of index `index`."""
-        values = np.insert(point.values, index, value)
-        coordinates = [axis.coordinate(float(each)) for axis, each in zip(self.axes, values, strict=True)]
+        values = np.insert(point.parameter_values, index, value)
+        coordinates = [
+            axis.scaled_coordinate(float(each)) for axis, each in zip(self.axes, values, strict=True)
+        ]
         return BautinCurvePoint(
-            v=np.array([*coordinates, np.log(point.frequency)]),
-            values=values,
-            errors=np.insert(point.errors, index, 0.0),
+            scaled_point=np.array([*coordinates, np.log(point.frequency)]),
+            parameter_values=values,
+            parameter_errors=np.insert(point.parameter_errors, index, 0.0),
             frequency=point.frequency,
             landau_imag=point.landau_imag,
         )
@@ -99,30 +103,30 @@ class BautinProblem:
         values = {axis.name: axis.value(float(x)) for axis, x in zip(self.axes, guess[:3], strict=True)}
         plane = ParameterPlane(self.rod.with_values(**values), (self.axes[free[0]], self.axes[free[1]]))
         boundary = StabilityBoundary(plane, 0.0)
-        accuracy = min(self.accuracy, BAUTIN_POINT_SETTINGS.coarsest_accuracy)
+        accuracy = min(self.landau_accuracy, BAUTIN_POINT_SETTINGS.coarsest_accuracy)
         curve = HopfNormalForms(boundary, np.empty((0, 3)), accuracy)  # finds Hopf points only near a guess
         start = guess[[*free, 3]]
         point = self._zero_by_secants(curve, start, boundary.tangent(start))
-        return self.curve_point(point, fixed_index, values[self.axes[fixed_index].name])
+        return self.as_curve_point(point, fixed_index, values[self.axes[fixed_index].name])
 
     def step(self, previous: Sequence[BautinCurvePoint], length: float) -> StepResult[BautinCurvePoint]:
         """The next point, predicted along the last chord, at first along the third parameter; raises
         Unsolvable. length: largest predicted change of a parameter, divided by its range."""
-        v = previous[-1].v
-        tangent = np.array([0.0, 0.0, self.direction_sign, 0.0])
+        v = previous[-1].scaled_point
+        tangent = np.array([0.0, 0.0, self.first_step_sign, 0.0])
         if len(previous) > 1:
-            chord = v - previous[-2].v
+            chord = v - previous[-2].scaled_point
             # Step lengths are fractions of a parameter's range; the frequency has no range.
             tangent = chord / np.abs(chord[:3]).max()
         try:
-            point, is_on_end = self._point_in_ranges(v, length * tangent)
+            point, is_on_end = self._point_cut_at_range_end(v, length * tangent)
         except ValueError as reason:
             raise Unsolvable(f"the step leaves the allowed range of the parameters: {reason}") from reason
-        prediction_error = float(np.abs(point.v[:3] - v[:3] - length * tangent[:3]).max()) / length
+        prediction_error = float(np.abs(point.scaled_point[:3] - v[:3] - length * tangent[:3]).max()) / length
         # No prediction error for the first step, which has no chord, and for a step that an edge shortened.
         return StepResult(point, 0.0 if is_on_end or len(previous) == 1 else prediction_error, 1.0)
 
-    def _point_in_ranges(self, v: Array, change: Array) -> tuple[BautinCurvePoint, bool]:
+    def _point_cut_at_range_end(self, v: Array, change: Array) -> tuple[BautinCurvePoint, bool]:
         """Returns (point near v + change, (4,), or on the end of a range that this step crosses; whether on
         such an end). Parameters outside the ranges may not be allowed. Raises Unsolvable."""
         predicted = (v + change)[:3]
@@ -136,23 +140,27 @@ class BautinProblem:
         guess[index] = range_ends[index]
         return self.solve_point(guess, index), True
 
-    def margins(self, point: BautinCurvePoint) -> Array:
+    def margins_to_curve_end(self, point: BautinCurvePoint) -> Array:
         """Distances of a point from both ends of each of the three ranges, minus a tolerance, (6,)."""
-        return np.ravel([point.v[:3], 1 - point.v[:3]], order="F") - BAUTIN_SETTINGS.edge_tolerance
+        return (
+            np.ravel([point.scaled_point[:3], 1 - point.scaled_point[:3]], order="F")
+            - BAUTIN_SETTINGS.edge_tolerance
+        )
 
-    def located_zero(
+    def point_at_zero_margin(
         self, previous: Sequence[BautinCurvePoint], outer: BautinCurvePoint, margin: int
     ) -> BautinCurvePoint | None:
-        """The point `outer` itself: `_point_in_ranges` has shortened the step to the end of a range."""
+        """The point `outer` itself: `_point_cut_at_range_end` has shortened the step to the end of a
+        range."""
         return outer
 
     def is_closed_by(self, previous: Sequence[BautinCurvePoint], point: BautinCurvePoint) -> bool:
         """Whether the curve has more than `BAUTIN_SETTINGS.min_loop_points` points, and the first point of
         the curve lies between its last point and `point`."""
-        first = previous[0].v
-        last = previous[-1].v
-        step_length = float(np.linalg.norm(point.v - previous[-1].v))
-        is_near = max(np.linalg.norm(first - last), np.linalg.norm(first - point.v)) < step_length
+        first = previous[0].scaled_point
+        last = previous[-1].scaled_point
+        step_length = float(np.linalg.norm(point.scaled_point - previous[-1].scaled_point))
+        is_near = max(np.linalg.norm(first - last), np.linalg.norm(first - point.scaled_point)) < step_length
         return len(previous) > BAUTIN_SETTINGS.min_loop_points and bool(is_near)
 
     @staticmethod
@@ -161,19 +169,21 @@ class BautinProblem:
         # Secants, because the normal form does not give the derivatives of Re c.
         previous_s = 0.0
         s = BAUTIN_SETTINGS.first_secant_step
-        last_real_part = curve.hopf_point_on_plane(start, direction, curve.accuracy).relative_real_part
+        last_real_part = curve.hopf_point_on_plane(
+            start, direction, curve.landau_accuracy
+        ).relative_landau_real_part
         for _ in range(BAUTIN_SETTINGS.max_secant_steps):
-            hopf_point = curve.hopf_point_on_plane(start + s * direction, direction, curve.accuracy)
-            if hopf_point.relative_real_part == last_real_part:
+            hopf_point = curve.hopf_point_on_plane(start + s * direction, direction, curve.landau_accuracy)
+            if hopf_point.relative_landau_real_part == last_real_part:
                 break
-            slope = (hopf_point.relative_real_part - last_real_part) / (s - previous_s)
-            step = -hopf_point.relative_real_part / slope
+            slope = (hopf_point.relative_landau_real_part - last_real_part) / (s - previous_s)
+            step = -hopf_point.relative_landau_real_part / slope
             if not abs(s + step) < BAUTIN_STEP_CONTROL.max_length:
                 break
             position_error = hopf_point.coefficients.landau_error / abs(slope)
-            if abs(step) <= max(BAUTIN_SETTINGS.tolerance, position_error):
+            if abs(step) <= max(BAUTIN_SETTINGS.secant_tolerance, position_error):
                 return curve.as_bautin_point(hopf_point, 0, direction * (position_error + abs(step)))
-            last_real_part = hopf_point.relative_real_part
+            last_real_part = hopf_point.relative_landau_real_part
             previous_s = s
             s = s + step
         raise Unsolvable("no generalised Hopf point is found near the predicted point")
@@ -181,7 +191,7 @@ class BautinProblem:
 
 def bautin_curve(problem: BautinProblem, start: BautinCurvePoint) -> BautinCurve:
     """The curve of generalised Hopf points through `start`, followed in both directions."""
-    backward, first_reason = _half_curve(replace(problem, direction_sign=-1.0), start)
+    backward, first_reason = _half_curve(replace(problem, first_step_sign=-1.0), start)
     if first_reason is BautinEndReason.closed:
         return BautinCurve(tuple(backward), (first_reason, first_reason))
     forward, reason = _half_curve(problem, start)
@@ -191,7 +201,7 @@ def bautin_curve(problem: BautinProblem, start: BautinCurvePoint) -> BautinCurve
 
 def lies_on_curve(point: BautinCurvePoint, curve: BautinCurve) -> bool:
     """Whether `point`, at a requested value of the third parameter, equals a point of `curve`."""
-    distances = (float(np.abs(point.v - other.v).max()) for other in curve.points)
+    distances = (float(np.abs(point.scaled_point - other.scaled_point).max()) for other in curve.points)
     return any(distance < BAUTIN_SETTINGS.same_point_distance for distance in distances)
 
 
@@ -199,8 +209,8 @@ def _half_curve(
     problem: BautinProblem, start: BautinCurvePoint
 ) -> tuple[list[BautinCurvePoint], BautinEndReason]:
     """Returns (points, end_reason). points: points of the curve from `start` on, at first in the direction
-    `problem.direction_sign` of the third parameter, including points at its requested values."""
-    if not 0 < start.v[2] + problem.direction_sign * BAUTIN_STEP_CONTROL.min_length < 1:
+    `problem.first_step_sign` of the third parameter, including points at its requested values."""
+    if not 0 < start.scaled_point[2] + problem.first_step_sign * BAUTIN_STEP_CONTROL.min_length < 1:
         return [start], BautinEndReason.range_end
 
     def report_progress(points: Sequence[BautinCurvePoint]) -> None:
@@ -211,7 +221,7 @@ def _half_curve(
     for point, next_point in pairwise(curve.solutions):
         try:
             points += [*_requested_points(problem, point, next_point), next_point]
-        except (*FAILURES, ValueError):
+        except (*FAILURE_EXCEPTIONS, ValueError):
             return points, BautinEndReason.not_found
     if curve.end_reason is StopReason.zero_margin:
         is_range_end = curve.margin_index // 2 == 2
@@ -224,13 +234,13 @@ def _requested_points(
 ) -> list[BautinCurvePoint]:
     """Points at the requested values of the third parameter between `first` and `second`; raises Unsolvable,
     ValueError."""
-    a, b = first.v[2], second.v[2]
-    requested_z = map(problem.axes[2].coordinate, problem.requested_values)
+    a, b = first.scaled_point[2], second.scaled_point[2]
+    requested_z = map(problem.axes[2].scaled_coordinate, problem.third_parameter_values)
     inner_z = [z for z in requested_z if min(a, b) < z < max(a, b)]
     points = []
     for z in sorted(inner_z, reverse=bool(a > b)):
         if min(abs(z - a), abs(z - b)) > BAUTIN_SETTINGS.same_point_distance:
-            guess = first.v + (z - a) / (b - a) * (second.v - first.v)
+            guess = first.scaled_point + (z - a) / (b - a) * (second.scaled_point - first.scaled_point)
             guess[2] = z
             points.append(problem.solve_point(guess, 2))
     return points

@@ -20,7 +20,7 @@ from ...solve_progress import SolvePosition, report
 from ..changes.arm.path import path_problem
 from ..changes.diagram.boundary_curves import BoundaryCurve
 from ..changes.threshold_kinds import Threshold, ThresholdKind
-from ..point_outcome import FAILURES
+from ..point_outcome import FAILURE_EXCEPTIONS
 from ..unsolvable import Unsolvable
 from .hopf_coefficients import HopfCoefficients, hopf_coefficients
 
@@ -34,11 +34,11 @@ class BautinPointSettings:
     first_sign_accuracy: float = 1e-5
     """Relative accuracy of c at first; if the sign of Re c is undecided, c is recomputed with the requested
     accuracy."""
-    tolerance: float = 1e-13
+    brent_tolerance: float = 1e-13
     """Tolerance of Brent's method, as a fraction of the distance between two neighbours."""
     difference_step_over_spacing: float = 1e-3
     """Difference step for the derivative of Re c, as a fraction of the distance between two neighbours."""
-    max_relative_real_part: float = 1e-6
+    max_relative_landau_real_part: float = 1e-6
     """A root found by Brent's method is a zero of Re c only if |Re c|/|c| is at most this number; otherwise
     Re c jumps from negative to positive values."""
 
@@ -50,14 +50,14 @@ BAUTIN_POINT_SETTINGS = BautinPointSettings()
 class BautinPoint:
     """Generalised Hopf point: the point of a Hopf curve with Re c = 0.
 
-    values, errors: values and absolute errors of both parameters of the plane. frequency in 1/tau2,
-    growth_slope = dw/dF in L^2/(k3 tau2), landau_imag = Im c in 1/(tau2 L^2). preceding_index: index of the
-    last stored point of the curve before this point.
+    parameter_values, parameter_errors: values and absolute errors of both parameters of the plane. frequency
+    in 1/tau2, growth_slope = dw/dF in L^2/(k3 tau2), landau_imag = Im c in 1/(tau2 L^2). preceding_index:
+    index of the last stored point of the curve before this point.
     """
 
     preceding_index: int
-    values: tuple[float, float]
-    errors: tuple[float, float]
+    parameter_values: tuple[float, float]
+    parameter_errors: tuple[float, float]
     frequency: float
     growth_slope: complex
     landau_imag: float
@@ -67,11 +67,11 @@ class BautinPoint:
 class CurveCriticality:
     """Signs of Re c along one Hopf curve, and the generalised Hopf points of this curve. criticality: sign of
     Re c at every stored point, 0 if undecided, NaN if the normal form failed, (points,). points: generalised
-    Hopf points. unlocated_count: number of sign changes without a located point."""
+    Hopf points. unlocated_sign_change_count: number of sign changes without a located point."""
 
     criticality: Array
     points: tuple[BautinPoint, ...]
-    unlocated_count: int
+    unlocated_sign_change_count: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,10 +79,11 @@ class _NormalFormOnCurve:
     """A Hopf point in the plane of two parameters, with its normal form coefficients."""
 
     boundary_point: BoundarySolution
+    """Point of the Hopf curve, with its unit tangent."""
     coefficients: HopfCoefficients
 
     @property
-    def relative_real_part(self) -> float:
+    def relative_landau_real_part(self) -> float:
         """Re c/|c|, a dimensionless function that vanishes where Re c vanishes."""
         return self.coefficients.landau.real / abs(self.coefficients.landau)
 
@@ -94,7 +95,7 @@ def curve_criticality(plane: ParameterPlane, curve: BoundaryCurve, accuracy: flo
     accuracy: relative accuracy of c, reduced to `BAUTIN_POINT_SETTINGS.coarsest_accuracy` if larger. If
     the normal form fails at a point, the sign is NaN at this point only."""
     hopf_curve = HopfNormalForms(
-        StabilityBoundary(plane, curve.eigenvalue_sign),
+        StabilityBoundary(plane, curve.double_eigenvalue_sign),
         curve.scaled_points,
         min(accuracy, BAUTIN_POINT_SETTINGS.coarsest_accuracy),
     )
@@ -113,30 +114,33 @@ def curve_criticality(plane: ParameterPlane, curve: BoundaryCurve, accuracy: flo
 @dataclass(frozen=True, slots=True)
 class HopfNormalForms:
     """Normal forms along a Hopf curve. boundary: equation D = 0 of the curve in the plane of two parameters.
-    scaled: points (x, y, h) of the curve, (points, 3); x, y: scaled parameters, h = log frequency. accuracy:
-    relative accuracy of the Landau coefficient c."""
+    scaled_points: points (x, y, h) of the curve, (points, 3); x, y: scaled parameters, h = log frequency.
+    landau_accuracy: relative accuracy of the Landau coefficient c."""
 
     boundary: StabilityBoundary
-    scaled: Array
-    accuracy: float
+    scaled_points: Array
+    landau_accuracy: float
 
     def criticality_at(self, i: int) -> float:
         """Sign of Re c at the stored point with the index i: -1 or 1; 0 if undecided, NaN after a failure."""
-        point_count = len(self.scaled)
+        point_count = len(self.scaled_points)
         report(
             lambda: SolvePosition(
                 f"criticality of a Hopf curve, point {i + 1} of {point_count}", i / point_count
             )
         )
         try:
-            v = self.scaled[i]
+            v = self.scaled_points[i]
             normal = self.boundary.tangent(v)
             hopf_point = self.hopf_point_on_plane(
                 v, normal, BAUTIN_POINT_SETTINGS.first_sign_accuracy
             ).coefficients.criticality
             # An accurate c, which costs more, is needed only where the rough sign is undecided.
-            return hopf_point or self.hopf_point_on_plane(v, normal, self.accuracy).coefficients.criticality
-        except FAILURES:
+            return (
+                hopf_point
+                or self.hopf_point_on_plane(v, normal, self.landau_accuracy).coefficients.criticality
+            )
+        except FAILURE_EXCEPTIONS:
             return math.nan
 
     def hopf_point_on_plane(self, guess: Array, normal: Array, accuracy: float) -> _NormalFormOnCurve:
@@ -148,7 +152,7 @@ class HopfNormalForms:
         x, y, h = map(float, solution.v)
         rod = self.boundary.plane.rod_at(x, y)
         w = complex(0.0, math.exp(h))
-        slope = path_problem(ParameterPath(rod, "F")).eigenvalue(w, rod.F)[1]
+        slope = path_problem(ParameterPath(rod, "F")).eigenvalue_with_slope_and_error(w, rod.F)[1]
         value = self.boundary.plane.determinant(w, x, y)
         # The force is the only parameter of the normal form: convert the point's error into an error of F.
         force_error = solution.error * (abs(value.D_x) + abs(value.D_y)) / abs(slope * value.D_w)
@@ -164,28 +168,32 @@ class HopfNormalForms:
         settings = BAUTIN_POINT_SETTINGS
         from scipy.optimize import brentq  # slow import: 0.1 s, for few runs
 
-        start = self.scaled[first_index]
-        chord = self.scaled[last_index] - self.scaled[first_index]
+        start = self.scaled_points[first_index]
+        chord = self.scaled_points[last_index] - self.scaled_points[first_index]
         normal = chord / np.linalg.norm(chord)
 
         def on_chord(s: float) -> _NormalFormOnCurve:
-            return self.hopf_point_on_plane(start + s * chord, normal, self.accuracy)
+            return self.hopf_point_on_plane(start + s * chord, normal, self.landau_accuracy)
 
         try:
-            s = float(brentq(lambda s: on_chord(s).relative_real_part, 0.0, 1.0, xtol=settings.tolerance))
+            s = float(
+                brentq(
+                    lambda s: on_chord(s).relative_landau_real_part, 0.0, 1.0, xtol=settings.brent_tolerance
+                )
+            )
             hopf_point, point_before, point_after = (
                 on_chord(s + side * settings.difference_step_over_spacing) for side in (0, -1, 1)
             )
-        except (*FAILURES, ValueError):
+        except (*FAILURE_EXCEPTIONS, ValueError):
             return None
-        slope = (point_after.relative_real_part - point_before.relative_real_part) / (
+        slope = (point_after.relative_landau_real_part - point_before.relative_landau_real_part) / (
             2 * settings.difference_step_over_spacing
         )
-        if abs(hopf_point.relative_real_part) > settings.max_relative_real_part or slope == 0:
+        if abs(hopf_point.relative_landau_real_part) > settings.max_relative_landau_real_part or slope == 0:
             return None
         # Points of undecided sign may lie between the two points, on both sides of the zero.
-        is_passed = (self.scaled[first_index + 1 : last_index] - start) @ chord <= s * (chord @ chord)
-        position_error = hopf_point.coefficients.landau_error / abs(slope) + settings.tolerance
+        is_passed = (self.scaled_points[first_index + 1 : last_index] - start) @ chord <= s * (chord @ chord)
+        position_error = hopf_point.coefficients.landau_error / abs(slope) + settings.brent_tolerance
         return self.as_bautin_point(hopf_point, first_index + int(is_passed.sum()), chord * position_error)
 
     def as_bautin_point(
@@ -200,13 +208,13 @@ class HopfNormalForms:
         tangent_error = tangent * float(np.linalg.norm(position_error) ** 2 / (tangent @ position_error))
         values = [axis.value(float(x)) for axis, x in zip(axes, solution.v[:2], strict=True)]
         errors = [
-            abs(axis.parameter_per_coordinate(value)) * (abs(float(coordinate_error)) + solution.error)
+            abs(axis.parameter_per_scaled_coordinate(value)) * (abs(float(coordinate_error)) + solution.error)
             for axis, value, coordinate_error in zip(axes, values, tangent_error[:2], strict=True)
         ]
         return BautinPoint(
             preceding_index=index_before,
-            values=(values[0], values[1]),
-            errors=(errors[0], errors[1]),
+            parameter_values=(values[0], values[1]),
+            parameter_errors=(errors[0], errors[1]),
             frequency=math.exp(float(solution.v[2])),
             growth_slope=hopf_point.coefficients.growth_slope,
             landau_imag=hopf_point.coefficients.landau.imag,

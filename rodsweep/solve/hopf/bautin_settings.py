@@ -9,7 +9,7 @@ BAUTIN_STEP_CONTROL = StepControl(
     first_length=0.01,
     max_length=0.1,
     min_length=1e-4,
-    max_error=0.2,
+    max_prediction_error=0.2,
     max_angle=inf,
     max_length_ratio=1.5,
     max_solutions=2000,
@@ -25,7 +25,7 @@ class BautinSettings:
     """Maximum number of secant steps to a generalised Hopf point; beyond, the curve's step has failed."""
     first_secant_step: float = 1e-3
     """First secant step along the Hopf curve; each parameter's range has length 1."""
-    tolerance: float = 1e-12
+    secant_tolerance: float = 1e-12
     """The secant method stops when the step is at most this number, or at most the error caused by the error
     of c; each parameter's range has length 1."""
     edge_tolerance: float = 1e-12

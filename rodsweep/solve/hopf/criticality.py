@@ -10,11 +10,11 @@ from functools import cache, lru_cache
 
 from ...determinant.parameter_path import ParameterPath
 from ...model.rod import Rod
-from ..changes.search_range import end_below_crushing
+from ..changes.search_range import search_end_below_crushing
 from ..changes.threshold_kinds import Threshold
 from ..changes.thresholds import ThresholdsRequest, missed_accuracy_text
-from ..changes.thresholds_along_path import ThresholdSearchResult, find_axis_crossings
-from ..point_outcome import FAILURES, cause_of, outcome_or_failure
+from ..changes.thresholds_along_path import ThresholdSearchResult, find_imaginary_axis_crossings
+from ..point_outcome import FAILURE_EXCEPTIONS, cause_of, outcome_or_failure
 from .hopf_coefficients import HOPF_COEFFICIENT_SETTINGS, HopfCoefficients, hopf_coefficients
 from .status import CriticalityStatus
 
@@ -26,18 +26,20 @@ class Criticality:
     points, at most as many as requested. seconds: computing time."""
 
     status: CriticalityStatus
+    """Most serious problem of the search or of a coefficient, or ok."""
     search_result: ThresholdSearchResult
     coefficients: tuple[HopfCoefficients, ...]
     end: float
     seconds: float = 0.0
     message: str = ""
+    """Causes of failures, and why the list is not proved; empty otherwise."""
 
 
 def solve_criticality(rod: Rod, request: ThresholdsRequest) -> Criticality:
     """All Hopf points of `rod` for forces up to `request.F_max`, or to just below the crushing force if
     smaller, and the coefficients of the first `request.max_thresholds` of these points. The force of `rod`
     is ignored; a failure is returned as a status, never raised."""
-    end = end_below_crushing(rod, request.F_max)
+    end = search_end_below_crushing(rod, request.F_max)
 
     def search() -> Criticality:
         # Without gamma1 and the force: rods that differ only in these two share the search.
@@ -45,7 +47,8 @@ def solve_criticality(rod: Rod, request: ThresholdsRequest) -> Criticality:
         hopf_points = _hopf_points(path, end, request.certify, request.max_thresholds)
         # The file has no room for further normal forms.
         coefficients = tuple(
-            _coefficients(rod, hopf, request) for hopf in hopf_points.thresholds[: request.max_thresholds]
+            _coefficients_or_nan(rod, hopf, request)
+            for hopf in hopf_points.thresholds[: request.max_thresholds]
         )
         status, message = _status_and_message(hopf_points, coefficients, request)
         return Criticality(
@@ -59,7 +62,7 @@ def solve_criticality(rod: Rod, request: ThresholdsRequest) -> Criticality:
     def failed(cause: str) -> Criticality:
         return Criticality(
             status=CriticalityStatus.failed,
-            search_result=ThresholdSearchResult(proved=False),
+            search_result=ThresholdSearchResult(is_proved=False),
             coefficients=(),
             end=math.nan,
             message=cause,
@@ -76,14 +79,14 @@ def warm_up() -> None:
 
 @lru_cache(maxsize=HOPF_COEFFICIENT_SETTINGS.max_cached_searches)
 def _hopf_points(path: ParameterPath, end: float, certify: bool, max_crossings: int) -> ThresholdSearchResult:
-    return find_axis_crossings(path, 0.0, end, certify, max_crossings)
+    return find_imaginary_axis_crossings(path, 0.0, end, certify, max_crossings)
 
 
-def _coefficients(rod: Rod, hopf: Threshold, request: ThresholdsRequest) -> HopfCoefficients:
+def _coefficients_or_nan(rod: Rod, hopf: Threshold, request: ThresholdsRequest) -> HopfCoefficients:
     """Coefficients of the Hopf point `hopf`; NaN after a failure, with the cause as message."""
     try:
         return hopf_coefficients(replace(rod, F=hopf.value), hopf, request.accuracy)
-    except FAILURES as error:
+    except FAILURE_EXCEPTIONS as error:
         return HopfCoefficients(message=f"Hopf point at F = {hopf.value:.12g}: {cause_of(error)}")
 
 
@@ -115,7 +118,7 @@ def _status_and_message(
         CriticalityStatus.list_full: len(hopf_points.thresholds) > request.max_thresholds,
         CriticalityStatus.sign_undecided: any(c.criticality == 0 for c in known_coefficients),
         CriticalityStatus.accuracy_not_reached: any(accuracy_texts),
-        CriticalityStatus.not_certified: request.certify and not hopf_points.proved,
+        CriticalityStatus.not_certified: request.certify and not hopf_points.is_proved,
     }
     status = next((status for status, applies in applies_by_status.items() if applies), CriticalityStatus.ok)
     # A more serious status does not say that a result is inaccurate, so the message says it.

@@ -31,7 +31,7 @@ class HopfCoefficientSettings:
 
     order_increase: int = 4
     """Increase of the element order from the first mesh to the second: the error of c falls by 10 to 10^4."""
-    max_refinements: int = 4
+    max_finer_meshes: int = 4
     """Maximum number of meshes after the first."""
     coarsest_accuracy: float = 1e-2
     """Coarsest relative accuracy for which the first mesh is chosen: the mesh must identify the
@@ -63,12 +63,16 @@ class HopfCoefficients:
 
     growth_slope: complex = complex(math.nan, math.nan)
     growth_slope_error: float = math.nan
+    """Estimated error of `growth_slope`, divided by |growth_slope|."""
     landau: complex = complex(math.nan, math.nan)
     landau_error: float = math.nan
+    """Estimated error of `landau`, divided by |landau|."""
     amplitude_coefficient: float = math.nan
     amplitude_coefficient_error: float = math.nan
+    """Estimated relative error of `amplitude_coefficient`."""
     frequency_slope: float = math.nan
     frequency_slope_error: float = math.nan
+    """Estimated relative error of `frequency_slope`."""
     elements: int = 0
     order: int = 0
     message: str = ""
@@ -104,8 +108,8 @@ def hopf_coefficients(rod: Rod, hopf: Threshold, accuracy: float) -> HopfCoeffic
     fine_form = normal_form_on(first_elements, rod, w, settings.coarsest_accuracy)
     landau_change = math.inf
     rounding_error = 0.0
-    for refinement in range(settings.max_refinements):
-        elements = Elements(fine_form.form.mesh.edges, fine_form.form.mesh.order)
+    for refinement in range(settings.max_finer_meshes):
+        elements = Elements(fine_form.mixed_form.mesh.edges, fine_form.mixed_form.mesh.order)
         finer_elements = (
             elements_with_third_more_unknowns(elements)
             if refinement
@@ -115,7 +119,7 @@ def hopf_coefficients(rod: Rod, hopf: Threshold, accuracy: float) -> HopfCoeffic
         fine_form = normal_form_on(finer_elements, rod, w, accuracy)
         landau_change = abs(fine_form.landau - coarse_form.landau) / abs(fine_form.landau)
         # The rounding error of c follows from the condition number of the eigenvalue.
-        product_sizes = fine_form.transverse.A_product_magnitude(fine_form.p, fine_form.q)
+        product_sizes = fine_form.transverse_matrices.A_product_magnitude(fine_form.p, fine_form.q)
         rounding_error = settings.landau_rounding_per_condition_number * product_sizes / abs(fine_form.w)
         if landau_change <= max(accuracy, rounding_error):
             break
@@ -167,8 +171,8 @@ def _coefficients_with_errors(
         amplitude_coefficient_error=a_error,
         frequency_slope=b,
         frequency_slope_error=absolute_b_error / abs(b) if 0 < abs(b) < math.inf else math.inf,
-        elements=normal.form.mesh.element_count,
-        order=normal.form.mesh.order,
+        elements=normal.mixed_form.mesh.element_count,
+        order=normal.mixed_form.mesh.order,
     )
 
 
@@ -177,6 +181,6 @@ def _eigenvalue_slope_and_curvature(rod: Rod, w: complex) -> tuple[complex, floa
     # A one-sided difference suffices: the second derivative only enters error estimates.
     step = HOPF_COEFFICIENT_SETTINGS.relative_force_step * abs(rod.F)
     problem = path_problem(ParameterPath(rod, "F"))
-    _, slope, _ = problem.eigenvalue(w, rod.F)
-    _, slope_before, _ = problem.eigenvalue(w - slope * step, rod.F - step)
+    _, slope, _ = problem.eigenvalue_with_slope_and_error(w, rod.F)
+    _, slope_before, _ = problem.eigenvalue_with_slope_and_error(w - slope * step, rod.F - step)
     return complex(slope), abs(slope - slope_before) / step

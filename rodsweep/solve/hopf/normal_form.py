@@ -40,9 +40,9 @@ from ..unsolvable import Unsolvable
 class NormalFormSettings:
     """Settings for the normal form of a Hopf point: mesh and inverse iteration."""
 
-    shift_offset: float = 1e-10
+    relative_shift_offset: float = 1e-10
     """Relative offset of the shift from the eigenvalue estimate; without it the matrix might be singular."""
-    converged_shift_distance: float = 1e-8
+    converged_relative_shift_distance: float = 1e-8
     """The inverse iteration stops when the relative distance of shift and eigenvalue is at most this number:
     two iterations with this shift reach rounding error."""
     max_shifts: int = 10
@@ -62,8 +62,8 @@ class NormalFormSettings:
 NORMAL_FORM_SETTINGS = NormalFormSettings()
 ITERATIONS_PER_SHIFT = 2
 """Number of inverse iterations with one shift. After two iterations the error of the mode is about the square
-of `NORMAL_FORM_SETTINGS.converged_shift_distance`, below rounding error; after one iteration the error of the
-mode would exceed the stated error of c."""
+of `NORMAL_FORM_SETTINGS.converged_relative_shift_distance`, below rounding error; after one iteration the
+error of the mode would exceed the stated error of c."""
 
 
 HARMONIC_WAVE_NUMBER_RATIO = 2
@@ -75,12 +75,12 @@ class NormalForm:
     """Normal form of a rod on a mesh, about the straight rod, for one eigenvalue w with Im w > 0.
 
     w in 1/tau2, eigenvalue_slope = dw/dF in L^2/(k3 tau2), landau = c in 1/(tau2 L^2). q, p, h20 (complex)
-    and h11 (real): coefficients of the state X of `form`, (unknowns,). transverse: matrices of the transverse
-    components. At a Hopf point w = i Im w up to the error of the mesh.
+    and h11 (real): coefficients of the state X of `mixed_form`, (unknowns,). transverse_matrices: matrices of
+    the transverse components. At a Hopf point w = i Im w up to the error of the mesh.
     """
 
-    form: MixedForm
-    transverse: StraightMatrices
+    mixed_form: MixedForm
+    transverse_matrices: StraightMatrices
     w: complex
     eigenvalue_slope: complex
     landau: complex
@@ -92,7 +92,7 @@ class NormalForm:
     @property
     def F(self) -> float:
         """The force at which w is the eigenvalue, in k3/L^2."""
-        return self.form.rod.F
+        return self.mixed_form.rod.F
 
     @property
     def is_supercritical(self) -> bool:
@@ -139,12 +139,12 @@ def normal_form(form: MixedForm, guess: complex) -> NormalForm:
     )
     w, q, p = _eigenvalue_and_modes(transverse, guess)
     # The mode is transverse, so its quadratic fields are longitudinal: the opposite blocks are not needed.
-    h20 = -longitudinal.lu_factors(2j * w.imag).solve(form.bilinear(q, q))
+    h20 = -longitudinal.lu_factors(2j * w.imag).solve(form.bilinear_form(q, q))
     # Everything is real at the shift 0, but the solver is complex.
-    h11 = -longitudinal.lu_factors(0).solve(form.bilinear(q, q.conj())).real
-    c = np.vdot(p, form.bilinear(q.conj(), h20) / 2 + form.bilinear(q, h11))
+    h11 = -longitudinal.lu_factors(0).solve(form.bilinear_form(q, q.conj())).real
+    c = np.vdot(p, form.bilinear_form(q.conj(), h20) / 2 + form.bilinear_form(q, h11))
     if form.law_derivatives.is_nonlinear:
-        c += np.vdot(p, form.trilinear(q, q, q.conj())) / 2
+        c += np.vdot(p, form.trilinear_form(q, q, q.conj())) / 2
     slope = complex(np.vdot(p, form.times_force_derivative_of_A(q)))
     return NormalForm(form, transverse, w, slope, complex(c), q=q, p=p, h20=h20, h11=h11)
 
@@ -174,13 +174,13 @@ def with_odd_order(elements: Elements) -> Elements:
 
 def elements_with_third_more_unknowns(elements: Elements) -> Elements:
     """Elements with about a third more unknowns than `elements`, of odd order."""
-    order = ceil(elements.order * RESOLUTION_SETTINGS.finer_unknowns_ratio)
+    order = ceil(elements.order * RESOLUTION_SETTINGS.finer_over_current_unknowns)
     if order <= RESOLUTION_SETTINGS.max_order:
         return with_odd_order(Elements(elements.edges, order))
     return with_odd_order(
         Elements(
             halved_element_edges(elements.edges),
-            ceil(RESOLUTION_SETTINGS.finer_unknowns_ratio / 2 * elements.order),
+            ceil(RESOLUTION_SETTINGS.finer_over_current_unknowns / 2 * elements.order),
         )
     )
 
@@ -189,8 +189,8 @@ def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) ->
     """Normal form of the eigenvalue w of `rod` on the mesh `elements`.
 
     Raises Unsolvable if the mesh has no eigenvalue equal to w within the larger of the relative accuracies
-    `accuracy` and `NORMAL_FORM_SETTINGS.converged_shift_distance`, if the mesh has too many nodes, or for the
-    reasons of `normal_form`.
+    `accuracy` and `NORMAL_FORM_SETTINGS.converged_relative_shift_distance`, if the mesh has too many nodes,
+    or for the reasons of `normal_form`.
     """
     node_count = elements.node_count
     max_node_count = (
@@ -202,7 +202,9 @@ def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) ->
             f"{max_node_count} allowed"
         )
     normal = normal_form(MixedForm(rod, mesh_with_edges(elements.edges, elements.order)), w)
-    if not abs(normal.w - w) <= max(accuracy, NORMAL_FORM_SETTINGS.converged_shift_distance) * abs(w):
+    if not abs(normal.w - w) <= max(accuracy, NORMAL_FORM_SETTINGS.converged_relative_shift_distance) * abs(
+        w
+    ):
         raise Unsolvable(
             f"the mesh of the normal form misses the eigenvalue w = {w:.12g} of the rod at F = {rod.F:g}; "
             f"the nearest eigenvalue of the mesh is {normal.w:.12g}"
@@ -218,7 +220,7 @@ def _eigenvalue_and_modes(matrices: StraightMatrices, guess: complex) -> tuple[c
         if not np.isfinite(w):  # a factorisation would raise an error
             continue
         # At the eigenvalue itself the matrix would be singular.
-        shift = w * (1 + NORMAL_FORM_SETTINGS.shift_offset)
+        shift = w * (1 + NORMAL_FORM_SETTINGS.relative_shift_offset)
         factors = matrices.lu_factors(shift)
         # Odd unknowns are transverse. The longitudinal unknowns start at 0 and remain 0.
         q: Complex = np.where(matrices.form.reflection_signs < 0, 1 + 0j, 0)
@@ -230,7 +232,7 @@ def _eigenvalue_and_modes(matrices: StraightMatrices, guess: complex) -> tuple[c
             p = p / np.abs(p).max()
         Mq = matrices.times_M(q)
         w = complex(np.vdot(p, matrices.times_A(q)) / np.vdot(p, Mq))
-        if abs(w - shift) <= NORMAL_FORM_SETTINGS.converged_shift_distance * abs(w):
+        if abs(w - shift) <= NORMAL_FORM_SETTINGS.converged_relative_shift_distance * abs(w):
             break
     else:
         raise Unsolvable(f"inverse iteration finds no eigenvalue near w = {guess:.6g}")
@@ -238,5 +240,5 @@ def _eigenvalue_and_modes(matrices: StraightMatrices, guess: complex) -> tuple[c
         raise Unsolvable(f"the eigenvalue near w = {guess:.6g} is real: no mode oscillates there")
     # The tip of q is at y = 1/2, so that |z| is the largest tip y of z q + c.c.; with <p, M q> = 1, a
     # projection on q needs no denominator.
-    scale = 2 * (matrices.form.tip_y_row @ q)
+    scale = 2 * (matrices.form.tip_y_functional @ q)
     return w, q / scale, p * scale.conj() / np.vdot(p, Mq).conj()

@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 
 from ...determinant.parameter_path import ParameterPath
 from ...model.rod import Rod
-from ..changes.search_range import end_below_crushing
-from ..changes.thresholds_along_path import find_axis_crossings
+from ..changes.search_range import search_end_below_crushing
+from ..changes.thresholds_along_path import find_imaginary_axis_crossings
 from .hopf_coefficients import hopf_coefficients
 
 
@@ -18,11 +18,12 @@ from .hopf_coefficients import hopf_coefficients
 class SubcriticalHopfSearchSettings:
     """Settings for the search for a subcritical Hopf point near the force of a rod."""
 
-    max_force_ratio: float = 1.5
-    """Hopf points are searched from F/`max_force_ratio` to F times `max_force_ratio`, F: force of the rod."""
-    accuracy: float = 1e-3
+    max_hopf_force_ratio: float = 1.5
+    """Hopf points are searched from F/`max_hopf_force_ratio` to F times `max_hopf_force_ratio`, F: force of
+    the rod."""
+    landau_accuracy: float = 1e-3
     """Relative accuracy of the coefficient c; only the sign and the first digits of c are needed."""
-    max_unstable_y: float = 0.5
+    max_unstable_cycle_y: float = 0.5
     """Hopf points are ignored if the largest tip y of their unstable cycle, in L, exceeds this number: the
     normal form is too inaccurate."""
 
@@ -33,11 +34,11 @@ SUBCRITICAL_HOPF_SEARCH_SETTINGS = SubcriticalHopfSearchSettings()
 @dataclass(frozen=True, slots=True)
 class SubcriticalHopf:
     """Subcritical Hopf point near the force of a rod, with the size of its unstable cycle. F: force of the
-    Hopf point, in k3/L^2. unstable_y: largest tip y, in L, of the unstable cycle at the force of the rod, to
-    leading order."""
+    Hopf point, in k3/L^2. unstable_cycle_y: largest tip y, in L, of the unstable cycle at the force of the
+    rod, to leading order."""
 
     F: float
-    unstable_y: float
+    unstable_cycle_y: float
 
 
 def subcritical_hopf_near(rod: Rod) -> SubcriticalHopf | None:
@@ -45,24 +46,29 @@ def subcritical_hopf_near(rod: Rod) -> SubcriticalHopf | None:
     the force is not positive.
 
     The candidates are the first Hopf point above and the first Hopf point below the force, within the factor
-    `max_force_ratio` of the settings, if the largest tip y of the unstable cycle by the normal form is at
-    most `max_unstable_y`. The straight rod must be stable. Raises Unsolvable if the search for Hopf points or
-    a coefficient fails.
+    `max_hopf_force_ratio` of the settings, if the largest tip y of the unstable cycle by the normal form is
+    at most `max_unstable_cycle_y`. The straight rod must be stable. Raises Unsolvable if the search for Hopf
+    points or a coefficient fails.
     """
-    min_force = rod.F / SUBCRITICAL_HOPF_SEARCH_SETTINGS.max_force_ratio
-    max_force = end_below_crushing(rod, rod.F * SUBCRITICAL_HOPF_SEARCH_SETTINGS.max_force_ratio)
+    min_force = rod.F / SUBCRITICAL_HOPF_SEARCH_SETTINGS.max_hopf_force_ratio
+    max_force = search_end_below_crushing(rod, rod.F * SUBCRITICAL_HOPF_SEARCH_SETTINGS.max_hopf_force_ratio)
     if not 0 < min_force < max_force:
         return None
-    crossings = find_axis_crossings(ParameterPath(rod, "F"), min_force, max_force, certify=False).thresholds
+    crossings = find_imaginary_axis_crossings(
+        ParameterPath(rod, "F"), min_force, max_force, certify=False
+    ).thresholds
     crossings_above = [crossing for crossing in crossings if crossing.value > rod.F]
     crossings_below = [crossing for crossing in crossings if crossing.value <= rod.F]
     nearest_crossings = crossings_above[:1] + crossings_below[-1:]
     for hopf in sorted(nearest_crossings, key=lambda one: abs(one.value - rod.F)):
         coefficients = hopf_coefficients(
-            replace(rod, F=hopf.value), hopf, SUBCRITICAL_HOPF_SEARCH_SETTINGS.accuracy
+            replace(rod, F=hopf.value), hopf, SUBCRITICAL_HOPF_SEARCH_SETTINGS.landau_accuracy
         )
         unstable_y = abs(coefficients.amplitude_coefficient) * abs(rod.F / hopf.value - 1) ** 0.5
         # A positive criticality means subcritical.
-        if coefficients.criticality > 0 and unstable_y <= SUBCRITICAL_HOPF_SEARCH_SETTINGS.max_unstable_y:
+        if (
+            coefficients.criticality > 0
+            and unstable_y <= SUBCRITICAL_HOPF_SEARCH_SETTINGS.max_unstable_cycle_y
+        ):
             return SubcriticalHopf(hopf.value, unstable_y)
     return None

@@ -28,14 +28,14 @@ class ModeMeshSettings:
     order_increase: int = 4
     """Increase of the element order from the first mesh to the second; the errors of the modes fall by a
     factor of 100."""
-    further_order_ratio: float = 4 / 3
+    further_mesh_order_ratio: float = 4 / 3
     """Element order of a further mesh, divided by the order before. Elements are not split: a mesh of halved
     elements of lower order may be less accurate than its predecessor, as if rounding errors dominated."""
-    max_meshes: int = 4
+    max_finer_meshes: int = 4
     """Maximum number of meshes after the first, each finer than its predecessor."""
     max_unknowns: int = 1500
     """Largest number of unknowns of a mesh; dense linear algebra on a larger mesh takes seconds."""
-    min_accuracy: float = 1e-24
+    finest_first_mesh_accuracy: float = 1e-24
     """The first mesh is chosen for a relative accuracy of eigenvalues not smaller than this."""
     condition_rounding_per_separation: float = 2.0
     """Relative rounding error of a condition number, divided by (rounding error of the eigenvalue)/(distance
@@ -47,7 +47,7 @@ MODE_MESH_SETTINGS = ModeMeshSettings()
 
 def mesh_accuracy_for_modes(accuracy: float) -> float:
     """Relative accuracy of eigenvalues for the first mesh if the modes need the accuracy `accuracy`."""
-    return max(mesh_accuracy(accuracy, True), MODE_MESH_SETTINGS.min_accuracy)
+    return max(mesh_accuracy(accuracy, True), MODE_MESH_SETTINGS.finest_first_mesh_accuracy)
 
 
 def converged_modes(
@@ -61,13 +61,13 @@ def converged_modes(
     coarse_modes = mode_vectors(rod, pencil_on(mesh), eigenvalues, points)
     best_modes: ModeVectors | None = None
     min_error = inf
-    for _ in range(MODE_MESH_SETTINGS.max_meshes):
+    for _ in range(MODE_MESH_SETTINGS.max_finer_meshes):
         order = mesh.order + MODE_MESH_SETTINGS.order_increase
         max_order = MODE_MESH_SETTINGS.max_unknowns * mesh.order // mesh.unknown_count
         if order > max_order:
             break
         if best_modes is not None:
-            order = ceil(MODE_MESH_SETTINGS.further_order_ratio * mesh.order)
+            order = ceil(MODE_MESH_SETTINGS.further_mesh_order_ratio * mesh.order)
         mesh = replace(mesh, order=min(order, max_order))
         fine_modes = mode_vectors(rod, pencil_on(mesh), eigenvalues, points)
         result = _with_errors_from_coarse(coarse_modes, fine_modes, separations)
@@ -90,7 +90,7 @@ def _with_errors_from_coarse(coarse: ModeVectors, fine: ModeVectors, separations
     rotation_by_rounding = (
         MODE_MESH_SETTINGS.condition_rounding_per_separation
         * (1 - 1 / fine.condition**2)
-        * fine.rounding
+        * fine.eigenvalue_rounding
         / np.maximum(separations, EXPONENT_SETTINGS.min_divisor)
     )
     condition_change = np.abs(coarse.condition / fine.condition - 1)

@@ -14,7 +14,7 @@ from ...arrays import COMPLEX_NAN, Array, Complex
 from ...determinant.exponents import MACHINE_EPSILON
 from ...discretization.elements.resolution import Resolution
 from ...discretization.straight.dense_eigenproblem import AnyPencil, DenseEigenproblem, dense_eigenproblem
-from ...discretization.straight.pencil import factors_to_unit_tip
+from ...discretization.straight.pencil import factors_to_unit_tip_displacement
 from ...model.rod import Rod
 
 
@@ -53,7 +53,7 @@ class ModeVectors:
     """Condition number |psi| |xi|/|(psi, xi)| >= 1, (modes,): largest ratio, to first order, of the change of
     an eigenvalue to the Gamma norm of a perturbation of the operator; inf where two eigenvalues merge. For
     gamma3 = 0 the state contains no theta, and the norm is the norm of y."""
-    rounding: Array
+    eigenvalue_rounding: Array
     """Rounding errors of the eigenvalues w of the mesh, estimated from the rounding of (A - w B) x for the
     right mode x, in 1/tau2, (modes,)."""
     mode_error: Array
@@ -77,7 +77,7 @@ def mode_vectors(rod: Rod, pencil: AnyPencil, eigenvalues: Complex, points: Arra
     factor = MODE_ITERATION_SETTINGS.rounding_safety_factor
     return replace(
         modes,
-        rounding=eigenvalue_rounding(form.A, form.B, X, Z),
+        eigenvalue_rounding=eigenvalue_rounding(form.A, form.B, X, Z),
         mode_error=factor * largest_relative_change(perturbed, modes),
         condition_error=factor * (np.abs(perturbed.condition / modes.condition - 1) + MACHINE_EPSILON),
     )
@@ -86,7 +86,7 @@ def mode_vectors(rod: Rod, pencil: AnyPencil, eigenvalues: Complex, points: Arra
 def _modes_of_vectors(form: DenseEigenproblem, X: Complex, Z: Complex, points: Array) -> ModeVectors:
     """Modes of right and left eigenvectors `X` and `Z`, (unknowns, modes) each, at `points`, (n,); all errors
     NaN."""
-    X, Z = (V * factors_to_unit_tip(*form.displacements(V)) for V in (X, Z))
+    X, Z = (V * factors_to_unit_tip_displacement(*form.displacements(V)) for V in (X, Z))
     evaluation = form.mesh.evaluation_matrix(points)
     B = form.B[:, None]
     pairing = (B * Z * X).sum(axis=0)
@@ -134,7 +134,7 @@ def nan_mode_vectors(resolution: Resolution, mode_count: int, point_count: int) 
         left_modes=nan_modes,
         pairing=np.full(mode_count, COMPLEX_NAN),
         condition=nan_per_mode,
-        rounding=nan_per_mode,
+        eigenvalue_rounding=nan_per_mode,
         mode_error=nan_per_mode,
         condition_error=nan_per_mode,
     )

@@ -33,7 +33,7 @@ from .transient_growth import TransientGrowth, converged_transient_growth
 class LeadingModeSettings:
     """Settings for the transient growth, and for the test whether a rod is unstable."""
 
-    min_growth_wave_number: float = 24.0
+    min_wave_number_for_transient_growth: float = 24.0
     """The mesh for the growth resolves at least this wave number, the wave number of the eighth mode without
     load, because growth at short times needs more modes than are requested."""
     min_growth_rate_over_error: float = 4.0
@@ -45,11 +45,11 @@ LEADING_MODE_SETTINGS = LeadingModeSettings()
 
 @dataclass(frozen=True, slots=True)
 class ModesRequest:
-    """Request for the leading modes. modes: number of modes. accuracy: relative accuracy of eigenvalues,
+    """Request for the leading modes. mode_count: number of modes. accuracy: relative accuracy of eigenvalues,
     modes, condition numbers and growth. node_count: number of Lobatto nodes at which the modes are stored.
     certify: whether the list of eigenvalues must be proved complete."""
 
-    modes: int
+    mode_count: int
     accuracy: float
     node_count: int
     computes_growth: bool
@@ -64,24 +64,27 @@ class Modes:
 
     status: SpectrumStatus
     spectrum: Spectrum
-    vectors: ModeVectors
+    mode_vectors: ModeVectors
+    """Right and left modes with their condition numbers and errors; NaN after a failure."""
     growth: TransientGrowth = TransientGrowth()
     seconds: float = 0.0
+    """Wall-clock time of the solve, in s."""
     message: str = ""
+    """Cause of a failure or of a missed accuracy; empty otherwise."""
 
 
 def solve_modes(rod: Rod, request: ModesRequest) -> Modes:
     """The leading `request.modes` modes of a rod; a failure is returned as a status, never raised."""
     if rod.is_uniform and not rod.is_uniform_and_linear:
         return _modes_by_equivalent_rod(rod, request)
-    spectrum = solve_spectrum(rod, SpectrumRequest(request.modes, request.accuracy, request.certify))
+    spectrum = solve_spectrum(rod, SpectrumRequest(request.mode_count, request.accuracy, request.certify))
     vectors = nan_mode_vectors(
-        Resolution(spectrum.elements, spectrum.order), request.modes, request.node_count
+        Resolution(spectrum.elements, spectrum.order), request.mode_count, request.node_count
     )
     outcome = Modes(
         status=spectrum.status,
         spectrum=spectrum,
-        vectors=vectors,
+        mode_vectors=vectors,
         seconds=spectrum.seconds,
         message=spectrum.message,
     )
@@ -97,7 +100,7 @@ def solve_modes(rod: Rod, request: ModesRequest) -> Modes:
 
 def _modes_by_equivalent_rod(rod: Rod, request: ModesRequest) -> Modes:
     """Modes of a uniform rod of nonlinear material, from the equivalent linear rod; times are rescaled."""
-    linear, rate = rod.equivalent_linear_rod_and_rate
+    linear, rate = rod.equivalent_linear_rod_and_rate_factor
     modes_of_linear = solve_modes(linear, request)
     spectrum = modes_of_linear.spectrum
     growth = modes_of_linear.growth
@@ -107,7 +110,10 @@ def _modes_by_equivalent_rod(rod: Rod, request: ModesRequest) -> Modes:
             spectrum, eigenvalues=rate * spectrum.eigenvalues, error_estimate=rate * spectrum.error_estimate
         ),
         # The modes themselves are equal, as only the unit of time differs.
-        vectors=replace(modes_of_linear.vectors, rounding=rate * modes_of_linear.vectors.rounding),
+        mode_vectors=replace(
+            modes_of_linear.mode_vectors,
+            eigenvalue_rounding=rate * modes_of_linear.mode_vectors.eigenvalue_rounding,
+        ),
         growth=replace(
             growth,
             # Rates are multiplied by `rate`, times are divided.
@@ -133,15 +139,14 @@ def _with_modes(rod: Rod, request: ModesRequest, outcome: Modes) -> Modes:
             message=f"no mesh of at most {MODE_MESH_SETTINGS.max_unknowns} unknowns resolves the modes; "
             "request fewer modes",
         )
-    result = replace(outcome, vectors=vectors)
+    result = replace(outcome, mode_vectors=vectors)
     errors = vectors.errors_by_name()
     if request.computes_growth:
         abs_w = float(abs(spectrum.eigenvalues[0]))
-        mesh = mesh_for(rod, max(max_q, LEADING_MODE_SETTINGS.min_growth_wave_number), request.accuracy)
-        is_growing = (
-            spectrum.eigenvalues.real
-            > LEADING_MODE_SETTINGS.min_growth_rate_over_error * spectrum.error_estimate
-        ).any()
+        settings = LEADING_MODE_SETTINGS
+        mesh = mesh_for(rod, max(max_q, settings.min_wave_number_for_transient_growth), request.accuracy)
+        min_growth_rates = settings.min_growth_rate_over_error * spectrum.error_estimate
+        is_growing = (spectrum.eigenvalues.real > min_growth_rates).any()
         # An eigenvalue on the axis within its error neither decays nor grows for certain.
         is_proved = spectrum.status != SpectrumStatus.undecided
         is_stable = True if is_proved else None

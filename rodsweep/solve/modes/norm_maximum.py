@@ -53,6 +53,7 @@ class NormMaximum(NamedTuple):
     norm: float
     time: float
     upper_bound: float
+    """Upper bound of the norm at all times in the range."""
 
 
 def maximum_propagator_norm(

@@ -6,7 +6,7 @@ from math import inf, nan
 import numpy as np
 
 from ...determinant.arm.hull.hull import hull_of
-from ...determinant.certificate.box import eigenvalue_box
+from ...determinant.certificate.eigenvalue_box import eigenvalue_box
 from ...discretization.straight.dense_eigenproblem import AnyPencil, dense_eigenproblem
 from ...discretization.straight.tip_layer import tip_angle_moment_ratio
 from ...model.adjoint import hermitian_tip_coefficients
@@ -26,7 +26,7 @@ class NumericalAbscissaSettings:
     """Distance of the next shift above the current estimate a of the numerical abscissa, divided by 1 + |a|:
     so small that shift + 1/eigenvalue loses no digits by cancellation. An estimate is final if its shift was
     at most twice this distance above it."""
-    min_positive_ratio: float = 1e-9
+    min_positive_over_negative_modulus: float = 1e-9
     """The largest eigenvalue of the shifted inverse is positive, and not a rounding error, if it exceeds this
     fraction of the modulus of the most negative eigenvalue."""
     rounding_safety_factor: float = 3.0
@@ -46,7 +46,7 @@ def numerical_abscissa(rod: Rod, pencil: AnyPencil) -> tuple[float, float]:
     """
     settings = NUMERICAL_ABSCISSA_SETTINGS
     form = dense_eigenproblem(rod, pencil)
-    A = form.with_tip_terms(*hermitian_tip_coefficients(rod.F, tip_angle_moment_ratio(rod)))
+    A = form.A_with_tip_terms(*hermitian_tip_coefficients(rod.F, tip_angle_moment_ratio(rod)))
     B = form.B
     bound, _ = eigenvalue_box(rod) if rod.is_uniform_and_linear else hull_of(rod).box()
     # Any shift above the abscissa is allowed; the bound of the eigenvalues is the first guess.
@@ -56,7 +56,7 @@ def numerical_abscissa(rod: Rod, pencil: AnyPencil) -> tuple[float, float]:
         # H is symmetric but for rounding errors, and `eigvalsh` would read only one of its triangles.
         eigenvalues, vectors = np.linalg.eigh((H + H.T) / 2)
         # A positive eigenvalue: an eigenvalue of the operator lies above the shift.
-        if eigenvalues[-1] > -settings.min_positive_ratio * eigenvalues[0]:
+        if eigenvalues[-1] > -settings.min_positive_over_negative_modulus * eigenvalues[0]:
             shift = 2 * abs(shift) + 1
             continue
         # Eigenvalues of the inverse of (L + L+)/2 - shift, all negative above the abscissa; the most negative

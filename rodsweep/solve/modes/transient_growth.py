@@ -33,16 +33,16 @@ class GrowthSettings:
     """Relative increase of the number of modes if more modes are needed."""
     truncation_exponent: float = 4.0
     """The omitted modes contribute at most exp(-`truncation_exponent`) times the accuracy."""
-    search_tolerance_ratio: float = 0.25
+    search_tolerance_over_accuracy: float = 0.25
     """Tolerance of `maximum_propagator_norm`, as a fraction of the requested accuracy."""
     min_search_tolerance: float = 2e-13
     """Smallest tolerance of `maximum_propagator_norm`: rounding error of the norm."""
     order_increase: int = 4
     """Increase of the element order from the first mesh to the second."""
-    further_order_ratio: float = 1.4
+    further_mesh_order_ratio: float = 1.4
     """Element order of a further mesh, divided by the order before; boundary layers at the tip need high
     orders."""
-    max_meshes: int = 5
+    max_finer_meshes: int = 5
     """Maximum number of meshes after the first, each finer than its predecessor."""
     max_unknowns: int = 400
     """Maximum number of unknowns of a further mesh; all modes of a larger mesh take more than a second."""
@@ -96,11 +96,11 @@ def converged_transient_growth(
     min_error = inf
     abscissa, _ = numerical_abscissa(rod, pencil_on(mesh))
     coarse_propagator = None
-    for step in range(GROWTH_SETTINGS.max_meshes):
+    for step in range(GROWTH_SETTINGS.max_finer_meshes):
         order = (
             mesh.order + GROWTH_SETTINGS.order_increase
             if step == 0
-            else ceil(GROWTH_SETTINGS.further_order_ratio * mesh.order)
+            else ceil(GROWTH_SETTINGS.further_mesh_order_ratio * mesh.order)
         )
         previous_mesh = mesh
         mesh = replace(mesh, order=order)
@@ -155,7 +155,9 @@ def transient_growth(
     if isnan(abscissa):
         return UNKNOWN_GROWTH
     decay_exponent = log(1 / accuracy) + GROWTH_SETTINGS.truncation_exponent
-    tolerance = max(GROWTH_SETTINGS.search_tolerance_ratio * accuracy, GROWTH_SETTINGS.min_search_tolerance)
+    tolerance = max(
+        GROWTH_SETTINGS.search_tolerance_over_accuracy * accuracy, GROWTH_SETTINGS.min_search_tolerance
+    )
     maximum = (1.0, 0.0)
     upper_bound = 1.0
     later_excess = end_time = 0.0

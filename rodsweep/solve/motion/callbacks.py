@@ -19,20 +19,20 @@ from ...discretization.explicit_system import ExplicitSystem
 from ...discretization.state_layout import plane_layout
 from ...discretization.stress.rates import write_rate, write_rate_jacobian
 from ..backend.c_functions import (
-    POINTER,
-    c_function,
+    ADDRESS_TYPE,
     call_petsc,
     doubles_at,
     integers_at,
+    petsc_callback,
     record_at,
 )
 from ..backend.petsc import PETSc
-from .context import (
+from .callback_context import (
     AT_BASE,
     AT_ITERATE,
     CONTEXT_DTYPE,
     MATRIX_STATE_OFFSET,
-    MAX_STAGES,
+    MAX_STORED_STAGES,
     OUTPUTS_OFFSET,
     PETSC_HANDLE_FIELDS,
     UP_TO_DATE,
@@ -45,17 +45,17 @@ from .petsc_calls import (
     get_array_for_reading,
     get_array_for_writing,
     get_dense_array,
-    object_state_of,
+    object_state_counter_of,
     restore_array_after_reading,
     restore_array_after_writing,
     restore_dense_array,
 )
-from .predictor import STAGE_PREDICTOR_SETTINGS, begin_step, extrapolation_points_of
 from .stage_newton import solve_stage, test_newton_convergence
-from .step_record import take_steps
+from .stage_predictor import STAGE_PREDICTOR_SETTINGS, begin_step, extrapolation_points_of
+from .step_record import pop_stored_steps
 
 
-@c_function(POINTER, types.float64, POINTER, POINTER, POINTER, POINTER)
+@petsc_callback(ADDRESS_TYPE, types.float64, ADDRESS_TYPE, ADDRESS_TYPE, ADDRESS_TYPE, ADDRESS_TYPE)
 def residual(ts: int, t: float, U: int, Udot: int, R: int, context: int) -> int:
     """PETSc's implicit function R = Udot - f(U), or R = Udot if the context field `without_rate` is set. U,
     Udot, R: handles of vectors. context: address of the context record."""
@@ -81,7 +81,7 @@ def residual(ts: int, t: float, U: int, Udot: int, R: int, context: int) -> int:
     return 0
 
 
-@c_function(POINTER, types.float64, POINTER, POINTER, POINTER)
+@petsc_callback(ADDRESS_TYPE, types.float64, ADDRESS_TYPE, ADDRESS_TYPE, ADDRESS_TYPE)
 def zero_explicit_part(ts: int, t: float, U: int, F: int, context: int) -> int:
     """PETSc's explicit right-hand side F = 0: all of f is implicit. Without it, PETSc from 3.20 on treats the
     rod as a differential-algebraic system, with an additional Newton solve in each step."""
@@ -93,7 +93,16 @@ def zero_explicit_part(ts: int, t: float, U: int, F: int, context: int) -> int:
     return 0
 
 
-@c_function(POINTER, types.float64, POINTER, POINTER, types.float64, POINTER, POINTER, POINTER)
+@petsc_callback(
+    ADDRESS_TYPE,
+    types.float64,
+    ADDRESS_TYPE,
+    ADDRESS_TYPE,
+    types.float64,
+    ADDRESS_TYPE,
+    ADDRESS_TYPE,
+    ADDRESS_TYPE,
+)
 def residual_jacobian(  # noqa: PLR0913, PLR0917 - PETSc's signature
     ts: int, t: float, U: int, Udot: int, shift: float, A: int, B: int, context: int
 ) -> int:
@@ -103,7 +112,7 @@ def residual_jacobian(  # noqa: PLR0913, PLR0917 - PETSc's signature
     n = c.unknowns
     scratch = context + OUTPUTS_OFFSET
     outputs = integers_at(scratch, 1)
-    object_state_of(B, scratch)
+    object_state_counter_of(B, scratch)
     # PETSc may have scaled the matrix in place; its state counter shows every change.
     is_unchanged = c.last_matrix == B and c.matrix_state == outputs[0]
     if c.matrix_due == UP_TO_DATE and c.shift == shift and is_unchanged:
@@ -123,7 +132,7 @@ def residual_jacobian(  # noqa: PLR0913, PLR0917 - PETSc's signature
         M[i, i] += shift
     restore_dense_array(B, scratch)
     c.last_matrix = B
-    object_state_of(B, context + MATRIX_STATE_OFFSET)
+    object_state_counter_of(B, context + MATRIX_STATE_OFFSET)
     c.matrix_due = UP_TO_DATE
     c.shift = shift
     c.factorisations += 1
@@ -137,11 +146,11 @@ class CallbackWorkspace:
         n = plane_layout(mesh.node_count).unknown_count
         self.base = np.zeros(n)
         self._mesh = mesh  # the callbacks read the mesh's arrays by address, so the mesh must stay alive
-        self._arrays = mesh.matrices._asdict() | {
+        self._arrays = mesh.node_matrices._asdict() | {
             "base": self.base,
             "jacobian": np.zeros((n, n)),
-            "times": np.zeros(2 * MAX_STAGES),
-            "states": np.zeros((2 * MAX_STAGES, n)),
+            "times": np.zeros(2 * MAX_STORED_STAGES),
+            "states": np.zeros((2 * MAX_STORED_STAGES, n)),
             "points": extrapolation_points_of(""),
             "constant": np.zeros(n),
             "rates": np.zeros(n),
@@ -164,9 +173,9 @@ class CallbackWorkspace:
         self._rod_arrays = rod_arrays_by_field(system)  # the callbacks read these arrays by address as well
         self._set_context_fields({name: array.ctypes.data for name, array in self._rod_arrays.items()})
         self._set_context_fields(
-            {"components": len(self._rod_arrays["tip_stress"]), "law": system.nodal_rod.law}
+            {"components": len(self._rod_arrays["tip_stress"]), "law": system.nodal_rod.law_number}
         )
-        self._set_context_fields({"jump_count": len(system.nodal_rod.jumps)})
+        self._set_context_fields({"jump_count": len(system.nodal_rod.jump_nodes)})
         # Steps are measured as 2-norms, errors as rms.
         norm_per_rms = system.layout.unknown_count**0.5
         initial_values = {
@@ -181,7 +190,7 @@ class CallbackWorkspace:
             {"small_error": tolerance * norm_per_rms, "rounding": rounding_size * norm_per_rms}
         )
         # Frees steps that an interrupted run has left.
-        take_steps(self.context)
+        pop_stored_steps(self.context)
 
     def set_extrapolation_points(self, arkimex_type: str) -> None:
         """Sets the extrapolation points of the stages for the ARKIMEX type `arkimex_type`; no points if
@@ -223,6 +232,6 @@ class CallbackWorkspace:
 
     def destroy(self) -> None:
         """Frees the stored steps and the PETSc vectors."""
-        take_steps(self.context)
+        pop_stored_steps(self.context)
         for vector in self._vectors:
             vector.destroy()

@@ -21,7 +21,7 @@ from ..backend.c_functions import call_petsc
 from ..backend.petsc import PETSc
 from ..backend.solver_pools import LruPool
 from .callbacks import CallbackWorkspace
-from .step_record import end_step, take_steps
+from .step_record import end_step, pop_stored_steps
 from .time_scheme import TimeScheme
 
 
@@ -29,7 +29,7 @@ from .time_scheme import TimeScheme
 class IntegratorSettings:
     """Settings of the time integration: tolerances, limits, and the run in `relax_fast_components`."""
 
-    max_stagnant_step_ratio: float = 1e-9
+    max_stagnant_newton_step_ratio: float = 1e-9
     """Newton's method for a stage stops, as converged, if it stagnates at steps whose rms size, divided by
     the largest component of the initial state, is below this."""
     first_step_over_duration: float = 1e-3
@@ -40,7 +40,7 @@ class IntegratorSettings:
     """PETSc ends the run after more than this number of successive rejections of one time step."""
     max_failed_stages: int = 1_000_000
     """PETSc ends the run after more failures of Newton's method than this; each shortens the step."""
-    relaxation_duration_ratio: float = 1e-3
+    relaxation_duration_over_period: float = 1e-3
     """Duration of the run in `relax_fast_components`, as a fraction of the period."""
     relaxation_steps_per_period: float = 1e5
     """Period divided by the first time step in `relax_fast_components`; fast components decay within ten
@@ -57,7 +57,7 @@ INTEGRATOR_SETTINGS = IntegratorSettings()
 
 
 RELAXATION_SCHEME = TimeScheme(
-    "beuler", "", tolerance=INTEGRATOR_SETTINGS.relaxation_tolerance, prefix="cycle_relaxation_"
+    "beuler", "", tolerance=INTEGRATOR_SETTINGS.relaxation_tolerance, options_prefix="cycle_relaxation_"
 )
 """Time scheme of the run in `relax_fast_components`: backward Euler, which damps fast components."""
 
@@ -79,7 +79,8 @@ class Trajectory:
     """Result of a run: times in tau2, (steps + 1,), states z, (steps + 1, unknowns), reason for the end of
     the run, and PETSc's error message."""
 
-    ending: EndReason
+    end_reason: EndReason
+    """Reason why the run ended."""
     times: Array
     states: Array
     message: str = ""
@@ -116,7 +117,7 @@ class Integrator:
     def _create_ts(self) -> "PETSc.TS":
         """A TS with the options of the scheme, which the user's PETSc options override."""
         database = PETSc.Options()
-        prefix = self.scheme.prefix
+        prefix = self.scheme.options_prefix
         ts = PETSc.TS().create(comm=PETSc.COMM_SELF)
         ts.setOptionsPrefix(prefix)
         ts.setProblemType(PETSc.TS.ProblemType.NONLINEAR)
@@ -170,7 +171,7 @@ class Integrator:
         ts.setTolerances(rtol=0.0, atol=scheme.tolerance * state_size)
         tolerance = scheme.newton_tolerance_ratio * scheme.tolerance * state_size
         self.workspace.set_rod_and_tolerances(
-            system, tolerance, INTEGRATOR_SETTINGS.max_stagnant_step_ratio * state_size
+            system, tolerance, INTEGRATOR_SETTINGS.max_stagnant_newton_step_ratio * state_size
         )
         ts.setTime(0.0)
         ts.setStepNumber(0)
@@ -190,12 +191,12 @@ class Integrator:
         except (PETSc.Error, SystemError) as error:
             message = str(error.__cause__ or error).splitlines()[-1]
             self.is_broken = True  # after an error inside PETSc its objects are unusable
-        rows = np.concatenate([[np.append(0.0, z)], take_steps(self.workspace.context)])
+        rows = np.concatenate([[np.append(0.0, z)], pop_stored_steps(self.workspace.context)])
         times = np.ascontiguousarray(rows[:, 0])
         states = np.ascontiguousarray(rows[:, 1:])
-        return Trajectory(self._run_ending(message, states[-1]), times, states, message)
+        return Trajectory(self._run_end_reason(message, states[-1]), times, states, message)
 
-    def _run_ending(self, message: str, end_state: Array) -> EndReason:
+    def _run_end_reason(self, message: str, end_state: Array) -> EndReason:
         """Reason why the run ended. message: PETSc's error message, or empty. end_state: last state."""
         reason = self.ts.getConvergedReason()
         reasons = PETSc.TS.ConvergedReason
@@ -243,7 +244,7 @@ def relax_fast_components(system: ExplicitSystem, z: Array, period: float, short
     k1, k2 and 1/gamma3. The explicit first stage of ARKIMEX does not damp these components at any step
     length; backward Euler damps these components within ten steps. If the run fails, z itself is returned.
     """
-    duration = INTEGRATOR_SETTINGS.relaxation_duration_ratio * period / shortening
+    duration = INTEGRATOR_SETTINGS.relaxation_duration_over_period * period / shortening
     step = period / shortening / INTEGRATOR_SETTINGS.relaxation_steps_per_period
     trajectory = integrator(system.mesh, RELAXATION_SCHEME).run(system, z, duration, step)
-    return trajectory.states[-1] if trajectory.ending == EndReason.reached else z
+    return trajectory.states[-1] if trajectory.end_reason == EndReason.reached else z

@@ -8,7 +8,7 @@ from ...arrays import Array, Complex
 from ...determinant.exponents import EXPONENT_SETTINGS
 from ...discretization.explicit_system import ExplicitSystem
 
-MAX_DEFLECTION = 2.0
+MAX_DEFLECTION_PER_TIP_DEFLECTION = 2.0
 """Largest deflection |y| along the rod of a mode, in L, if its tip deflects by 1. The tip of an arm may be at
 rest in a mode: with a heavy tip, for example, at a single force. A mode scaled by its tip is then no small
 disturbance of the rod."""
@@ -18,7 +18,7 @@ disturbance of the rod."""
 class LeadingMode:
     """Leading eigenvalue w of the straight rod, in 1/tau2, Im w >= 0, and its mode, (unknowns,), scaled to
     a tip deflection y(1) = 1 to first order; y(1) is smaller, but not negative, if the largest deflection |y|
-    along the rod would exceed `MAX_DEFLECTION`."""
+    along the rod would exceed `MAX_DEFLECTION_PER_TIP_DEFLECTION`."""
 
     w: complex
     mode: Complex
@@ -47,7 +47,7 @@ def leading_mode(system: ExplicitSystem) -> LeadingMode:
     # y is linear in z about the straight rod, so the 'velocity' along z is the deflection.
     real, imag = (system.transverse_velocities(rest_state, part) for part in (z.real, z.imag))
     tip = complex(real[-1], imag[-1])
-    min_tip = float(np.hypot(real, imag).max()) / MAX_DEFLECTION
+    min_tip = float(np.hypot(real, imag).max()) / MAX_DEFLECTION_PER_TIP_DEFLECTION
     # A tip near a node of the mode would scale the deflection elsewhere without limit.
     if abs(tip) < min_tip:
         phase = tip / abs(tip) if tip else 1.0

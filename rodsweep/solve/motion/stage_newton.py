@@ -17,18 +17,26 @@ from ...arrays import Array
 from ...discretization.stress.rates import write_rate
 from ...model.compiled.compilation import compiled
 from ...model.compiled.kernel_constants import KernelConstants
-from ..backend.c_functions import INT, POINTER, c_function, doubles_at, integers_at, pointer, record_at
-from .context import (
+from ..backend.c_functions import (
+    ADDRESS_TYPE,
+    PETSC_INT_TYPE,
+    as_void_pointer,
+    doubles_at,
+    integers_at,
+    petsc_callback,
+    record_at,
+)
+from .callback_context import (
     AT_BASE,
     AT_ITERATE,
     CONTEXT_DTYPE,
-    MAX_STAGES,
+    MAX_STORED_STAGES,
     OUTPUTS_OFFSET,
     UP_TO_DATE,
     matrices_of,
     rod_of,
     sqrt_compliance_of,
-    states_of,
+    stage_states_of,
 )
 from .petsc_calls import (
     context_of_snes,
@@ -36,33 +44,33 @@ from .petsc_calls import (
     get_array_for_writing,
     restore_array_after_reading,
     restore_array_after_writing,
-    right_side_of,
+    right_hand_side_of,
     set_iteration_number,
-    set_snes_reason,
-    solve_linear,
+    set_snes_converged_reason,
+    solve_linear_system,
     stage_jacobian,
     stage_residual,
     time_step_of,
 )
-from .predictor import predict_stage, store_stage
+from .stage_predictor import predict_stage, store_stage
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StageNewtonSettings(KernelConstants):
     """Settings of Newton's method for a stage. The contraction is the ratio of successive Newton steps."""
 
-    new_matrix_contraction: float = 0.3
+    min_contraction_for_new_matrix: float = 0.3
     """If the contraction exceeds this, a new matrix is computed at the current iterate."""
-    stagnant_contraction: float = 0.5
+    min_stagnant_contraction: float = 0.5
     """If the contraction exceeds this and Newton steps are rounding, the iteration ends as converged."""
-    growing_step_ratio: float = 2.0
+    min_contraction_of_growing_step: float = 2.0
     """A Newton step is growing if the contraction exceeds this."""
     max_growing_steps: int = 2
     """Number of successive growing Newton steps after which the iteration has failed."""
     min_contraction_ratio: float = 0.3
     """Smallest ratio of the new contraction to the stored contraction, so that one exceptionally small step
     does not reduce the stored contraction too much."""
-    first_iteration_safety: float = 3.0
+    first_iteration_safety_factor: float = 3.0
     """Safety factor on the stored contraction, from the previous stage, at the first iteration of a stage;
     with 1 the errors of a motion double."""
     iterations_before_giving_up: int = 3
@@ -80,7 +88,7 @@ def request_matrix_after_failed_stage(c: Any) -> None:
     """After a failed stage, requests that the matrix of the repeated, shorter step be evaluated at the start
     of the step. c: context record (`CONTEXT_DTYPE`). The last matrix may belong to a diverged iterate and
     have entries that are not finite; with such a matrix all shorter steps would fail."""
-    doubles_at(c.base, c.unknowns)[:] = states_of(c)[c.current * MAX_STAGES]
+    doubles_at(c.base, c.unknowns)[:] = stage_states_of(c)[c.current * MAX_STORED_STAGES]
     c.matrix_due = AT_BASE
 
 
@@ -89,12 +97,10 @@ def convergence_reason(c: Any, iteration: int, dx: float) -> int:
     """SNESConvergedReason after a Newton step of 2-norm `dx`. The error estimate is contraction * dx (Hairer
     & Wanner II, IV.8). Updates the contraction in the context record `c`, and requests a new matrix if the
     contraction is slow or the stage has failed. iteration: counted from 1.
-
     The contraction is stored from stage to stage, so that after a good prediction a single iteration is
     enough. The contraction is measured from the second iteration on, and reset at each new step of a method
     of many stages. Otherwise stages with a single iteration, which cannot measure the contraction, would
-    reuse a small old contraction, with errors a hundred times too large.
-    """
+    reuse a small old contraction, with errors a hundred times too large."""
     if not np.isfinite(dx):
         request_matrix_after_failed_stage(c)
         return NOT_FINITE
@@ -104,33 +110,33 @@ def convergence_reason(c: Any, iteration: int, dx: float) -> int:
         min_contraction = STAGE_NEWTON_SETTINGS.min_contraction_ratio * c.contraction if c.measured else 0.0
         c.contraction = max(min_contraction, theta)
         c.measured = 1
-    c.growing = c.growing + 1 if theta > STAGE_NEWTON_SETTINGS.growing_step_ratio else 0
+    c.growing = c.growing + 1 if theta > STAGE_NEWTON_SETTINGS.min_contraction_of_growing_step else 0
     c.last_step = dx
     # The contraction of an earlier stage is a guess for this one.
-    safety = STAGE_NEWTON_SETTINGS.first_iteration_safety if iteration == 1 else 1.0
+    safety = STAGE_NEWTON_SETTINGS.first_iteration_safety_factor if iteration == 1 else 1.0
     is_small = dx * min(1.0, safety * c.contraction) <= c.small_error
-    if is_small or (
-        theta > STAGE_NEWTON_SETTINGS.stagnant_contraction and iteration > 2 and dx <= c.rounding
-    ):
+    is_stagnant = theta > STAGE_NEWTON_SETTINGS.min_stagnant_contraction and iteration > 2
+    if is_small or (is_stagnant and dx <= c.rounding):
         return STEP_SMALL
     may_give_up = iteration > STAGE_NEWTON_SETTINGS.iterations_before_giving_up
     if may_give_up and c.growing >= STAGE_NEWTON_SETTINGS.max_growing_steps:
         request_matrix_after_failed_stage(c)
         return NOT_CONTRACTING
-    if theta > STAGE_NEWTON_SETTINGS.new_matrix_contraction:
+    if theta > STAGE_NEWTON_SETTINGS.min_contraction_for_new_matrix:
         c.matrix_due = AT_ITERATE
     return ITERATING
 
 
-@c_function(POINTER, INT, types.float64, types.float64, types.float64, POINTER, POINTER)
+@petsc_callback(
+    ADDRESS_TYPE, PETSC_INT_TYPE, types.float64, types.float64, types.float64, ADDRESS_TYPE, ADDRESS_TYPE
+)
 def test_newton_convergence(  # noqa: PLR0913, PLR0917 - PETSc's signature
     snes: int, iteration: int, x: float, dx: float, size: float, reason: int, context: int
 ) -> int:
     """Stopping test for PETSc's Newton method, called after every iteration: writes the SNESConvergedReason
-    to the address `reason`. iteration: number of iterations. dx, size: 2-norms of Newton step and
-    residual."""
+    to the address `reason`. iteration: number of iterations. dx, size: 2-norms of step and residual."""
     c = record_at(context, CONTEXT_DTYPE)
-    reason_array = numba.carray(pointer(reason), (1,), np.int32)
+    reason_array = numba.carray(as_void_pointer(reason), (1,), np.int32)
     reason_array[0] = ITERATING
     if not np.isfinite(size):
         request_matrix_after_failed_stage(c)
@@ -166,7 +172,7 @@ def read_stage_equation(c: Any, scratch: int, snes: int, X: int) -> None:
         constant[i] = residual[i] - c.shift * x[i]
     restore_array_after_reading(X, scratch)
     restore_array_after_reading(c.residual, scratch + 8)
-    right_side_of(snes, scratch)
+    right_hand_side_of(snes, scratch)
     right_side = outputs[0]
     if right_side:
         get_array_for_reading(right_side, scratch)
@@ -200,7 +206,7 @@ def newton_step(c: Any, scratch: int, X: int) -> float:
     for i in range(n):
         residual[i] = c.shift * x[i] + constant[i] - f[i]
     restore_array_after_writing(c.residual, scratch + 8)
-    c.error |= solve_linear(c.ksp, c.residual, c.correction)
+    c.error |= solve_linear_system(c.ksp, c.residual, c.correction)
     get_array_for_reading(c.correction, scratch + 16)
     step = doubles_at(outputs[2], n)
     x -= step
@@ -210,7 +216,7 @@ def newton_step(c: Any, scratch: int, X: int) -> float:
     return size
 
 
-@c_function(POINTER, POINTER)
+@petsc_callback(ADDRESS_TYPE, ADDRESS_TYPE)
 def solve_stage(snes: int, X: int) -> int:
     """Solves for the stage X by Newton's method from its prediction; sets reason and iterations in `snes`."""
     address = np.empty(1, np.int64)
@@ -240,5 +246,5 @@ def solve_stage(snes: int, X: int) -> int:
     store_stage(c, doubles_at(integers_at(scratch, 1)[0], c.unknowns))
     restore_array_after_reading(X, scratch)
     set_iteration_number(snes, iteration)
-    set_snes_reason(snes, reason)
+    set_snes_converged_reason(snes, reason)
     return c.error

@@ -8,16 +8,16 @@ import numpy as np
 from ...arrays import Array
 from ...model.compiled.compilation import compiled
 from ...model.compiled.kernel_constants import KernelConstants
-from ..backend.c_functions import POINTER, c_function, doubles_at, integers_at, record_at
+from ..backend.c_functions import ADDRESS_TYPE, doubles_at, integers_at, petsc_callback, record_at
 from ..backend.petsc import PETSc
-from .context import CONTEXT_DTYPE, OUTPUTS_OFFSET
+from .callback_context import CONTEXT_DTYPE, OUTPUTS_OFFSET
 from .petsc_calls import (
     context_of_ts,
     free_memory,
     get_array_for_reading,
     reallocate_memory,
     restore_array_after_reading,
-    set_ts_reason,
+    set_ts_converged_reason,
     solution_of,
     time_of,
 )
@@ -69,11 +69,11 @@ def store_step(c: Any, scratch: int, ts: int) -> int:
     for i in range(nodes):
         if row[1 + i] <= crushed[i] and not c.left:
             c.left = 1
-            set_ts_reason(ts, CONVERGED_USER)
+            set_ts_converged_reason(ts, CONVERGED_USER)
     return 0
 
 
-@c_function(POINTER)
+@petsc_callback(ADDRESS_TYPE)
 def end_step(ts: int) -> int:
     """PETSc's post-step function: stores the finished time step."""
     address = np.empty(1, np.int64)
@@ -92,7 +92,7 @@ def _free_address(address: int) -> None:
     free_memory(address)
 
 
-def take_steps(context: Any) -> Array:
+def pop_stored_steps(context: Any) -> Array:
     """Rows (time, state) of the steps stored in `context`, (steps, 1 + unknowns); frees their memory."""
     address = int(context["rows"])
     row_count = int(context["stored"])

@@ -30,7 +30,7 @@ step)}. Stage 0 is the state at the start of a step. These sets had the smallest
 of up to six points, in two dozen motions, mostly of stiff rods."""
 
 
-SNES_TYPES: Mapping[str, str] = {
+SNES_TYPE_BY_TS_TYPE: Mapping[str, str] = {
     "rosw": "ksponly",
     **dict.fromkeys(("arkimex", "dirk", "bdf", "theta", "beuler", "cn"), "shell"),
 }
@@ -41,45 +41,45 @@ alpha, for example, has a different unknown."""
 
 @dataclass(frozen=True, slots=True)
 class TimeScheme:
-    """Time scheme: `ts_type` is PETSc's TS type, `scheme_name` its sub-type (for bdf: its order).
+    """Time scheme: `ts_type` is PETSc's TS type, `ts_sub_type` its sub-type (for bdf: its order).
 
     tolerance: local error per time step of each component of z, divided by the largest component of the
     initial state. newton_tolerance_ratio: Newton's method for a stage stops at the error
-    newton_tolerance_ratio * tolerance. equal_steps: whether the step length is constant. prefix: prefix of
-    the PETSc options that override the scheme."""
+    newton_tolerance_ratio * tolerance. has_equal_steps: whether the step length is constant. options_prefix:
+    prefix of the PETSc options that override the scheme."""
 
     ts_type: str = "arkimex"
-    scheme_name: str = "5"
+    ts_sub_type: str = "5"
     tolerance: float = 5e-6
     newton_tolerance_ratio: float = 0.1
-    equal_steps: bool = False
-    prefix: str = CYCLE_OPTIONS_PREFIX
+    has_equal_steps: bool = False
+    options_prefix: str = CYCLE_OPTIONS_PREFIX
 
     def petsc_options(self, used_type: str) -> dict[str, str]:
         """PETSc options of this scheme, without prefix. used_type: TS type in use, which a user may have set
-        in place of `self.ts_type`; options of another TS type leave out `scheme_name`."""
+        in place of `self.ts_type`; options of another TS type leave out `ts_sub_type`."""
         name_option = {"bdf": "order"}.get(used_type, "type")
         options = {"ts_type": self.ts_type}
-        if used_type == self.ts_type and self.scheme_name:
-            options[f"ts_{used_type}_{name_option}"] = self.scheme_name
+        if used_type == self.ts_type and self.ts_sub_type:
+            options[f"ts_{used_type}_{name_option}"] = self.ts_sub_type
         if used_type == "arkimex":
             # PETSc extrapolates for the types without extrapolation points of ours.
-            by_petsc = "false" if self.scheme_name in EXTRAPOLATION_POINTS else "true"
+            by_petsc = "false" if self.ts_sub_type in EXTRAPOLATION_POINTS else "true"
             options |= {
                 "ts_arkimex_fully_implicit": "true",
                 "ts_arkimex_initial_guess_extrapolate": by_petsc,
             }
         adaptivity_options = (
-            {"ts_adapt_type": "none"} if self.equal_steps else {"ts_adapt_dsp_filter": "PI42"}
+            {"ts_adapt_type": "none"} if self.has_equal_steps else {"ts_adapt_dsp_filter": "PI42"}
         )
         return {
             "ksp_type": "preonly",
             "pc_type": "lu",
             "ts_adapt_type": "dsp",  # rejects almost no step, while `basic` rejects a tenth
             "ts_adapt_clip": "0.2,4.0",
-            "snes_type": SNES_TYPES.get(used_type, "newtonls"),
+            "snes_type": SNES_TYPE_BY_TS_TYPE.get(used_type, "newtonls"),
             "snes_linesearch_type": "basic",
-            "snes_max_it": "20" if self.equal_steps else "10",
+            "snes_max_it": "20" if self.has_equal_steps else "10",
             **options,
             **adaptivity_options,
         }

@@ -9,35 +9,40 @@ import numpy as np
 from ...arrays import Array
 from ...determinant.exponents import EXPONENT_SETTINGS
 from ...model.compiled.kernel_constants import KernelConstants
+from .coefficient_tails import coefficients_of_elements
 from .orbit import Orbit
-from .orbit_mesh import OrbitMesh, mesh_of
-from .tails import coefficients_of_elements
+from .orbit_mesh import OrbitMesh, mesh_of_orbit
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class OrderRatioSettings(KernelConstants):
+class RodElementOrderRatioSettings(KernelConstants):
     """Settings for the orders of the elements of a mesh relative to the largest order."""
 
-    min_order: int = 4
+    min_element_order: int = 4
     """Smallest order of an element that is chosen from coefficients."""
-    min_ratio: float = 0.2
+    min_element_order_ratio: float = 0.2
     """Smallest order of an element, divided by the largest order of the mesh. Elements of short and stiff
     segments reach 0.25."""
-    ratios_per_unit: int = 64
+    rounding_steps_of_ratio_per_unit: int = 64
     """Ratios are rounded up to multiples of 1 over this number, which is less than one order at every allowed
     order."""
-    max_neglected_ratio: float = 1 / 3
+    max_neglected_coefficient_ratio: float = 1 / 3
     """Largest neglected coefficient of an element that loses orders, divided by that of the elements of the
     largest order. Errors are quadratic in the coefficients: the largest error of twelve meshes of three arms
     grew by half at most, and mostly did not grow."""
-    field_ranges: ClassVar = {"min_ratio": (0.0, 1.0), "max_neglected_ratio": (0.0, 1.0)}
+    field_ranges: ClassVar = {
+        "min_element_order_ratio": (0.0, 1.0),
+        "max_neglected_coefficient_ratio": (0.0, 1.0),
+    }
+    """Exclusive bounds (lower, upper) of settings by name, as in `KernelConstants`."""
 
 
-ORDER_RATIO_SETTINGS = OrderRatioSettings()
+ROD_ELEMENT_ORDER_RATIO_SETTINGS = RodElementOrderRatioSettings()
 
 
 def element_order_ratios(orbit: Orbit, order: int, max_tail: float) -> tuple[float, ...]:
-    """Ratio of the order that each element needs to the largest order, at least `min_ratio`; () if all are 1.
+    """Ratio of the order that each element needs to the largest order, at least `min_element_order_ratio`; ()
+    if all are 1.
 
     order: largest order, with which the Legendre coefficients in space are expected to fall to `max_tail`
     times the largest coefficient.
@@ -46,20 +51,23 @@ def element_order_ratios(orbit: Orbit, order: int, max_tail: float) -> tuple[flo
     if len(coefficients) == 1:
         return ()
     orders = np.array([_needed_order(c, max_tail, order) for c in coefficients])
-    settings = ORDER_RATIO_SETTINGS
-    orders = np.maximum(orders, settings.min_order)
-    ratios = np.maximum(orders / max(orders), settings.min_ratio)
-    ratios = np.ceil(settings.ratios_per_unit * ratios) / settings.ratios_per_unit
+    settings = ROD_ELEMENT_ORDER_RATIO_SETTINGS
+    orders = np.maximum(orders, settings.min_element_order)
+    ratios = np.maximum(orders / max(orders), settings.min_element_order_ratio)
+    ratios = (
+        np.ceil(settings.rounding_steps_of_ratio_per_unit * ratios)
+        / settings.rounding_steps_of_ratio_per_unit
+    )
     return () if min(ratios) == 1 else tuple(ratios.tolist())
 
 
 def without_excess_orders(mesh: OrbitMesh, orbit: Orbit) -> OrbitMesh:
     """`mesh` with lower orders of the elements whose neglected coefficients are then still far smaller than
-    those of the elements of the largest order (`max_neglected_ratio`): a change of the largest order changes
-    all orders in proportion, and coefficients of short or stiff segments fall faster. Coefficients are those
-    of the solved `orbit`. Returns `mesh` itself if its orders are equal, or if those of the orbit are not in
-    the same ratios and larger by 2."""
-    solved_mesh = mesh_of(orbit)
+    those of the elements of the largest order (`max_neglected_coefficient_ratio`): a change of the largest
+    order changes all orders in proportion, and coefficients of short or stiff segments fall faster.
+    Coefficients are those of the solved `orbit`. Returns `mesh` itself if its orders are equal, or if those
+    of the orbit are not in the same ratios and larger by 2."""
+    solved_mesh = mesh_of_orbit(orbit)
     if (
         not mesh.order_ratios
         or not mesh.has_same_edges_and_order_ratios(solved_mesh)
@@ -67,14 +75,14 @@ def without_excess_orders(mesh: OrbitMesh, orbit: Orbit) -> OrbitMesh:
     ):
         return mesh
     coefficients = _relative_coefficients(orbit)
-    max_neglected = ORDER_RATIO_SETTINGS.max_neglected_ratio * max(
+    max_neglected = ROD_ELEMENT_ORDER_RATIO_SETTINGS.max_neglected_coefficient_ratio * max(
         c[p + 1 : p + 3].max() for c, p in zip(coefficients, mesh.orders, strict=True) if p == mesh.order
     )
     orders = []
     for c, p in zip(coefficients, mesh.orders, strict=True):
         order = p
         while (
-            ORDER_RATIO_SETTINGS.min_order < order < min(mesh.order, len(c) - 1)
+            ROD_ELEMENT_ORDER_RATIO_SETTINGS.min_element_order < order < min(mesh.order, len(c) - 1)
             and c[order : order + 2].max() <= max_neglected
         ):
             order -= 1

@@ -66,7 +66,9 @@ def least_stretch(motion: "CycleMotion", safe_stretch: float = inf) -> float:
         return least_of_series(c @ mesh.one_sided_evaluation_matrix(u).T)
 
     # A position at a jump belongs to the element on its right, so both sides are taken from the nodes.
-    left_indices = [index_before_jump(int(node), mesh.element_nodes) for node in form.nodal_rod.jumps]
+    left_indices = [
+        index_before_jump(int(node), mesh.element_node_indices) for node in form.nodal_rod.jump_nodes
+    ]
     jump_minimum = float(
         least_of_series(c[:, left_indices + [index + 1 for index in left_indices]]).min(initial=inf)
     )

@@ -18,8 +18,8 @@ from ...discretization.elements.mesh import Mesh, shape_from_strains
 from ...discretization.elements.quadrature import lobatto_points
 from ...discretization.elements.trigonometric import (
     fourier_coefficients,
-    hermite_coefficients,
-    hermite_coefficients_of_columns,
+    hermite_fourier_coefficients,
+    hermite_fourier_coefficients_of_columns,
     series_samples,
     time_of_rise_through_mean,
 )
@@ -27,7 +27,7 @@ from ...discretization.stress.tip_motion import tip_matrices
 from .compiled_measures import REFLECTION_SIGNS, tip_path, write_powers
 from .least_stretch import least_stretch_between_nodes
 from .orbit import Orbit
-from .time_grading import coefficients_in_time, samples_in_time
+from .time_grading import fourier_coefficients_in_time, samples_in_time
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -45,15 +45,23 @@ class CycleMeasures:
     period: float = nan
     frequency: float = nan
     tip_x_min: float = nan
+    """Smallest x of the tip over the period, in L."""
     tip_x_max: float = nan
+    """Largest x of the tip over the period, in L."""
     tip_y_max: float = nan
+    """Largest y of the tip over the period, in L."""
     tip_y_min: float = nan
+    """Smallest y of the tip over the period, in L."""
     tip_theta_max: float = nan
     harmonic_amplitude: Array = field(default_factory=lambda: np.array(nan))
     injection_mean: float = nan
+    """Mean power of the follower force over the period, in k3/(L tau2)."""
     injection_rms: float = nan
+    """Rms of the fluctuation of the power of the follower force about its mean, in k3/(L tau2)."""
     dissipation_mean: float = nan
+    """Mean power lost by drag over the period, in k3/(L tau2)."""
     dissipation_rms: float = nan
+    """Rms of the fluctuation of the power lost by drag about its mean, in k3/(L tau2)."""
     energy_imbalance: float = nan
     least_stretch: float = nan
 
@@ -74,16 +82,16 @@ class CycleMotion:
         self.tip_samples = (
             self._path.tip_samples
             if orbit.grading.is_uniform
-            else samples_in_time(self._path.tip_coefficients, orbit.grading, self._parts)
+            else samples_in_time(self._path.tip_coefficients, orbit.grading, self._solved_parts_per_period)
         )
 
     @property
-    def _parts(self) -> int:
-        return self.orbit.symmetry.period_parts
+    def _solved_parts_per_period(self) -> int:
+        return self.orbit.symmetry.solved_parts_per_period
 
     def _time_from_mesh_time_coefficients(self, c: Complex) -> Complex:
         """Fourier coefficients in time from Fourier coefficients c in mesh time, (count, ...)."""
-        return coefficients_in_time(c, self.orbit.grading, self._parts)
+        return fourier_coefficients_in_time(c, self.orbit.grading, self._solved_parts_per_period)
 
     @cached_property
     def tip_coefficients(self) -> Complex:
@@ -99,22 +107,26 @@ class CycleMotion:
         K, size = self._path.strains_and_rates.shape[2:]
         values, slopes = self._path.strains_and_rates.swapaxes(1, 2).reshape(2, K, 3 * size)
         signs = np.repeat(REFLECTION_SIGNS if self.orbit.is_symmetric else np.zeros(3), size)
-        c = self._time_from_mesh_time_coefficients(hermite_coefficients_of_columns(values, slopes, signs))
+        c = self._time_from_mesh_time_coefficients(
+            hermite_fourier_coefficients_of_columns(values, slopes, signs)
+        )
         return c.reshape(len(c), 3, size)
 
     @property
-    def tip_angle_harmonics(self) -> Array:
+    def tip_angle_harmonic_sizes(self) -> Array:
         """Size of each harmonic of the tip's theta from the first, (count - 1,)."""
         sizes: Array = np.abs(self.tip_coefficients[1:, 2])
         return sizes
 
     @cached_property
-    def bending_harmonics(self) -> Array:
+    def curvature_harmonic_sizes(self) -> Array:
         """Size of each harmonic of the curvature Pi from the first, (count - 1,): square root of the sum of
         squared moduli over the nodes of all elements."""
         values, slopes = self._path.strains_and_rates[:, 2]
         signs = np.full(values.shape[1], REFLECTION_SIGNS[2] * self.orbit.is_symmetric)
-        c = self._time_from_mesh_time_coefficients(hermite_coefficients_of_columns(values, slopes, signs))
+        c = self._time_from_mesh_time_coefficients(
+            hermite_fourier_coefficients_of_columns(values, slopes, signs)
+        )
         sizes: Array = np.linalg.norm(c[1:], axis=1)
         return sizes
 
@@ -124,7 +136,7 @@ class CycleMotion:
         return series_samples(self.tip_coefficients, sample_count)
 
     @cached_property
-    def extrema(self) -> dict[str, float]:
+    def tip_extrema(self) -> dict[str, float]:
         """Extrema of the tip over the period: tip_x_min, tip_x_max, tip_y_max and tip_theta_max, by name."""
         minima = list_of(self._path.least_tip_values)
         maxima = list_of(self._path.largest_tip_values)
@@ -146,7 +158,9 @@ class CycleMotion:
     def tip_y_min(self) -> float:
         """Smallest y of the tip, in L; for a symmetric orbit minus the largest y."""
         return (
-            -self.extrema["tip_y_max"] if self.orbit.is_symmetric else float(self._path.least_tip_values[1])
+            -self.tip_extrema["tip_y_max"]
+            if self.orbit.is_symmetric
+            else float(self._path.least_tip_values[1])
         )
 
     @property
@@ -185,7 +199,7 @@ class CycleMotion:
             # Energy and power are even under the reflection, so they repeat after half a period.
             U = np.tile(U, 2)
             energy_rates = np.tile(energy_rates, 2)
-        c = self._time_from_mesh_time_coefficients(hermite_coefficients(U, energy_rates))
+        c = self._time_from_mesh_time_coefficients(hermite_fourier_coefficients(U, energy_rates))
         U, energy_rate = self._series_from_mean_crossing(
             np.stack([c, derivative_factors[: len(c)] * c], axis=1), sample_count
         ).T
@@ -219,11 +233,11 @@ def measures_of(motion: CycleMotion) -> CycleMeasures:
     """Scalar measures and harmonics of the orbit of `motion`."""
     orbit = motion.orbit
     tip_y_coefficients = motion.tip_coefficients[:, 1]
-    means = orbit.means
+    means = orbit.power_means_and_least_stretch
     return CycleMeasures(
         period=orbit.period,
         frequency=2 * np.pi / orbit.period,
-        **motion.extrema,
+        **motion.tip_extrema,
         tip_y_min=motion.tip_y_min,
         harmonic_amplitude=np.abs(tip_y_coefficients[1:]),
         energy_imbalance=means.injection_mean / means.dissipation_mean - 1,

@@ -6,92 +6,100 @@ from math import ceil, log
 import numpy as np
 
 from ...discretization.elements.resolution import RESOLUTION_SETTINGS
+from .coefficient_tails import coefficient_tails_of, time_tails_of_intervals
 from .element_order_ratios import element_order_ratios
 from .node_spacing_of_arm import with_node_spacing_of_arm
-from .orbit import Orbit, interval_lengths
-from .orbit_mesh import ORBIT_MESH_SETTINGS, OrbitMesh, mesh_of
-from .tails import tails_of, tails_of_intervals
-from .time_grading import UNIFORM_TIME, TimeGrading, fitted_grading
+from .orbit import Orbit, time_interval_lengths
+from .orbit_mesh import ORBIT_MESH_SETTINGS, OrbitMesh, mesh_of_orbit
+from .time_grading import UNIFORM_TIME_GRADING, TimeGrading, fitted_grading
 
 
 def cheapest_stage_count(accuracy: float) -> int:
     """Number of collocation stages with the smallest cost for the relative accuracy `accuracy`."""
-    return ORBIT_MESH_SETTINGS.min_stages + sum(
+    return ORBIT_MESH_SETTINGS.min_stage_count + sum(
         accuracy <= limit for limit in ORBIT_MESH_SETTINGS.max_accuracies_for_more_stages
     )
 
 
-def mesh_from_tails(orbit: Orbit, accuracy: float, stage_count: int) -> OrbitMesh:
+def mesh_from_coefficient_tails(orbit: Orbit, accuracy: float, stage_count: int) -> OrbitMesh:
     """The coarsest mesh with `stage_count` stages that is expected to reach the relative accuracy `accuracy`,
-    from the tails of the nearby orbit `orbit`; by `ORBIT_MESH_SETTINGS` not coarser than `min_order` and
-    `min_intervals`, and finer than the mesh of `orbit` at most by `max_order_increase` and
-    `max_interval_ratio`."""
+    from the tails of the nearby orbit `orbit`; by `ORBIT_MESH_SETTINGS` not coarser than `min_element_order`
+    and `min_time_interval_count`, and finer than the mesh of `orbit` at most by `max_element_order_increase`
+    and `max_time_interval_count_ratio`."""
     orbit = with_node_spacing_of_arm(orbit)
-    current_mesh = mesh_of(orbit)
-    tails = tails_of(orbit)
+    current_mesh = mesh_of_orbit(orbit)
+    tails = coefficient_tails_of(orbit)
     # The errors are quadratic in the tails, hence the square roots.
     max_space_tail = (
-        ORBIT_MESH_SETTINGS.accuracy_fraction * accuracy / ORBIT_MESH_SETTINGS.space_error_per_squared_tail
+        ORBIT_MESH_SETTINGS.accuracy_fraction_in_space_or_time
+        * accuracy
+        / ORBIT_MESH_SETTINGS.space_error_per_squared_tail
     ) ** 0.5
     max_time_tail = (
-        ORBIT_MESH_SETTINGS.accuracy_fraction * accuracy / ORBIT_MESH_SETTINGS.time_error_per_squared_tail
+        ORBIT_MESH_SETTINGS.accuracy_fraction_in_space_or_time
+        * accuracy
+        / ORBIT_MESH_SETTINGS.time_error_per_squared_tail
     ) ** 0.5
-    # Below `min_tail` a tail is rounding error.
+    # Below `min_coefficient_tail` a tail is rounding error.
     order = current_mesh.order + ceil(
-        log(max(tails.space, ORBIT_MESH_SETTINGS.min_tail) / max_space_tail) / tails.space_decay
+        log(max(tails.space_tail, ORBIT_MESH_SETTINGS.min_coefficient_tail) / max_space_tail)
+        / tails.log_coefficient_decay_per_order
     )
     mesh = replace(current_mesh, order=order, order_ratios=element_order_ratios(orbit, order, max_space_tail))
     while mesh.order > RESOLUTION_SETTINGS.max_order:
-        mesh = mesh.halved
-    grading, interval_ratio = grading_and_interval_ratio(orbit, max_time_tail, stage_count)
+        mesh = mesh.with_halved_elements
+    grading, interval_ratio = grading_and_interval_count_ratio(orbit, max_time_tail, stage_count)
     interval_count = ceil(current_mesh.interval_count * interval_ratio)
     order = min(
-        max(mesh.order, ORBIT_MESH_SETTINGS.min_order),
-        current_mesh.order + ORBIT_MESH_SETTINGS.max_order_increase,
+        max(mesh.order, ORBIT_MESH_SETTINGS.min_element_order),
+        current_mesh.order + ORBIT_MESH_SETTINGS.max_element_order_increase,
     )
     interval_count = min(
-        max(interval_count, ORBIT_MESH_SETTINGS.min_intervals),
-        ORBIT_MESH_SETTINGS.max_interval_ratio * current_mesh.interval_count,
+        max(interval_count, ORBIT_MESH_SETTINGS.min_time_interval_count),
+        ORBIT_MESH_SETTINGS.max_time_interval_count_ratio * current_mesh.interval_count,
     )
     return replace(mesh, order=order, interval_count=interval_count, stage_count=stage_count, grading=grading)
 
 
-def grading_and_interval_ratio(orbit: Orbit, max_tail: float, stage_count: int) -> tuple[TimeGrading, float]:
+def grading_and_interval_count_ratio(
+    orbit: Orbit, max_tail: float, stage_count: int
+) -> tuple[TimeGrading, float]:
     """Returns (grading, ratio): the grading of the time intervals that needs the fewest intervals, and the
     ratio of this number to the present number of `orbit`. max_tail: largest allowed tail in time.
     stage_count: number of stages of an interval."""
     # For a different number of stages the tail in an interval is about a power of the known tail.
-    tails = np.maximum(tails_of_intervals(orbit), ORBIT_MESH_SETTINGS.min_tail) ** (
+    tails = np.maximum(time_tails_of_intervals(orbit), ORBIT_MESH_SETTINGS.min_coefficient_tail) ** (
         stage_count / orbit.stage_count
     )
-    edges = np.append(0.0, np.cumsum(interval_lengths(*orbit.time_mesh[::2])))
+    edges = np.append(0.0, np.cumsum(time_interval_lengths(*orbit.time_mesh[::2])))
     # The tip turns twice a period: once in a solved half, twice in a whole period.
-    fitted = fitted_grading(tails, edges, stage_count, 2 // orbit.symmetry.period_parts)
+    fitted = fitted_grading(tails, edges, stage_count, 2 // orbit.symmetry.solved_parts_per_period)
     middles = (edges[1:] + edges[:-1]) / 2
     full_lengths = np.diff(edges) * (orbit.interval_count - 1)
     # A tail is proportional to (length of the interval)**stages.
     ratios = (tails / max_tail) ** (1 / stage_count) / full_lengths
     interval_ratio_of_grading = {
-        grading: float((ratios * grading.rates(grading.mesh_times(middles))).max())
-        for grading in (orbit.grading, UNIFORM_TIME, fitted)
+        grading: float((ratios * grading.time_slopes(grading.mesh_times(middles))).max())
+        for grading in (orbit.grading, UNIFORM_TIME_GRADING, fitted)
     }
     best = min(interval_ratio_of_grading, key=lambda grading: interval_ratio_of_grading[grading])
     return best, interval_ratio_of_grading[best]
 
 
-def regraded_coarser(mesh: OrbitMesh, orbit: Orbit) -> OrbitMesh:
+def coarser_regraded_mesh(mesh: OrbitMesh, orbit: Orbit) -> OrbitMesh:
     """`mesh` with the best grading of the time intervals for the solved `orbit` and fewer intervals; `mesh`
     itself if its grading, that of `orbit`, is almost as good."""
     stage_count = orbit.stage_count
     # The present grading needs as many intervals as the orbit has with its own largest tail.
-    grading, interval_ratio = grading_and_interval_ratio(
-        orbit, float(tails_of_intervals(orbit).max()), stage_count
+    grading, interval_ratio = grading_and_interval_count_ratio(
+        orbit, float(time_tails_of_intervals(orbit).max()), stage_count
     )
-    if interval_ratio > ORBIT_MESH_SETTINGS.max_regraded_ratio or grading == mesh.grading:
+    if interval_ratio > ORBIT_MESH_SETTINGS.max_regraded_interval_count_ratio or grading == mesh.grading:
         return mesh
     # One more interval, because the last two have half the length.
     interval_count = max(
-        ORBIT_MESH_SETTINGS.min_intervals, ceil(interval_ratio * mesh.full_length_interval_count) + 1
+        ORBIT_MESH_SETTINGS.min_time_interval_count,
+        ceil(interval_ratio * mesh.full_length_interval_count) + 1,
     )
     return replace(mesh, interval_count=interval_count, grading=grading)
 
@@ -107,5 +115,6 @@ def finer_orbit_mesh(mesh: OrbitMesh, target: OrbitMesh) -> OrbitMesh:
     if refined != mesh:
         return refined
     return replace(
-        mesh.finer_in_space, interval_count=ceil(ORBIT_MESH_SETTINGS.interval_factor * mesh.interval_count)
+        mesh.mesh_finer_in_space,
+        interval_count=ceil(ORBIT_MESH_SETTINGS.time_interval_count_factor * mesh.interval_count),
     )

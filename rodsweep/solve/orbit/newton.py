@@ -7,7 +7,7 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ...discretization.state_layout import SE2_DIMENSION, stress_index
-from ...model.compiled.compilation import compiled_for_vectors
+from ...model.compiled.compilation import compiled_with_reordered_sums
 from ...solve_progress import report
 from ..unsolvable import Unsolvable
 from .matrix.linearisation import Linearisation
@@ -19,7 +19,7 @@ from .orbit import Orbit
 class OrbitNewtonSettings:
     """Settings of Newton's method for a periodic orbit, with or without a parameter among the unknowns."""
 
-    new_matrix_ratio: float = 0.1
+    max_step_ratio_with_old_matrix: float = 0.1
     """A new Newton matrix is assembled and eliminated if the relative change in a Newton step exceeds this
     number times the change in the previous step; without a parameter among the unknowns, also if it exceeds
     this number itself."""
@@ -29,7 +29,7 @@ class OrbitNewtonSettings:
     first is longer than this number and longer than the step before."""
     max_iterations: int = 12
     """Maximum number of iterations; slower convergence means that there is no orbit near the start."""
-    quadratic_error_factor: float = 1e5
+    max_error_per_squared_step: float = 1e5
     """Bound of the relative error after a Newton step with the matrix at the iterate, divided by the squared
     relative step. Nearly neutral orbits come close to this bound."""
 
@@ -48,7 +48,7 @@ class NewtonMatrix(Protocol):
     def workspace(self) -> NewtonWorkspace: ...
 
     @property
-    def multipliers_over_solved_part(self) -> Complex:
+    def multipliers_over_solved_time_interval(self) -> Complex:
         """Multipliers over the solved part of the period, (multipliers,), with the trivial multiplier."""
 
     def multipliers(self) -> Complex:
@@ -58,12 +58,12 @@ class NewtonMatrix(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class ConvergedOrbit:
-    """Result of Newton's method. matrix: the last Newton matrix. matrix_distance: relative distance of
-    `orbit` from the iterate at which `matrix` was assembled."""
+    """Result of Newton's method. matrix: the last Newton matrix. distance_from_matrix_orbit: relative
+    distance of `orbit` from the iterate at which `matrix` was assembled."""
 
     orbit: Orbit
     matrix: NewtonMatrix
-    matrix_distance: float
+    distance_from_matrix_orbit: float
 
     @property
     def workspace(self) -> NewtonWorkspace:
@@ -71,18 +71,18 @@ class ConvergedOrbit:
         return self.matrix.workspace
 
 
-def newton(
+def solve_by_newton(
     orbit: Orbit, tolerance: float, workspace: NewtonWorkspace, parameter_name: str | None = None
 ) -> ConvergedOrbit:
     """The periodic orbit near the start `orbit`, by Newton's method; raises Unsolvable if the method does not
     converge.
 
     tolerance: relative tolerance of states and period. workspace: memory of the matrices. parameter_name:
-    name of the parameter for the `tangent` of the matrix, or None. A matrix is used again as long as the
-    Newton steps decrease fast.
+    name of the parameter for the `tangent` of the matrix, or None. A matrix is used again as
+    long as the Newton steps decrease fast.
     """
     matrix = Linearisation(orbit, workspace, parameter_name)
-    matrix_distance = 0.0
+    distance_from_matrix_orbit = 0.0
     previous_change = np.inf
     step = matrix.step
     for iteration in range(1, ORBIT_NEWTON_SETTINGS.max_iterations + 1):
@@ -96,27 +96,27 @@ def newton(
         # A full step from a poor start may leave the neighbourhood of the orbit, so long steps are shortened.
         damping_factor = min(1.0, ORBIT_NEWTON_SETTINGS.max_relative_step / change) if change > 0 else 1.0
         orbit = orbit.plus_change(step, damping_factor)
-        matrix_distance += damping_factor * change
+        distance_from_matrix_orbit += damping_factor * change
         if not orbit.period > 0:
             raise Unsolvable("Newton's method for the cycle diverges: the period is not positive")
         # The matrix is new if this step is the first one made with it.
-        is_matrix_new = matrix_distance == damping_factor * change
+        is_matrix_new = distance_from_matrix_orbit == damping_factor * change
         # Expected error after this step: quadratic in the step if the matrix is new, otherwise by the ratio
         # of the last two steps.
         expected_error = (
-            ORBIT_NEWTON_SETTINGS.quadratic_error_factor * change**2
+            ORBIT_NEWTON_SETTINGS.max_error_per_squared_step * change**2
             if is_matrix_new
             else change * min(1.0, change / previous_change)
         )
         if expected_error <= tolerance:
-            return ConvergedOrbit(orbit, matrix, matrix_distance)
+            return ConvergedOrbit(orbit, matrix, distance_from_matrix_orbit)
         # A correction with the old factors is far cheaper than a new elimination.
-        if change > ORBIT_NEWTON_SETTINGS.new_matrix_ratio * min(previous_change, 1.0):
+        if change > ORBIT_NEWTON_SETTINGS.max_step_ratio_with_old_matrix * min(previous_change, 1.0):
             matrix = Linearisation(orbit, workspace, parameter_name)
-            matrix_distance = 0.0
+            distance_from_matrix_orbit = 0.0
             step = matrix.step
         else:
-            step = matrix.correction(orbit)
+            step = matrix.newton_step_at_nearby_orbit(orbit)
         previous_change = change
     raise Unsolvable(
         f"Newton's method for the cycle does not converge in {ORBIT_NEWTON_SETTINGS.max_iterations} "
@@ -128,9 +128,9 @@ def newton_step_if_matrix_distant(
     solved: ConvergedOrbit, distance: float, parameter_name: str | None = None
 ) -> ConvergedOrbit:
     """The orbit `solved`, after one more Newton step if its matrix was assembled at a relative distance of
-    more than `distance` from the orbit. parameter_name: name of the parameter for the `tangent` of the
-    matrix, or None."""
-    if solved.matrix_distance <= distance:
+    more than `distance` from the orbit. parameter_name: name of the parameter for the
+    `tangent` of the matrix, or None."""
+    if solved.distance_from_matrix_orbit <= distance:
         return solved
     return newton_step(solved, parameter_name)
 
@@ -179,7 +179,7 @@ def relative_change(orbit: Orbit, step: Array) -> float:
     )
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def largest_relative_change(values: Array, step: Array, unknowns: int, nodes: int) -> float:
     """Largest relative change of n2, m3 and the period in a step, (N,): the largest change of each quantity,
     divided by its largest modulus; inf if the step is not finite. values: orbit values, (N,). unknowns:

@@ -16,18 +16,18 @@ from ...arrays import Array
 from ...discretization.elements.elements import ELEMENT_SETTINGS
 from ...discretization.elements.mesh import Mesh
 from ...discretization.state_layout import StateLayout
-from ...model.compiled.compilation import compiled_for_vectors
+from ...model.compiled.compilation import compiled_with_reordered_sums
 from .orbit import Orbit
 from .symmetry import REFLECTION
 
 
 class ReflectionArrays(NamedTuple):
-    """Arrays for the normalisation of orbits. is_reversed: 1 for components of a state that change sign under
-    the reflection, 0 for all other components, (n,). moment_weights: quadrature weights of m3^2 in the
-    squared size, (n,)."""
+    """Arrays for the normalisation of orbits. reversal_mask: 1 for components of a state that change sign
+    under the reflection, 0 for all other components, (n,). moment_quadrature_weights: quadrature weights of
+    m3^2 in the squared size, (n,)."""
 
-    is_reversed: Array
-    moment_weights: Array
+    reversal_mask: Array
+    moment_quadrature_weights: Array
 
 
 def reflection_arrays(orbit: Orbit) -> ReflectionArrays:
@@ -38,45 +38,45 @@ def reflection_arrays(orbit: Orbit) -> ReflectionArrays:
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def _cached_reflection_arrays(layout: StateLayout, mesh: Mesh) -> ReflectionArrays:
     return ReflectionArrays(
-        REFLECTION.reversal_mask(layout), layout.state_with_stresses({"m3": mesh.quadrature[:-1]})
+        REFLECTION.reversal_mask(layout), layout.state_with_stresses({"m3": mesh.quadrature_weights[:-1]})
     )
 
 
 def normalised_orbit_values(orbit: Orbit) -> Array:
     """Normalised values of an orbit, (N + 1,): the orbit values, in which all components that change sign
     under the reflection are divided by the size of the orbit; at the end, the squared size."""
-    values: Array = normalised_values(orbit.values, reflection_arrays(orbit))
+    values: Array = compiled_normalised_orbit_values(orbit.values, reflection_arrays(orbit))
     return values
 
 
-def normalised_tangent(orbit: Orbit, tangent: Array) -> Array:
+def tangent_of_normalised_orbit(orbit: Orbit, tangent: Array) -> Array:
     """Derivative of `normalised_orbit_values`, (N + 1,), with respect to a parameter; last entry: derivative
     of the squared size. tangent: derivative of the orbit values, (N,)."""
-    slopes: Array = normalised_slopes(orbit.values, tangent, reflection_arrays(orbit))
+    slopes: Array = compiled_tangent_of_normalised_orbit(orbit.values, tangent, reflection_arrays(orbit))
     return slopes
 
 
-@compiled_for_vectors
-def normalised_values(values: Array, r: ReflectionArrays) -> Array:
+@compiled_with_reordered_sums
+def compiled_normalised_orbit_values(values: Array, r: ReflectionArrays) -> Array:
     """Compiled `normalised_orbit_values`: normalised values, (N + 1,), of the orbit with the given `values`,
     (N,)."""
     squared = start_moment_inner_product(values, values, r)
     out = np.empty(len(values) + 1)
     out[:-1] = values
     out[-1] = squared
-    _scale_reversed(out, squared**-0.5, r)
+    _scale_reversed_components(out, squared**-0.5, r)
     return out
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def values_from_normalised(normalised: Array, r: ReflectionArrays) -> Array:
     """Values of an orbit, (N,), from its normalised values, (N + 1,), whose last entry must be positive."""
     out = normalised[:-1].copy()
-    _scale_reversed(out, normalised[-1] ** 0.5, r)
+    _scale_reversed_components(out, normalised[-1] ** 0.5, r)
     return out
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def extrapolated_change_weights(arguments: Array, orders: Array, step: float) -> Array:
     """Weights, (m,): p(step) - p(0) is the sum of weights times data, p: interpolation polynomial through m
     data.
@@ -101,7 +101,7 @@ def extrapolated_change_weights(arguments: Array, orders: Array, step: float) ->
     return np.linalg.solve(columns, right_side)
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def predicted_normalised_values(values: Array, data: Array, orders: Array, weights: Array) -> Array:
     """Predicted normalised values, (N + 1,): normalised values of the current orbit plus a weighted sum of
     data. A datum is a slope, or the difference of another orbit's normalised values from the current values.
@@ -122,10 +122,10 @@ def predicted_normalised_values(values: Array, data: Array, orders: Array, weigh
     return out
 
 
-@compiled_for_vectors
-def normalised_slopes(values: Array, tangent: Array, r: ReflectionArrays) -> Array:
-    """Compiled `normalised_tangent`: derivative of the normalised values, (N + 1,). values, tangent: orbit
-    values and derivative of the orbit values, (N,)."""
+@compiled_with_reordered_sums
+def compiled_tangent_of_normalised_orbit(values: Array, tangent: Array, r: ReflectionArrays) -> Array:
+    """Compiled `tangent_of_normalised_orbit`: derivative of the normalised values, (N + 1,). values, tangent:
+    orbit values and derivative of the orbit values, (N,)."""
     squared = start_moment_inner_product(values, values, r)
     change = 2 * start_moment_inner_product(values, tangent, r)
     # d(v/size) = dv/size - v d(size^2)/(2 size^3), for the reversed components only.
@@ -133,29 +133,29 @@ def normalised_slopes(values: Array, tangent: Array, r: ReflectionArrays) -> Arr
     out = np.empty(len(values) + 1)
     for i in range(len(values)):
         out[i] = tangent[i]
-    for first in range(0, len(values) - 1, len(r.is_reversed)):
-        for i in range(len(r.is_reversed)):
-            out[first + i] -= relative_rate * r.is_reversed[i] * values[first + i]
+    for first in range(0, len(values) - 1, len(r.reversal_mask)):
+        for i in range(len(r.reversal_mask)):
+            out[first + i] -= relative_rate * r.reversal_mask[i] * values[first + i]
     out[-1] = change
-    _scale_reversed(out, squared**-0.5, r)
+    _scale_reversed_components(out, squared**-0.5, r)
     return out
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def start_moment_inner_product(values: Array, other_values: Array, r: ReflectionArrays) -> float:
     """Integral over the rod of m3 m3' at t = 0, m3 and m3' from the orbit values `values` and `other_values`,
     (N,). With equal arguments this is the squared size."""
     total = 0.0
-    for i in range(len(r.moment_weights)):
-        total += r.moment_weights[i] * values[i] * other_values[i]
+    for i in range(len(r.moment_quadrature_weights)):
+        total += r.moment_quadrature_weights[i] * values[i] * other_values[i]
     return total
 
 
-@compiled_for_vectors
-def _scale_reversed(values: Array, factor: float, r: ReflectionArrays) -> None:
+@compiled_with_reordered_sums
+def _scale_reversed_components(values: Array, factor: float, r: ReflectionArrays) -> None:
     """Multiplies, in place, the components that change sign under the reflection by `factor`, in all states
     of `values`, (N,) or (N + 1,)."""
-    n = len(r.is_reversed)
+    n = len(r.reversal_mask)
     for first in range(0, len(values) - n + 1, n):
         for i in range(n):
-            values[first + i] *= factor if r.is_reversed[i] else 1.0
+            values[first + i] *= factor if r.reversal_mask[i] else 1.0

@@ -17,10 +17,10 @@ from ...discretization.elements.elements import ELEMENT_SETTINGS
 from ...discretization.elements.mesh import Mesh
 from ...discretization.elements.time_collocation import CollocationMethod, radau_method
 from ...discretization.stress.form import StressForm
-from .compiled_measures import OrbitMeans, power_means_and_least_stretch
+from .compiled_measures import PowerMeansAndLeastStretch, power_means_and_least_stretch
 from .equations import OrbitEquations
 from .symmetry import Symmetry
-from .time_grading import UNIFORM_TIME, TimeGrading
+from .time_grading import UNIFORM_TIME_GRADING, TimeGrading
 
 TimeMesh = tuple[int, int, TimeGrading]
 """Number of time intervals, number of stages of each interval, and grading of the intervals."""
@@ -37,10 +37,11 @@ class Orbit:
 
     form: StressForm
     symmetry: Symmetry
+    """Symmetry by which the solved part of the period gives the whole period."""
     interval_count: int
     stage_count: int
     values: Array
-    grading: TimeGrading = UNIFORM_TIME
+    grading: TimeGrading = UNIFORM_TIME_GRADING
 
     @classmethod
     def from_states(
@@ -91,31 +92,31 @@ class Orbit:
     def time_slopes_by_mesh_time(self) -> Array:
         """dt/dtau at the equidistant mesh times tau of `states_equidistant_in_mesh_time`, (K - 1,)."""
         full_length_interval_count = self.interval_count - 1
-        return self.grading.rates(np.arange(full_length_interval_count) / full_length_interval_count)
+        return self.grading.time_slopes(np.arange(full_length_interval_count) / full_length_interval_count)
 
     @property
-    def collocation(self) -> CollocationMethod:
+    def collocation_method(self) -> CollocationMethod:
         return radau_method(self.stage_count)
 
     @property
     def solved_duration(self) -> float:
         """Duration of the solved part of the period in tau2: half the period or the whole period."""
-        return self.period / self.symmetry.period_parts
+        return self.period / self.symmetry.solved_parts_per_period
 
     @property
     def is_symmetric(self) -> bool:
         """Whether the solved part is shorter than the period (`symmetry.period_parts` > 1)."""
-        return self.symmetry.period_parts > 1
+        return self.symmetry.solved_parts_per_period > 1
 
     @cached_property
     def orbit_equations(self) -> OrbitEquations:
         return _orbit_equations(self.form, self.symmetry, self.interval_count, self.stage_count, self.grading)
 
     @cached_property
-    def means(self) -> OrbitMeans:
+    def power_means_and_least_stretch(self) -> PowerMeansAndLeastStretch:
         """Mean powers over a period, and the smallest h1."""
         return power_means_and_least_stretch(
-            np.ascontiguousarray(self.stage_states), self.collocation.weights, self.orbit_equations
+            np.ascontiguousarray(self.stage_states), self.collocation_method.weights, self.orbit_equations
         )
 
     @property
@@ -140,7 +141,7 @@ class Orbit:
         """The orbit interpolated to the space mesh `target` and to `interval_count` time intervals with
         `stage_count` stages each and the grading `grading`, or the grading of this orbit."""
         grading = grading or self.grading
-        points = self._at_times_of(self.values, (interval_count, stage_count, grading))
+        points = self._values_at_times_of(self.values, (interval_count, stage_count, grading))
         if target != self.form.mesh:
             points = self.form.states_on_mesh(target, points)
         return replace(
@@ -155,12 +156,12 @@ class Orbit:
     def change_on_mesh(self, change: Array, target: Mesh, time_mesh: TimeMesh) -> Array:
         """The change `change` of the values, (N,), interpolated to the space mesh `target` and to the time
         intervals `time_mesh` by a linear map, (N on this mesh,)."""
-        points = self._at_times_of(change, time_mesh)
+        points = self._values_at_times_of(change, time_mesh)
         if target != self.form.mesh:
             points = self.form.increments_on_mesh(target, points)
         return np.append(points.ravel(), change[-1])
 
-    def _at_times_of(self, values: Array, target: TimeMesh) -> Array:
+    def _values_at_times_of(self, values: Array, target: TimeMesh) -> Array:
         """Orbit values, (N,), interpolated to the start and the stages of the time intervals `target`, (1 + K
         s, n)."""
         source = self.time_mesh
@@ -175,14 +176,16 @@ def _orbit_equations(
     """Data of the discretised equations of an orbit with the given form, symmetry, and time intervals;
     cached."""
     d = radau_method(stage_count).differentiation_matrix
-    lengths = interval_lengths(interval_count, grading)
+    lengths = time_interval_lengths(interval_count, grading)
     S = symmetry.matrix(form.layout)
-    period_parts = float(symmetry.period_parts)
-    return OrbitEquations(form.nodal_rod, form.mesh.matrices, form.mass_diagonal, d, lengths, S, period_parts)
+    period_parts = float(symmetry.solved_parts_per_period)
+    return OrbitEquations(
+        form.nodal_rod, form.mesh.node_matrices, form.mass_diagonal, d, lengths, S, period_parts
+    )
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_mesh_pairs)
-def interval_lengths(interval_count: int, grading: TimeGrading = UNIFORM_TIME) -> Array:
+def time_interval_lengths(interval_count: int, grading: TimeGrading = UNIFORM_TIME_GRADING) -> Array:
     """Lengths of the time intervals as fractions of the solved duration, (intervals,). In the mesh time of
     `grading` the last two intervals are half as long as the other intervals, which have equal lengths.
 
@@ -197,16 +200,16 @@ def interval_lengths(interval_count: int, grading: TimeGrading = UNIFORM_TIME) -
     return np.diff(grading.times(edges))
 
 
-def interval_starts(interval_count: int, grading: TimeGrading = UNIFORM_TIME) -> Array:
+def time_interval_starts(interval_count: int, grading: TimeGrading = UNIFORM_TIME_GRADING) -> Array:
     """Start times of the time intervals as fractions of the solved duration, (intervals,)."""
-    return np.append(0.0, np.cumsum(interval_lengths(interval_count, grading)[:-1]))
+    return np.append(0.0, np.cumsum(time_interval_lengths(interval_count, grading)[:-1]))
 
 
-def node_times(interval_count: int, stage_count: int, grading: TimeGrading = UNIFORM_TIME) -> Array:
+def node_times(interval_count: int, stage_count: int, grading: TimeGrading = UNIFORM_TIME_GRADING) -> Array:
     """Times of the start and of all stages as fractions of the solved duration, (1 + K s,), for K
     `interval_count` with s `stage_count` each and the grading `grading`."""
-    starts = interval_starts(interval_count, grading)[:, None]
-    lengths = interval_lengths(interval_count, grading)[:, None]
+    starts = time_interval_starts(interval_count, grading)[:, None]
+    lengths = time_interval_lengths(interval_count, grading)[:, None]
     return np.append(0.0, starts + lengths * radau_method(stage_count).nodes)
 
 
@@ -225,8 +228,8 @@ def matrix_to_time_fractions(source: TimeMesh, times: Array) -> csr_array:
     orbit with many intervals would fill the memory.
     """
     K, s, grading = source
-    starts = interval_starts(K, grading)
-    lengths = interval_lengths(K, grading)
+    starts = time_interval_starts(K, grading)
+    lengths = time_interval_lengths(K, grading)
     interval_indices = np.searchsorted(starts, times, side="right") - 1
     weights = np.empty((len(times), s + 1))
     for interval in np.unique(interval_indices):

@@ -9,13 +9,13 @@ import numpy as np
 from ...arrays import Array, list_of
 from ...discretization.elements.elements import element_orders, halved_element_edges
 from ...discretization.elements.mesh import Mesh, mesh_with_edges
-from ...discretization.elements.node_spacing import halved_spacing_ratios
+from ...discretization.elements.node_spacing import node_spacing_ratios_of_halves
 from ...discretization.elements.resolution import RESOLUTION_SETTINGS
 from ...discretization.state_layout import plane_layout
 from ..unsolvable import MeshLimitReached
 from .matrix.workspace import WORKSPACE_SETTINGS, factors_size, require_enough_stages
 from .orbit import Orbit, TimeMesh
-from .time_grading import UNIFORM_TIME, TimeGrading
+from .time_grading import UNIFORM_TIME_GRADING, TimeGrading
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -28,53 +28,53 @@ class OrbitMeshSettings:
     rods in six, and costs a fifth more than necessary."""
     time_error_per_squared_tail: float = 3.0
     """Predicted error of period and extrema due to the mesh in time, divided by the squared tail in time."""
-    min_tail: float = 1e-15
+    min_coefficient_tail: float = 1e-15
     """Lower limit of the tails from which a mesh is chosen; smaller tails are rounding errors."""
-    accuracy_fraction: float = 1 / 3
+    accuracy_fraction_in_space_or_time: float = 1 / 3
     """The mesh in space and the mesh in time are each chosen for this fraction of the requested accuracy."""
     min_element_order_change: int = 2
     """Smallest change of the order of each element from a mesh to a mesh with another largest order. With
     one order less or more the error of an element may stay the same, by parity: with a change of 1, errors of
     arms and cones exceeded their estimates by up to 2.4 times."""
-    coarser_order_decrease: int = 2
-    """Decrease of the element order from a mesh to its `coarser` mesh, whose errors are about ten times
+    element_order_decrease_of_coarser_mesh: int = 2
+    """Decrease of the element order from a mesh to its `coarser_mesh` mesh, whose errors are about ten times
     larger."""
-    coarser_interval_ratio: float = 0.6
-    """Number of time intervals of the `coarser` mesh, divided by the number of the mesh itself."""
-    min_order: int = 8
+    interval_count_ratio_of_coarser_mesh: float = 0.6
+    """Number of time intervals of the `coarser_mesh` mesh, divided by the number of the mesh itself."""
+    min_element_order: int = 8
     """Smallest element order of a chosen mesh."""
-    min_intervals: int = 4
+    min_time_interval_count: int = 4
     """Smallest number of time intervals of a chosen mesh."""
-    max_intervals: int = 256
+    max_time_interval_count: int = 256
     """Largest number of time intervals of an allowed mesh."""
     max_accuracies_for_more_stages: tuple[float, ...] = (2e-5, 3e-9, 3e-11)
     """Largest relative accuracies at which four, five and six collocation stages cost less than three, four
     and five stages."""
-    min_stages: int = 3
+    min_stage_count: int = 3
     """Number of collocation stages at accuracies above the largest of `max_accuracies_for_more_stages`."""
-    max_order_increase: int = 12
+    max_element_order_increase: int = 12
     """Largest increase of the element order in one choice of a mesh; the tail cannot be extrapolated to
     higher orders."""
-    max_interval_ratio: int = 4
+    max_time_interval_count_ratio: int = 4
     """Largest ratio of the new number of time intervals to the current number; the tail cannot be
     extrapolated to larger ratios."""
-    max_regraded_ratio: float = 0.9
+    max_regraded_interval_count_ratio: float = 0.9
     """The grading of the time intervals changes with a new mesh if the ratio of the numbers of intervals, new
     grading to present grading, is at most this number."""
-    interval_factor: float = 1.2
-    """Factor on the number of time intervals for the mesh `finer`, and if the mesh chosen from the tails is
-    not finer than the current mesh."""
-    halving_order_ratio: float = 0.6
+    time_interval_count_factor: float = 1.2
+    """Factor on the number of time intervals for the mesh `finer_mesh`, and if the mesh chosen from the tails
+    is not finer than the current mesh."""
+    element_order_ratio_after_halving: float = 0.6
     """Ratio of the element order after all elements are halved to the order before, for equal errors."""
     doubles_per_vector_register: int = 8
     """Number of doubles in a vector register. The computing time of matrix products depends on the number of
     unknowns rounded up to a multiple of this number."""
-    max_unknowns: int = 400
+    max_unknown_count: int = 400
     """Largest number of unknowns of a state on an allowed mesh; with more unknowns a Newton step takes more
     than a second."""
 
     def __post_init__(self) -> None:
-        require_enough_stages(self.min_stages)
+        require_enough_stages(self.min_stage_count)
 
 
 ORBIT_MESH_SETTINGS = OrbitMeshSettings()
@@ -83,36 +83,36 @@ ORBIT_MESH_SETTINGS = OrbitMeshSettings()
 def mesh_limit_error() -> MeshLimitReached:
     """The exception for a cycle that needs a mesh of more than the allowed size; names the limits."""
     return MeshLimitReached(
-        f"no mesh of at most {ORBIT_MESH_SETTINGS.max_unknowns} unknowns and "
-        f"{ORBIT_MESH_SETTINGS.max_intervals} time intervals, with at most "
+        f"no mesh of at most {ORBIT_MESH_SETTINGS.max_unknown_count} unknowns and "
+        f"{ORBIT_MESH_SETTINGS.max_time_interval_count} time intervals, with at most "
         f"{8e-9 * WORKSPACE_SETTINGS.max_buffer_size:.1f} GB for its matrix, reaches the requested accuracy"
     )
 
 
 @dataclass(frozen=True, slots=True)
 class OrbitMesh:
-    """Mesh of an orbit. edges: edges of the elements in space, from 0 to 1. order: largest order of an
-    element. order_ratios: order of each element divided by `order`; empty if all orders are equal.
+    """Mesh of an orbit. element_edges: edges of the elements in space, from 0 to 1. order: largest order of
+    an element. order_ratios: order of each element divided by `order`; empty if all orders are equal.
     interval_count: number of time intervals. stage_count: number of Radau stages of each interval. grading:
     grading of the time intervals. spacing_ratios: as in `Elements`."""
 
-    edges: tuple[float, ...]
+    element_edges: tuple[float, ...]
     order: int
     interval_count: int
     stage_count: int
     order_ratios: tuple[float, ...] = ()
-    grading: TimeGrading = UNIFORM_TIME
+    grading: TimeGrading = UNIFORM_TIME_GRADING
     spacing_ratios: tuple[float, ...] = ()
 
     @property
     def element_count(self) -> int:
         """Number of elements."""
-        return len(self.edges) - 1
+        return len(self.element_edges) - 1
 
     def has_same_edges_and_order_ratios(self, other: "OrbitMesh") -> bool:
         """Whether both meshes have the same edges and ratios of elements; orders and intervals may differ."""
-        ratios = self.order_ratios, self.spacing_ratios
-        return (self.edges, *ratios) == (other.edges, other.order_ratios, other.spacing_ratios)
+        elements = self.element_edges, self.order_ratios, self.spacing_ratios
+        return elements == (other.element_edges, other.order_ratios, other.spacing_ratios)
 
     @property
     def time_mesh(self) -> TimeMesh:
@@ -127,7 +127,7 @@ class OrbitMesh:
 
     @property
     def space_mesh(self) -> Mesh:
-        return mesh_with_edges(self.edges, self.order, self.order_ratios, self.spacing_ratios)
+        return mesh_with_edges(self.element_edges, self.order, self.order_ratios, self.spacing_ratios)
 
     @property
     def unknown_count(self) -> int:
@@ -146,7 +146,7 @@ class OrbitMesh:
         ones = (1.0,) * self.element_count
         ratios = *(self.order_ratios or ones), *(self.spacing_ratios or ones)
         counts = self.order, self.interval_count, self.stage_count
-        return np.array([*counts, *astuple(self.grading), *self.edges, *ratios])
+        return np.array([*counts, *astuple(self.grading), *self.element_edges, *ratios])
 
     @classmethod
     def from_array(cls, numbers: Array) -> "OrbitMesh":
@@ -161,17 +161,13 @@ class OrbitMesh:
         return cls(edges, order, interval_count, stage_count, order_ratios, grading, spacing_ratios)
 
     @property
-    def coarser(self) -> "OrbitMesh":
+    def coarser_mesh(self) -> "OrbitMesh":
         """Mesh coarser than this mesh in space and time, for the intermediate orbits on the way to a cycle
         that will be solved on this mesh."""
-        order = max(
-            ORBIT_MESH_SETTINGS.min_order - ORBIT_MESH_SETTINGS.coarser_order_decrease,
-            self.order - ORBIT_MESH_SETTINGS.coarser_order_decrease,
-        )
-        interval_count = max(
-            ORBIT_MESH_SETTINGS.min_intervals - 1,
-            round(ORBIT_MESH_SETTINGS.coarser_interval_ratio * self.interval_count),
-        )
+        settings = ORBIT_MESH_SETTINGS
+        order = max(settings.min_element_order, self.order) - settings.element_order_decrease_of_coarser_mesh
+        interval_count = round(settings.interval_count_ratio_of_coarser_mesh * self.interval_count)
+        interval_count = max(settings.min_time_interval_count - 1, interval_count)
         return replace(self, order=order, interval_count=interval_count)
 
     def with_order(self, order: int) -> "OrbitMesh":
@@ -196,26 +192,27 @@ class OrbitMesh:
         return replace(self, order=order, order_ratios=ratios)
 
     @property
-    def finer(self) -> "OrbitMesh":
+    def finer_mesh(self) -> "OrbitMesh":
         """Mesh finer than this mesh in space and time, used if no allowed mesh is predicted to suffice."""
-        interval_count = int(ORBIT_MESH_SETTINGS.interval_factor * self.interval_count) + 1
-        return replace(self.finer_in_space, interval_count=interval_count)
+        interval_count = int(ORBIT_MESH_SETTINGS.time_interval_count_factor * self.interval_count) + 1
+        return replace(self.mesh_finer_in_space, interval_count=interval_count)
 
     @property
-    def finer_in_space(self) -> "OrbitMesh":
-        """This mesh with an order increased by 2, or `halved` if the order would exceed its maximum."""
+    def mesh_finer_in_space(self) -> "OrbitMesh":
+        """This mesh with an order increased by 2, or `with_halved_elements` if the order would exceed its
+        maximum."""
         finer = self.with_order(self.order + 2)
-        return finer if finer.order <= RESOLUTION_SETTINGS.max_order else self.halved
+        return finer if finer.order <= RESOLUTION_SETTINGS.max_order else self.with_halved_elements
 
     @property
-    def halved(self) -> "OrbitMesh":
+    def with_halved_elements(self) -> "OrbitMesh":
         """This mesh with twice as many elements, of lower order."""
         return replace(
             self,
-            edges=halved_element_edges(self.edges),
-            order=ceil(ORBIT_MESH_SETTINGS.halving_order_ratio * self.order),
+            element_edges=halved_element_edges(self.element_edges),
+            order=ceil(ORBIT_MESH_SETTINGS.element_order_ratio_after_halving * self.order),
             order_ratios=tuple(ratio for ratio in self.order_ratios for _ in range(2)),
-            spacing_ratios=halved_spacing_ratios(self.spacing_ratios),
+            spacing_ratios=node_spacing_ratios_of_halves(self.spacing_ratios),
         )
 
     @property
@@ -223,14 +220,14 @@ class OrbitMesh:
         """Whether unknowns and time intervals are within `ORBIT_MESH_SETTINGS`, and the memory of Newton's
         matrix is within `WORKSPACE_SETTINGS`."""
         return (
-            self.unknown_count <= ORBIT_MESH_SETTINGS.max_unknowns
-            and self.interval_count <= ORBIT_MESH_SETTINGS.max_intervals
+            self.unknown_count <= ORBIT_MESH_SETTINGS.max_unknown_count
+            and self.interval_count <= ORBIT_MESH_SETTINGS.max_time_interval_count
             and factors_size(self.interval_count, self.stage_count, self.unknown_count)
             <= WORKSPACE_SETTINGS.max_buffer_size
         )
 
     @property
-    def cost(self) -> float:
+    def elimination_cost(self) -> float:
         """Relative cost of the elimination of Newton's matrix; the number of unknowns is rounded up to a
         multiple of `ORBIT_MESH_SETTINGS.doubles_per_vector_register`."""
         padded_unknown_count = ORBIT_MESH_SETTINGS.doubles_per_vector_register * ceil(
@@ -243,8 +240,8 @@ class OrbitMesh:
         return orbit.on_mesh(self.space_mesh, *self.time_mesh)
 
 
-def mesh_of(orbit: Orbit) -> OrbitMesh:
+def mesh_of_orbit(orbit: Orbit) -> OrbitMesh:
     """The mesh in space and time on which `orbit` is represented."""
     mesh = orbit.form.mesh
     K, s, grading = orbit.time_mesh
-    return OrbitMesh(mesh.edges, mesh.order, K, s, mesh.order_ratios, grading, mesh.spacing_ratios)
+    return OrbitMesh(mesh.edges, mesh.order, K, s, mesh.order_ratios, grading, mesh.node_spacing_ratios)

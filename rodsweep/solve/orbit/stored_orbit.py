@@ -11,7 +11,7 @@ from ...model.material.rod_material import RodMaterial
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 from .orbit import Orbit
-from .orbit_mesh import OrbitMesh, mesh_of
+from .orbit_mesh import OrbitMesh, mesh_of_orbit
 from .symmetry import NO_SYMMETRY, REFLECTION
 
 
@@ -23,7 +23,7 @@ def orbit_arrays(orbit: Orbit) -> dict[str, Array]:
         # Checkpoints hold arrays only, so a text is stored as its bytes.
         "build": np.frombuffer(orbit.form.rod.material.json_text.encode(), np.uint8),
         "symmetric": np.array(orbit.is_symmetric),
-        "mesh": mesh_of(orbit).as_array,
+        "mesh": mesh_of_orbit(orbit).as_array,
         "orbit": orbit.values,
     }
 

@@ -19,16 +19,17 @@ from ...model.balance import Values
 @dataclass(frozen=True, eq=False)
 class Symmetry:
     """Symmetry x(T/p) = S x(0) of an orbit. component_matrix: orthogonal matrix, (d, d), by which S
-    multiplies the d stress components and the d velocity components at every node. period_parts: p."""
+    multiplies the d stress components and the d velocity components at every node. solved_parts_per_period:
+    p."""
 
     component_matrix: Array
-    period_parts: int
+    solved_parts_per_period: int
 
     def apply(self, x: Values, layout: StateLayout) -> Values:
         """The states S x for the states x, (..., unknowns)."""
         S = layout.stresses(x)
-        V = np.zeros((layout.components, *x.shape[:-1], layout.node_count + 1), x.dtype)
-        V[list(layout.unknown_velocities)] = layout.velocities(x)
+        V = np.zeros((layout.component_count, *x.shape[:-1], layout.node_count + 1), x.dtype)
+        V[list(layout.unknown_velocity_components)] = layout.velocities(x)
         return layout.state(
             np.tensordot(self.component_matrix, S, 1), np.tensordot(self.component_matrix, V, 1)
         )

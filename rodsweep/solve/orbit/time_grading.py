@@ -20,15 +20,15 @@ from ...discretization.elements.trigonometric import fourier_coefficients
 class TimeGradingSettings:
     """Settings for the grading of the time intervals of an orbit."""
 
-    amplitude_spacing: float = 0.05
+    grading_amplitude_step: float = 0.05
     """The two numbers of a grading are multiples of this step, so that similar orbits share their meshes."""
-    max_amplitude: float = 0.6
+    max_grading_amplitude: float = 0.6
     """Largest amplitude of dt/dtau - 1: the longest interval is at most four times as long as the
     shortest."""
-    min_tail_ratio: float = 1e-4
+    min_interval_tail_ratio: float = 1e-4
     """Lower limit of the tail of an interval divided by the largest tail: smaller tails may be rounding
     errors, and have little effect on a smooth grading."""
-    oversampling: int = 4
+    samples_per_time_node: int = 4
     """Number of equidistant times per node at which a function of the mesh time is evaluated to find its
     harmonics in time. A function of the time has fewer harmonics than the same function of the mesh time."""
     inversion_bisection_count: int = 8
@@ -48,17 +48,17 @@ class TimeGrading:
     dt/dtau = 1 + cosine cos(2 pi harmonic tau) + sine sin(2 pi harmonic tau),   t(0) = 0.
     """
 
-    cosine: float = 0.0
-    sine: float = 0.0
+    cosine_amplitude: float = 0.0
+    sine_amplitude: float = 0.0
     harmonic: int = 1
 
     @property
     def is_uniform(self) -> bool:
         """Whether mesh time and time are equal."""
-        return self.cosine == 0 and self.sine == 0
+        return self.cosine_amplitude == 0 and self.sine_amplitude == 0
 
     @property
-    def doubled(self) -> "TimeGrading":
+    def over_two_solved_parts(self) -> "TimeGrading":
         """The grading over two solved parts of the period."""
         return replace(self, harmonic=2 * self.harmonic)
 
@@ -68,13 +68,16 @@ class TimeGrading:
             return mesh_times
         k = 2 * np.pi * self.harmonic
         angles = k * mesh_times
-        times: Array = mesh_times + (self.cosine * np.sin(angles) + self.sine * (1 - np.cos(angles))) / k
+        times: Array = (
+            mesh_times
+            + (self.cosine_amplitude * np.sin(angles) + self.sine_amplitude * (1 - np.cos(angles))) / k
+        )
         return times
 
-    def rates(self, mesh_times: Array) -> Array:
+    def time_slopes(self, mesh_times: Array) -> Array:
         """dt/dtau at `mesh_times`; arrays of a common shape."""
         angles = 2 * np.pi * self.harmonic * mesh_times
-        rates: Array = 1 + self.cosine * np.cos(angles) + self.sine * np.sin(angles)
+        rates: Array = 1 + self.cosine_amplitude * np.cos(angles) + self.sine_amplitude * np.sin(angles)
         return rates
 
     def mesh_times(self, times: Array) -> Array:
@@ -91,11 +94,11 @@ class TimeGrading:
             upper = np.where(is_below, upper, middle)
         middles: Array = (lower + upper) / 2
         for _ in range(TIME_GRADING_SETTINGS.newton_step_count):
-            middles = middles - (self.times(middles) - times) / self.rates(middles)
+            middles = middles - (self.times(middles) - times) / self.time_slopes(middles)
         return middles
 
 
-UNIFORM_TIME = TimeGrading()
+UNIFORM_TIME_GRADING = TimeGrading()
 """Intervals of equal length."""
 
 
@@ -105,7 +108,7 @@ def fitted_grading(tails: Array, edges: Array, stage_count: int, harmonic: int) 
     fractions of the solved part of the period, (K + 1,). stage_count: number of stages of an interval.
     harmonic: `TimeGrading.harmonic` of the result."""
     lengths = np.diff(edges)
-    limited_tails = np.maximum(tails, TIME_GRADING_SETTINGS.min_tail_ratio * tails.max())
+    limited_tails = np.maximum(tails, TIME_GRADING_SETTINGS.min_interval_tail_ratio * tails.max())
     # A coefficient of degree s in an interval of length h, over h^(s + 1), is a measure of the error density.
     increments = limited_tails ** (1 / (stage_count + 1))
     mesh_time_ends = np.cumsum(increments) / increments.sum()
@@ -114,15 +117,15 @@ def fitted_grading(tails: Array, edges: Array, stage_count: int, harmonic: int) 
     cosine = 2 * float(lengths @ np.cos(angles))
     sine = 2 * float(lengths @ np.sin(angles))
     amplitude = float(np.hypot(cosine, sine))
-    max_amplitude = TIME_GRADING_SETTINGS.max_amplitude
+    max_amplitude = TIME_GRADING_SETTINGS.max_grading_amplitude
     amplitude_factor = max_amplitude / amplitude if amplitude > max_amplitude else 1.0
-    step = TIME_GRADING_SETTINGS.amplitude_spacing
+    step = TIME_GRADING_SETTINGS.grading_amplitude_step
     return TimeGrading(
         step * round(amplitude_factor * cosine / step), step * round(amplitude_factor * sine / step), harmonic
     )
 
 
-def coefficients_in_time(c: Complex, grading: TimeGrading, part_count: int) -> Complex:
+def fourier_coefficients_in_time(c: Complex, grading: TimeGrading, part_count: int) -> Complex:
     """Fourier coefficients in time, (l, ...), of the function Re sum_k c_k exp(2 pi i k tau) of the mesh time
     tau in periods. c: (k, ...). part_count: number of solved parts in a period."""
     if grading.is_uniform:
@@ -131,7 +134,8 @@ def coefficients_in_time(c: Complex, grading: TimeGrading, part_count: int) -> C
 
 
 def samples_in_time(c: Complex, grading: TimeGrading, part_count: int) -> Array:
-    """Values at equidistant times of the period, (m, ...), of the function of `coefficients_in_time`."""
+    """Values at equidistant times of the period, (m, ...), of the function of
+    `fourier_coefficients_in_time`."""
     cosines, sines = _mesh_time_waves_at_equal_times(len(c), grading, part_count)
     columns = c.reshape(len(c), -1)
     samples: Array = cosines @ columns.real - sines @ columns.imag
@@ -144,7 +148,7 @@ def _mesh_time_waves_at_equal_times(
 ) -> tuple[Array, Array]:
     """Cosines and sines of 2 pi k tau, (m, count) each, k = 0 ... count - 1, at the mesh times tau of m
     equidistant times of the period."""
-    sample_count = TIME_GRADING_SETTINGS.oversampling * (coefficient_count - 1)
+    sample_count = TIME_GRADING_SETTINGS.samples_per_time_node * (coefficient_count - 1)
     part, times = np.divmod(part_count * np.arange(sample_count), sample_count)
     mesh_times = (part + grading.mesh_times(times / sample_count)) / part_count
     angles = 2 * np.pi * np.outer(mesh_times, np.arange(coefficient_count))

@@ -8,7 +8,11 @@ from numpy.typing import NDArray
 from ...arrays import Array, Complex
 from ...discretization.straight.arm_pencil import ArmPencil
 from ...discretization.straight.arm_resolution import ArmMesh
-from ...discretization.straight.pencil import PencilMatrices, fields_of_vectors, finite_eigenvalue_count
+from ...discretization.straight.pencil import (
+    PencilMatrices,
+    displacements_of_eigenvectors,
+    finite_eigenvalue_count,
+)
 from ...model.compiled.compilation import compiled
 from ...model.rod import Rod
 from ..backend.solver_pools import LruPool
@@ -16,7 +20,7 @@ from .shift_invert import KRYLOV_SETTINGS, CurrentPencil, ShiftInvertSolver
 
 
 @compiled
-def _sum_of_entries(A: Array, B: Array) -> float:
+def _sum_of_all_entries(A: Array, B: Array) -> float:
     """Sum of all entries of both arrays, (n,) and (m,)."""
     return float(A.sum() + B.sum())
 
@@ -45,10 +49,10 @@ class ArmSolver(ShiftInvertSolver):
         super().__init__(self.pencil, np.full(self.pencil.node_count, 1 / self.pencil.node_count))
         self._places: NDArray[np.int64] = self.pencil.columns.astype(np.int64) * n + self.pencil.rows
 
-    def load(self, rod: Rod, shift: float) -> CurrentPencil:
+    def load_matrices(self, rod: Rod, shift: float) -> CurrentPencil:
         self.matrices = matrices = self.pencil.matrices(rod)
         # One sum tests all entries at once: inf or nan anywhere makes it non-finite.
-        if not isfinite(_sum_of_entries(matrices.A, matrices.B) + shift):
+        if not isfinite(_sum_of_all_entries(matrices.A, matrices.B) + shift):
             raise FloatingPointError(
                 "with these parameters matrix entries exceed the largest floating-point number"
             )
@@ -67,7 +71,7 @@ class ArmSolver(ShiftInvertSolver):
     def displacements(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
         """Returns (y, theta) at all nodes, (nodes + 1, k) each. vectors: eigenvectors of the arm that was
         solved last, (unknowns, k). rod: not needed, because the matrices are those of this arm."""
-        return fields_of_vectors(vectors, self.matrices.displacement_factors)
+        return displacements_of_eigenvectors(vectors, self.matrices.displacement_factors)
 
 
 arm_solver = LruPool(ArmSolver, KRYLOV_SETTINGS.max_arm_solvers).get

@@ -15,7 +15,7 @@ from ...determinant.certificate.winding_number import EigenvalueCount
 from ...determinant.roots.roots import Roots
 from ...discretization.straight.transverse_mesh import AnyMesh
 from ...model.compiled.kernel_constants import KernelConstants
-from ..backend.petsc import PETSC_ERRORS
+from ..backend.petsc import PETSC_EXCEPTIONS
 from ..backend.solver_pools import destroy_pooled_solvers
 from ..point_outcome import cause_of
 from .problem import TransverseProblem
@@ -25,30 +25,31 @@ from .problem import TransverseProblem
 class CandidateSettings(KernelConstants):
     """Settings for the eigenvalues of a mesh, and for the lines right of which eigenvalues are counted."""
 
-    wide_gap_over_real_part: float = 0.2
+    min_wide_gap_over_real_part: float = 0.2
     """Gaps between successive real parts, in which a line for a count may lie, are treated as equally wide if
     their width, divided by |Re w| of the left eigenvalue, exceeds this (stable rods)."""
-    wide_gap_over_real_part_if_unstable: float = 0.05
-    """Like `wide_gap_over_real_part`, for an unstable rod; less than `wide_gap_over_real_part`, because
-    eigenvalues far to the left converge last and need a finer mesh."""
-    last_line_distance_ratio: float = 0.05
+    min_wide_gap_over_real_part_if_unstable: float = 0.05
+    """Like `min_wide_gap_over_real_part`, for an unstable rod; less than `min_wide_gap_over_real_part`,
+    because eigenvalues far to the left converge last and need a finer mesh."""
+    relative_line_distance_from_last_w: float = 0.05
     """Distance from the last eigenvalue w found to the last line, to the left of w, divided by |w|."""
-    leader_line_distance_ratio: float = 0.5
+    relative_line_distance_from_leading_w: float = 0.5
     """Distance from a followed leading eigenvalue w to the first line for a count, to the left of w, divided
     by |w|. A count at a distant line needs fewer nodes than at a near line. A line at
-    `last_line_distance_ratio` follows in case another eigenvalue lies between w and the first line."""
-    min_gap_ratio: float = 1e-6
+    `relative_line_distance_from_last_w` follows in case another eigenvalue lies between w and the first
+    line."""
+    min_relative_gap: float = 1e-6
     """No line is drawn between two real parts if their distance, divided by the modulus of the left real
     part, is at most this."""
-    same_root_ratio: float = 1e-6
+    max_relative_same_root_distance: float = 1e-6
     """Roots found with two shifts are the same root if their distance is at most this times |w|. Taking two
     roots for one is safe: the count then disagrees; one root taken for two could agree with a wrong count."""
     max_count_lines: int = 3
     """Maximum number of lines tried for the count of one rod."""
     proof_line_distance_in_errors: float = 3.0
     """Distance from the last wanted eigenvalue w to the line of a proof without a count: this multiple of the
-    error of w plus `proof_line_distance_ratio` * |w|, to the left."""
-    proof_line_distance_ratio: float = 1e-9
+    error of w plus `relative_proof_line_distance` * |w|, to the left."""
+    relative_proof_line_distance: float = 1e-9
     """Part of the distance in `proof_line_distance_in_errors` that is proportional to |w|, divided by |w|."""
 
 
@@ -62,31 +63,34 @@ class Candidates:
 
     mesh: AnyMesh
     roots: Roots
-    vectors: Complex | None
+    eigenvectors: Complex | None
     failure: str = ""
 
     def united_with(self, earlier: "Candidates") -> "Candidates":
         """These candidates and the roots of D that were found earlier, on another mesh or with another shift;
         unchanged if they have eigenvectors, which the earlier mesh does not share."""
-        if self.vectors is not None:
+        if self.eigenvectors is not None:
             return self
         own, other = self.roots, earlier.roots
         distances = np.abs(other.w[:, None] - own.w)
-        same_distances = CANDIDATE_SETTINGS.same_root_ratio * np.abs(other.w) + other.error
+        same_distances = CANDIDATE_SETTINGS.max_relative_same_root_distance * np.abs(other.w) + other.error
         is_new = (distances > np.maximum(same_distances[:, None], own.error)).all(axis=1)
         united = [np.append(mine, more[is_new]) for mine, more in zip(own[:-1], other[:-1], strict=True)]
         w = united[Roots._fields.index("w")]
         order = np.lexsort((-w.imag, -w.real))
-        return replace(self, roots=Roots._make([*(values[order] for values in united), own.unmatched_count]))
+        return replace(
+            self,
+            roots=Roots._make([*(values[order] for values in united), own.unmatched_mesh_eigenvalue_count]),
+        )
 
     @property
-    def do_others_decay_faster(self) -> bool:
+    def has_found_only_growing_eigenvalues(self) -> bool:
         """Whether some eigenvalues are found, all of which grow, and none right of them is unresolved: the
         others are then far left of the shift."""
         w = self.roots.w
-        return len(w) > 0 and bool((w.real > 0).all()) and not self.roots.unmatched_count
+        return len(w) > 0 and bool((w.real > 0).all()) and not self.roots.unmatched_mesh_eigenvalue_count
 
-    def worst_error(self, mode_count: int) -> float:
+    def max_relative_error(self, mode_count: int) -> float:
         """Largest relative error estimate among the first `mode_count` roots."""
         errors: Any = self.roots.error[:mode_count].tolist()
         w: Any = self.roots.w[:mode_count].tolist()
@@ -106,7 +110,8 @@ class CountComparison:
 
     @property
     def agrees(self) -> bool:
-        """Whether `count` and `found_count` are equal, and every found eigenvalue is clear of the line."""
+        """Whether `count_right_of` and `found_count` are equal, and every found eigenvalue is clear of the
+        line."""
         return self.is_line_clear and self.count.number == self.found_count
 
 
@@ -115,6 +120,7 @@ class CheckedCandidates:
     """Candidates, with the comparison with a count if requested, and with their largest error."""
 
     candidates: Candidates
+    """Roots of D found by one solve."""
     comparison: CountComparison | None
     error_over_limit: float
     """Largest ratio of an error to the allowed error; a ratio of at most
@@ -142,8 +148,8 @@ def candidates_on_mesh(
     try:
         solver = problem.solver(mesh)
         mesh_eigenvalues = solver.solve(problem.rod, problem.shift, requested_count, to_rounding)
-        vectors = solver.vectors(len(mesh_eigenvalues)) if needs_vectors else None
-    except PETSC_ERRORS as error:
+        vectors = solver.eigenvectors(len(mesh_eigenvalues)) if needs_vectors else None
+    except PETSC_EXCEPTIONS as error:
         # After an error inside PETSc its objects are unusable.
         destroy_pooled_solvers()
         failure = cause_of(error)
@@ -166,7 +172,7 @@ def compare_with_count(problem: TransverseProblem, roots: Roots, mode_count: int
         return CountComparison(EigenvalueCount(found_count, evaluations), found_count, is_line_clear)
     # A count fails close to an eigenvalue that is not among those found; another line may be free.
     for line in lines_for_count(w, mode_count):
-        count = problem.count(line, roots)
+        count = problem.count_right_of(line, roots)
         if count.number is not None:
             break
     return CountComparison(count, *_count_right_of(line, w, errors))
@@ -178,7 +184,7 @@ def line_for_proof(last_wanted: complex, error: float) -> float:
     return min(
         last_wanted.real
         - CANDIDATE_SETTINGS.proof_line_distance_in_errors * error
-        - CANDIDATE_SETTINGS.proof_line_distance_ratio * abs(last_wanted),
+        - CANDIDATE_SETTINGS.relative_proof_line_distance * abs(last_wanted),
         0.0,
     )
 
@@ -195,14 +201,14 @@ def lines_for_count(w: list[complex], mode_count: int) -> list[float]:
     best first: middles of the widest gaps between real parts, to the left of the `mode_count` leading and of
     all unstable eigenvalues.
 
-    w: eigenvalues found, by descending real part. Gaps wider than `wide_gap_over_real_part` (unstable rod:
-    `wide_gap_over_real_part_if_unstable`) are equally good; the rightmost comes first. The last line lies to
-    the left of all eigenvalues found.
+    w: eigenvalues found, by descending real part. Gaps wider than `min_wide_gap_over_real_part` (unstable
+    rod: `min_wide_gap_over_real_part_if_unstable`) are equally good; the rightmost comes first. The last line
+    lies to the left of all eigenvalues found.
     """
     wide_gap_over_real_part = (
-        CANDIDATE_SETTINGS.wide_gap_over_real_part_if_unstable
+        CANDIDATE_SETTINGS.min_wide_gap_over_real_part_if_unstable
         if w[0].real > 0
-        else CANDIDATE_SETTINGS.wide_gap_over_real_part
+        else CANDIDATE_SETTINGS.min_wide_gap_over_real_part
     )
     # Left of the imaginary axis too, so that one count also gives the number of unstable modes.
     rightmost_end = min(w[mode_count - 1].real, 0.0)
@@ -211,12 +217,12 @@ def lines_for_count(w: list[complex], mode_count: int) -> list[float]:
     for right, left in zip(real_parts[:-1], real_parts[1:], strict=True):
         # Relative, because the spacing of the eigenvalues grows with their moduli.
         width = (right - left) / abs(left)
-        if width > CANDIDATE_SETTINGS.min_gap_ratio:
+        if width > CANDIDATE_SETTINGS.min_relative_gap:
             # Wider gaps count as equal, because eigenvalues far to the left converge last.
             gaps.append((min(width, wide_gap_over_real_part), (left + right) / 2))
     gaps.sort(key=lambda gap: -gap[0])  # stable sort: the first wide gap stays first
     last_real_part = real_parts[-1]
-    last_line = last_real_part - CANDIDATE_SETTINGS.last_line_distance_ratio * (
+    last_line = last_real_part - CANDIDATE_SETTINGS.relative_line_distance_from_last_w * (
         # If all found eigenvalues grow, the line must still lie left of the axis.
         abs(w[-1]) if last_real_part < 0 else abs(w[0].real) + 1.0
     )

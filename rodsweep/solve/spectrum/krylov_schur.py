@@ -10,7 +10,7 @@ from ...discretization.elements.resolution import Resolution
 from ...discretization.straight.pencil import (
     Pencil,
     assemble_pencil,
-    fields_of_vectors,
+    displacements_of_eigenvectors,
     finite_eigenvalue_count,
 )
 from ...model.compiled.compilation import compiled
@@ -39,16 +39,16 @@ class UniformSolver(ShiftInvertSolver):
         self.pencil: Pencil = assemble_pencil(resolution.element_count, resolution.order)
         super().__init__(self.pencil, self.pencil.nodal_masses)
         if self.is_dense:
-            self.dense_terms = self.pencil.dense_terms()
+            self.dense_constant_matrices = self.pencil.dense_constant_matrices()
         # No rod has this drag, so the first load writes B.
         self.loaded_gamma3 = -1.0
         self.mass_diagonal: Array = np.ones(self.pencil.unknown_count)
 
-    def load(self, rod: Rod, shift: float) -> CurrentPencil:
+    def load_matrices(self, rod: Rod, shift: float) -> CurrentPencil:
         rod, deflection_ratio = _equivalent_filament_and_deflection_ratio(rod)
         # The filament's eigenvalues are those of the rod times this factor, and so is the shift.
         shift *= deflection_ratio**2
-        coefficients = self.pencil.term_coefficients(rod)
+        coefficients = self.pencil.constant_matrix_factors(rod)
         if not math.isfinite(coefficients.sum() + shift):
             raise FloatingPointError(
                 "with these parameters matrix entries exceed the largest floating-point number"
@@ -62,10 +62,13 @@ class UniformSolver(ShiftInvertSolver):
         if self.is_dense:
             # PETSc stores dense matrices by columns, so the array is written transposed.
             _write_shifted_matrix(
-                self.A.getDenseArray().T, coefficients, self.dense_terms, shift * self.mass_diagonal
+                self.A.getDenseArray().T,
+                coefficients,
+                self.dense_constant_matrices,
+                shift * self.mass_diagonal,
             )
         else:
-            values = coefficients @ self.pencil.term_entries
+            values = coefficients @ self.pencil.constant_matrix_entries
             values[self.is_diagonal_entry] -= shift * self.mass_diagonal
             self.A.setValuesCSR(self.indptr, self.indices, values)
         return CurrentPencil(finite_eigenvalue_count(rod, self.node_count), shift, deflection_ratio)
@@ -73,7 +76,7 @@ class UniformSolver(ShiftInvertSolver):
     def displacements(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
         """Returns (y, theta) at all nodes, (nodes + 1, k). vectors: eigenvectors of the last solve,
         (unknowns, k)."""
-        return fields_of_vectors(vectors, self.pencil.displacement_factors(rod))
+        return displacements_of_eigenvectors(vectors, self.pencil.displacement_factors(rod))
 
 
 def _equivalent_filament_and_deflection_ratio(rod: Rod) -> tuple[Rod, float]:

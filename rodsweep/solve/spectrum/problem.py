@@ -13,13 +13,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
-from ...determinant.arm.completeness import COMPLETENESS_SETTINGS, cheapest_proof, prove_complete
+from ...determinant.arm.completeness import (
+    COMPLETENESS_SETTINGS,
+    prove_complete,
+    requirements_of_cheapest_proof,
+)
 from ...determinant.arm.count.count import count_right_of as count_of_arm
 from ...determinant.arm.count.count import is_countable, largest_w_of_count
 from ...determinant.arm.determinant import arm_determinant
 from ...determinant.arm.hull.hull import hull_of
 from ...determinant.arm.roots import refine_mesh_eigenvalues as roots_of_arm
-from ...determinant.certificate.box import frequency_bound
+from ...determinant.certificate.eigenvalue_box import frequency_bound
 from ...determinant.certificate.winding_number import EigenvalueCount, count_right_of
 from ...determinant.roots.roots import Roots, refined_roots
 from ...discretization.elements.resolution import (
@@ -39,28 +43,27 @@ from ...model.dispersion import (
 from ...model.rod import Rod
 from .arm_solver import ArmSolver, arm_solver
 from .krylov_schur import UniformSolver, uniform_solver
-from .path.prediction import KnownRoots
+from .path.eigenvalue_prediction import KnownRoots
 from .shift_invert import KRYLOV_SETTINGS
 
 
 class TransverseProblem(ABC):
     """Meshes, solver and determinant D of one rod. shift: target of Krylov-Schur, to the right of most
-    spectra, in 1/tau2. has_bound: whether an a-priori bound of the eigenvalues exists. is_count_slow: whether
-    one count takes longer than several eigenvalue problems."""
+    spectra, in 1/tau2. has_eigenvalue_bound: whether an a-priori bound of the eigenvalues exists.
+    is_count_slow: whether one count takes longer than several eigenvalue problems. largest_wave_number:
+    largest local wave number of amplified waves, in 1/L; 0 if no waves are amplified."""
 
     rod: Rod
     shift: float
-    has_bound: bool
+    has_eigenvalue_bound: bool
     is_count_slow: ClassVar[bool]
     largest_wave_number: float
-    """Largest local wave number of amplified waves, in 1/L; 0 if no waves are amplified."""
     additional_eigenvalue_count: int = 0
     """Number of eigenvalues requested from the first mesh besides the modes, for a proof without a count."""
 
     def move_shift_right(self) -> None:
         """Moves the shift farther to the right, so that the eigenvalues nearest to the shift are the
-        rightmost. The shift of a uniform rod stays, because it lies to the right of all amplified waves.
-        """
+        rightmost. The shift of a uniform rod stays, because it lies right of all amplified waves."""
         return
 
     def move_shift_left(self, leftmost: float) -> None:
@@ -69,7 +72,7 @@ class TransverseProblem(ABC):
         return
 
     @property
-    def wave_clause(self) -> str:
+    def shortest_growing_wave_clause(self) -> str:
         """Clause with the shortest growing wave and a remedy, for a message that no mesh resolves it."""
         if not self.largest_wave_number:
             return ""
@@ -100,7 +103,7 @@ class TransverseProblem(ABC):
         numbers the mesh does not represent are dropped."""
 
     @abstractmethod
-    def count(self, line: float, roots: Roots | KnownRoots | None = None) -> EigenvalueCount:
+    def count_right_of(self, line: float, roots: Roots | KnownRoots | None = None) -> EigenvalueCount:
         """Proved number of eigenvalues with Re w > line. roots: known roots of D, for a faster count."""
 
     def completeness_proof_and_evaluations(self, line: float, roots: Roots) -> tuple[bool, int]:
@@ -125,7 +128,7 @@ class UniformProblem(TransverseProblem):
         growth, self.largest_wave_number = largest_growth_and_wave_number(rod)
         self.shift = _shift_over_waves(rod, growth)
         self._sqrt_frequency_bound = sqrt(frequency_bound(rod))
-        self.has_bound = isfinite(self._sqrt_frequency_bound)
+        self.has_eigenvalue_bound = isfinite(self._sqrt_frequency_bound)
 
     def mesh_for(self, mode_count: int, accuracy: float) -> Resolution:
         return resolution_for(expected_wave_number(mode_count, self.largest_wave_number), accuracy)
@@ -137,18 +140,17 @@ class UniformProblem(TransverseProblem):
         return max(requested_mesh, finer_resolution(mesh), key=lambda each: each.unknown_count)
 
     def refined_roots(self, mesh_eigenvalues: Complex, mesh: Any) -> Roots:
-        """Roots of D refined from the eigenvalues `mesh_eigenvalues`, (n,), as in
-        `TransverseProblem.refined_roots`."""
+        """Roots of D refined from `mesh_eigenvalues`, (n,), as in `TransverseProblem.refined_roots`."""
         max_q = RESOLUTION_SETTINGS.max_wave_number_per_node * mesh.element_count * mesh.order
         return refined_roots(mesh_eigenvalues, self.rod.coefficients, self._sqrt_frequency_bound, max_q)
 
-    def count(self, line: float, roots: Roots | KnownRoots | None = None) -> EigenvalueCount:
+    def count_right_of(self, line: float, roots: Roots | KnownRoots | None = None) -> EigenvalueCount:
         return count_right_of(line, self.rod)
 
 
 class ArmProblem(TransverseProblem):
-    """The transverse eigenvalue problem of an arm that is not a uniform rod of linear material. to_prove:
-    number of leading modes to be proved complete; 0 if no proof is requested."""
+    """The transverse eigenvalue problem of an arm that is not a uniform rod of linear material.
+    modes_to_prove: number of leading modes to be proved complete; 0 if no proof is requested."""
 
     is_count_slow = True
 
@@ -158,10 +160,9 @@ class ArmProblem(TransverseProblem):
         self._has_proof_failed = False
         self._hull = hull_of(rod)
         self._determinant = arm_determinant(rod)
-        self.has_bound = isfinite(self._hull.a)
-        self.additional_eigenvalue_count = (
-            COMPLETENESS_SETTINGS.further_eigenvalue_count if modes_to_prove and self.has_bound else 0
-        )
+        self.has_eigenvalue_bound = isfinite(self._hull.a)
+        if modes_to_prove and self.has_eigenvalue_bound:
+            self.additional_eigenvalue_count = COMPLETENESS_SETTINGS.eigenvalue_count_beyond_modes
         growth, wave_numbers = local_growths_and_wave_numbers(rod)
         self.largest_wave_number = float(wave_numbers.max())
         self.shift = _shift_over_waves(rod, float(growth.max()))
@@ -174,8 +175,8 @@ class ArmProblem(TransverseProblem):
         self.shift = max(self.shift, min(max(2 * self.shift, growth), right_end))
 
     def move_shift_left(self, leftmost: float) -> None:
-        left = KRYLOV_SETTINGS.shift_over_leftmost * leftmost
-        self.shift = left if left < self.shift else KRYLOV_SETTINGS.shift_reduction * self.shift
+        left = KRYLOV_SETTINGS.shift_over_smallest_growth_rate * leftmost
+        self.shift = left if left < self.shift else KRYLOV_SETTINGS.shift_reduction_factor * self.shift
 
     def mesh_for(self, mode_count: int, accuracy: float) -> ArmMesh:
         return arm_mesh(self.rod, mode_count, accuracy)
@@ -186,7 +187,7 @@ class ArmProblem(TransverseProblem):
     def refined_roots(self, mesh_eigenvalues: Complex, mesh: Any) -> Roots:
         """Roots of D refined from `mesh_eigenvalues`, (n,); if a proof is requested, and until one fails,
         only from the eigenvalues that the proof needs."""
-        needed_mask, max_abs_w = self._proof_mask_and_max_abs_w(mesh_eigenvalues)
+        needed_mask, max_abs_w = self._needed_eigenvalues_and_max_abs_w(mesh_eigenvalues)
         max_q_of_unit_element = RESOLUTION_SETTINGS.max_wave_number_per_node * mesh.order
         max_end_q = max_q_of_unit_element * (1 / mesh.lengths[[0, -1]])
         # Infinite values are dropped by the refinement; all others keep their indices.
@@ -194,23 +195,25 @@ class ArmProblem(TransverseProblem):
         max_q = max_q_of_unit_element * mesh.element_count
         return roots_of_arm(w, self._determinant, self._hull, max_q, max_abs_w, max_end_q)
 
-    def _proof_mask_and_max_abs_w(self, mesh_eigenvalues: Complex) -> tuple[NDArray[np.bool_], float]:
+    def _needed_eigenvalues_and_max_abs_w(self, mesh_eigenvalues: Complex) -> tuple[NDArray[np.bool_], float]:
         """Returns (mask, max_abs_w). mask: True for each of the `mesh_eigenvalues` that the proof will need,
         (n,). max_abs_w: largest |w| at which the proof needs D; 0 if unknown."""
         needed_mask = np.isfinite(mesh_eigenvalues)
-        if not self._modes_to_prove or not self.has_bound or needed_mask.sum() < self._modes_to_prove:
+        may_prove = self._modes_to_prove > 0 and self.has_eigenvalue_bound
+        if not may_prove or needed_mask.sum() < self._modes_to_prove:
             return needed_mask, 0.0
         finite = np.flatnonzero(needed_mask)
         order = finite[np.lexsort((-mesh_eigenvalues.imag[finite], -mesh_eigenvalues.real[finite]))]
-        line = min(float(mesh_eigenvalues[order[self._modes_to_prove - 1]].real), 0.0)
-        number, max_abs_w = cheapest_proof(line, self._hull, mesh_eigenvalues[order], self._modes_to_prove)
+        w = mesh_eigenvalues[order]
+        line = min(float(w[self._modes_to_prove - 1].real), 0.0)
+        number, max_abs_w = requirements_of_cheapest_proof(line, self._hull, w, self._modes_to_prove)
         # After a failed proof a count decides, which needs all eigenvalues right of its line.
         if not number or self._has_proof_failed:
             return needed_mask, largest_w_of_count(line, self._determinant, self._hull)
         needed_mask[order[number:]] = False
         return needed_mask, max_abs_w
 
-    def count(self, line: float, roots: Roots | KnownRoots | None = None) -> EigenvalueCount:
+    def count_right_of(self, line: float, roots: Roots | KnownRoots | None = None) -> EigenvalueCount:
         w_and_errors = () if roots is None else (roots.w, roots.error)
         return count_of_arm(line, self._determinant, self._hull, *w_and_errors)
 
@@ -229,19 +232,17 @@ def _shift_over_waves(rod: Rod, growth: float) -> float:
     """The shift of a rod whose most amplified wave has the growth rate `growth`, so far to the right that the
     eigenvalues nearest to it are mostly the rightmost, in 1/tau2.
 
-    If no wave grows, the shift is the rate -F of a string under the pull. The leading eigenvalue of a pulled
-    rod is exponentially small, and shift-and-invert about 0 would map it to a value so large that rounding
-    errors exceed the values of all other eigenvalues."""
+    If no wave grows, the shift is the rate -F of a string under the pull. With the shift 0, next to the
+    exponentially small leading eigenvalue of a pulled rod, rounding errors would hide all others."""
     return KRYLOV_SETTINGS.shift_over_growth_rate * growth if growth else max(-rod.F, 0.0)
 
 
 def transverse_problem(rod: Rod, modes_to_prove: int = 0) -> TransverseProblem:
-    """The transverse eigenvalue problem of a uniform rod or of an arm. modes_to_prove: number of leading
-    modes to be proved complete; 0 if no proof is requested."""
+    """The transverse eigenvalue problem of a rod. modes_to_prove: number of modes to prove complete, or 0."""
     return UniformProblem(rod) if rod.is_uniform_and_linear else ArmProblem(rod, modes_to_prove)
 
 
-def meshes_text(mesh_count: int, next_mesh: AnyMesh) -> str:
+def meshes_without_result_text(mesh_count: int, next_mesh: AnyMesh) -> str:
     """Subject of a message on meshes without a result: all meshes of a size that may be solved, or the first
     `mesh_count` meshes, which are coarser than `next_mesh`."""
     if next_mesh.unknown_count > RESOLUTION_SETTINGS.max_unknowns:

@@ -12,7 +12,7 @@ from ...discretization.elements.resolution import RESOLUTION_SETTINGS, mesh_accu
 from ...model.rod import Rod
 from .candidates import Candidates, CheckedCandidates, candidates_on_mesh, compare_with_count
 from .candidates import CountComparison as Comparison
-from .problem import TransverseProblem, meshes_text, transverse_problem
+from .problem import TransverseProblem, meshes_without_result_text, transverse_problem
 from .search_settings import SEARCH_SETTINGS
 from .spectrum import (
     Spectrum,
@@ -30,15 +30,16 @@ __all__ = ["SpectrumSearch", "Spectrum", "SpectrumRequest", "solve_spectrum", "w
 def solve_spectrum(rod: Rod, request: SpectrumRequest) -> Spectrum:
     """The leading `request.modes` eigenvalues of a rod; a failure is returned as a status, never raised."""
     if not rod.is_uniform or rod.is_uniform_and_linear:
-        return spectrum_or_failure(lambda: SpectrumSearch(rod, request).outcome(), request)
-    linear, rate = rod.equivalent_linear_rod_and_rate
+        return spectrum_or_failure(lambda: SpectrumSearch(rod, request).find_spectrum(), request)
+    linear, rate = rod.equivalent_linear_rod_and_rate_factor
     scaled = solve_spectrum(linear, request)
     return replace(scaled, eigenvalues=rate * scaled.eigenvalues, error_estimate=rate * scaled.error_estimate)
 
 
 def warm_up() -> None:
     """Loads compiled code and creates the solver objects, so that the first rod takes no extra time."""
-    SpectrumSearch(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4), SpectrumRequest(2, 1e-4, certify=True)).outcome()
+    rod = Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4)
+    SpectrumSearch(rod, SpectrumRequest(2, 1e-4, certify=True)).find_spectrum()
 
 
 class SpectrumSearch:
@@ -47,16 +48,16 @@ class SpectrumSearch:
     `additional_eigenvalue_count`."""
 
     def __init__(self, rod: Rod, request: SpectrumRequest, requested_count: int | None = None):
-        self.problem = transverse_problem(rod, request.modes if request.certify else 0)
+        self.problem = transverse_problem(rod, request.mode_count if request.certify else 0)
         self.request = request
-        self.modes = request.modes
+        self.modes = request.mode_count
         self.needs_vectors = request.vector_node_count > 0
         # Eigenvectors of two meshes cannot be united, and without a count nothing shows what is missing.
         self.can_unite = request.certify and self.problem.is_count_slow and not self.needs_vectors
-        has_bound = self.problem.has_bound
+        has_bound = self.problem.has_eigenvalue_bound
         self.accuracy = mesh_accuracy(request.accuracy, self.needs_vectors) if has_bound else request.accuracy
-        self.mesh = self.problem.mesh_for(request.modes, self.accuracy)
-        default_count = request.modes + self.problem.additional_eigenvalue_count
+        self.mesh = self.problem.mesh_for(request.mode_count, self.accuracy)
+        default_count = request.mode_count + self.problem.additional_eigenvalue_count
         self.requested_count = default_count if requested_count is None else requested_count
         self.best: CheckedCandidates | None = None
         self.stalled_refinements = self.failure_count = 0
@@ -69,11 +70,11 @@ class SpectrumSearch:
         self.last_failure = ""
         """Error message of SLEPc or LAPACK on the last mesh; empty if the last mesh was solved."""
 
-    def outcome(self) -> Spectrum:
+    def find_spectrum(self) -> Spectrum:
         """The spectrum, from solves on meshes until the candidates are accepted or no longer improve."""
         for solve_index in range(SEARCH_SETTINGS.max_meshes):
             is_too_fine = self.mesh.unknown_count > RESOLUTION_SETTINGS.max_unknowns
-            if is_too_fine or self.failure_count > SEARCH_SETTINGS.max_failures:
+            if is_too_fine or self.failure_count > SEARCH_SETTINGS.max_failed_solves:
                 break
             to_rounding = self.needs_vectors or solve_index > 0
             candidates = candidates_on_mesh(
@@ -84,10 +85,8 @@ class SpectrumSearch:
             if checked is None:
                 continue
             self.update_best(checked)
-            if (
-                checked.error_over_limit <= SEARCH_SETTINGS.max_error_over_limit
-                or self.stalled_refinements >= SEARCH_SETTINGS.max_stalled_refinements
-            ):
+            is_accurate = checked.error_over_limit <= SEARCH_SETTINGS.max_error_over_limit
+            if is_accurate or self.stalled_refinements >= SEARCH_SETTINGS.max_stalled_refinements:
                 break
             wave_numbers = candidates.roots.wave_number[: self.modes]
             self.mesh = self.problem.finer_mesh_for_waves(candidates.mesh, wave_numbers, self.accuracy)
@@ -98,7 +97,7 @@ class SpectrumSearch:
         if self.incomplete is not None:
             candidates = candidates.united_with(self.incomplete)
         if len(candidates.roots.w) < self.modes:
-            if self.can_unite and candidates.do_others_decay_faster:
+            if self.can_unite and candidates.has_found_only_growing_eigenvalues:
                 self.request_decaying_modes(candidates)
                 return None
             # Too few eigenvalues converged to roots of D, or SLEPc failed: a finer mesh.
@@ -113,7 +112,8 @@ class SpectrumSearch:
             return None
         certify = self.request.certify
         comparison = compare_with_count(self.problem, candidates.roots, self.modes) if certify else None
-        if comparison is not None and comparison.count.number is None and candidates.roots.unmatched_count:
+        is_uncounted = comparison is not None and comparison.count.number is None
+        if is_uncounted and candidates.roots.unmatched_mesh_eigenvalue_count:
             self.is_leader_unresolved = True
             self.mesh = self.problem.finer_mesh(self.mesh)
             return None
@@ -127,16 +127,14 @@ class SpectrumSearch:
     def error_over_limit(self, candidates: Candidates, comparison: Comparison | None) -> float:
         """The largest ratio of an error of the candidates to the allowed error. Eigenvectors, and eigenvalues
         without a proof, also need a mesh whose eigenvalues are close to the roots of D."""
-        ratio = candidates.worst_error(self.modes) / self.request.accuracy
+        ratio = candidates.max_relative_error(self.modes) / self.request.accuracy
         if comparison is not None and comparison.agrees and not self.needs_vectors:
             return ratio
         settings = SEARCH_SETTINGS
-        max_ratio = (
-            settings.max_root_distance_ratio
-            if self.problem.has_bound
-            else settings.max_root_distance_ratio_without_bound
-        )
-        distance_ratio = float(candidates.roots.displacement[: self.modes].max())
+        max_ratio = settings.max_relative_root_distance
+        if not self.problem.has_eigenvalue_bound:
+            max_ratio = settings.max_relative_root_distance_if_unbounded
+        distance_ratio = float(candidates.roots.relative_mesh_displacement[: self.modes].max())
         return max(ratio, distance_ratio / (self.request.accuracy if self.needs_vectors else max_ratio))
 
     def request_missing_eigenvalues(self, counted: int, found_count: int) -> None:
@@ -190,11 +188,8 @@ class SpectrumSearch:
         progress_limit = SEARCH_SETTINGS.max_progress_error_ratio * best.error_over_limit if best else 0.0
         is_better = best is None or checked.sort_key < (best.sort_key[0], progress_limit)
         self.stalled_refinements = 0 if is_better else self.stalled_refinements + 1
-        if (
-            best is None
-            or checked.sort_key <= best.sort_key
-            or checked.error_over_limit <= SEARCH_SETTINGS.max_error_over_limit
-        ):
+        is_accurate = checked.error_over_limit <= SEARCH_SETTINGS.max_error_over_limit
+        if best is None or checked.sort_key <= best.sort_key or is_accurate:
             self.best = checked
 
     def best_spectrum(self) -> Spectrum:
@@ -211,8 +206,11 @@ class SpectrumSearch:
         if self.is_leader_unresolved:
             reason = "no mesh resolves all eigenvalues with large real parts, so the leading one is not known"
             return failed_spectrum(SpectrumStatus.modes_missing, self.request, reason)
-        meshes = meshes_text(SEARCH_SETTINGS.max_meshes, self.mesh)
-        reason = self.last_failure or f"{meshes} resolves the requested modes{self.problem.wave_clause}"
+        meshes = meshes_without_result_text(SEARCH_SETTINGS.max_meshes, self.mesh)
+        reason = (
+            self.last_failure
+            or f"{meshes} resolves the requested modes{self.problem.shortest_growing_wave_clause}"
+        )
         return failed_spectrum(SpectrumStatus.failed, self.request, reason)
 
 
@@ -221,7 +219,7 @@ def _best_spectrum(best: CheckedCandidates, problem: TransverseProblem, request:
     roots, comparison = best.candidates.roots, best.comparison
     error_over_limit = best.error_over_limit
     if request.certify and not request.vector_node_count:  # the mesh is not accurate, but the roots of D are
-        error_over_limit = best.candidates.worst_error(request.modes) / request.accuracy
+        error_over_limit = best.candidates.max_relative_error(request.mode_count) / request.accuracy
     is_accurate = error_over_limit <= SEARCH_SETTINGS.max_stalled_error_over_limit
     status = SpectrumStatus.ok if is_accurate else SpectrumStatus.accuracy_not_reached
     is_proved = comparison is not None and comparison.agrees
@@ -238,12 +236,12 @@ def _best_spectrum(best: CheckedCandidates, problem: TransverseProblem, request:
     is_known = not is_undecided and (is_proved if request.certify else unstable_count < len(roots.w))
     return Spectrum(
         status=status,
-        eigenvalues=roots.w[: request.modes],
-        error_estimate=errors_with_rounding(roots.w, roots.error, problem.rod)[: request.modes],
+        eigenvalues=roots.w[: request.mode_count],
+        error_estimate=errors_with_rounding(roots.w, roots.error, problem.rod)[: request.mode_count],
         unstable_count=unstable_count if is_known else -1,
         certified=is_proved and not is_undecided,
         elements=best.candidates.mesh.element_count,
         order=best.candidates.mesh.order,
-        vectors=modes_at_lobatto_nodes(problem, request, best.candidates.mesh, best.candidates.vectors),
+        vectors=modes_at_lobatto_nodes(problem, request, best.candidates.mesh, best.candidates.eigenvectors),
         message=message,
     )

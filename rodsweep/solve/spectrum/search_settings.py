@@ -19,7 +19,7 @@ class SearchSettings:
     search requests more eigenvalues on a finer mesh; otherwise the search only refines the mesh."""
     max_meshes: int = 16
     """Maximum number of solves, each on one mesh. Only pulled rods of little rotational drag need most."""
-    max_failures: int = 3
+    max_failed_solves: int = 3
     """Maximum number of solves that end with an error inside PETSc, SLEPc or LAPACK."""
     max_stalled_refinements: int = 2
     """After this number of successive refinements without progress, the error is taken to be rounding."""
@@ -31,11 +31,11 @@ class SearchSettings:
     max_stalled_error_over_limit: float = 0.8
     """Largest ratio of error estimate to requested accuracy, like `max_error_over_limit`, if further meshes
     do not reduce the error."""
-    max_root_distance_ratio: float = 1e-3
+    max_relative_root_distance: float = 1e-3
     """Largest relative distance between an eigenvalue of the mesh and the root of D to which it converges. At
     a larger distance the mesh may have missed an eigenvalue."""
-    max_root_distance_ratio_without_bound: float = 1e-6
-    """Like `max_root_distance_ratio`, for a rod without an a-priori bound of its eigenvalues, where
+    max_relative_root_distance_if_unbounded: float = 1e-6
+    """Like `max_relative_root_distance`, for a rod without an a-priori bound of its eigenvalues, where
     convergence is the only evidence that no eigenvalue is missing."""
 
 

@@ -18,7 +18,7 @@ from ...discretization.straight.arm_pencil import ArmPencil
 from ...discretization.straight.pencil import Pencil
 from ...model.rod import Rod
 from ...solve_progress import report
-from ..backend.petsc import PETSc, SLEPc, sparse_package
+from ..backend.petsc import PETSc, SLEPc, sparse_lu_package
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -27,26 +27,26 @@ class KrylovSettings:
 
     shift_over_growth_rate: float = 1.05
     """Shift divided by the growth rate of the most amplified wave. This growth rate is above most spectra."""
-    shift_over_leftmost: float = 0.5
+    shift_over_smallest_growth_rate: float = 0.5
     """Shift divided by the smallest growth rate found, if smaller ones are missing: below 1, because the next
     eigenvalue lies to the left, and not 0, where growth rates are far apart."""
-    shift_reduction: float = 0.01
+    shift_reduction_factor: float = 0.01
     """The shift is multiplied by this number if the previous shift gave no further eigenvalue."""
     max_dense_unknowns: int = 300
     """Matrices with up to this number of unknowns are factorised as dense: as fast as the sparse
     factorisation, with smaller rounding errors."""
-    loose_tolerance: float = 1e-4
+    krylov_tolerance_if_refined: float = 1e-4
     """Krylov tolerance for eigenvalues that Newton's method on the determinant D refines."""
-    loose_spare_vectors: int = 5
+    spare_vectors_if_refined: int = 5
     """Number of Krylov vectors in addition to the wanted eigenvalues, if Newton's method on the determinant D
     refines the eigenvalues."""
-    tight_tolerance: float = 1e-14
+    krylov_tolerance_if_not_refined: float = 1e-14
     """Krylov tolerance for eigenvalues and eigenvectors that are not refined: only the mesh error remains."""
-    tight_spare_vectors: int = 13
+    spare_vectors_if_not_refined: int = 13
     """Number of Krylov vectors in addition to the wanted eigenvalues, if these are not refined."""
     max_restarts: int = 200
     """Maximum number of restarts of the Krylov space."""
-    max_vectors_beyond_finite: int = 2
+    max_vectors_beyond_finite_eigenvalues: int = 2
     """The number of Krylov vectors is at most the number of finite eigenvalues plus this. Applying
     shift-and-invert once, or twice for k2 = inf, removes all components of infinite eigenvalues. A larger
     Krylov space would add only rounding errors, on which LAPACK may fail (trexc)."""
@@ -63,7 +63,7 @@ class KrylovSettings:
     """Maximum number of stored solvers of arms, one per mesh."""
     dense_matrices_per_solver: int = 9
     """Number of dense matrices that a solver of a small pencil stores: A, its factors, and constants."""
-    numbers_per_nonzero_entry: int = 11
+    stored_numbers_per_nonzero_entry: int = 11
     """Number of stored numbers per nonzero entry of a large pencil: A with pattern, factors, constants."""
 
 
@@ -94,7 +94,7 @@ class ShiftInvertSolver(ABC):
     def __init__(self, pattern: Pencil | ArmPencil, mass: Array):
         self.node_count = pattern.node_count
         n = pattern.unknown_count
-        package = sparse_package()
+        package = sparse_lu_package()
         self.is_dense = n <= KRYLOV_SETTINGS.max_dense_unknowns or package is None
         self.is_diagonal_entry = pattern.rows == pattern.columns
         self.indptr = np.searchsorted(pattern.rows, np.arange(n + 1)).astype(PETSc.IntType)
@@ -134,7 +134,7 @@ class ShiftInvertSolver(ABC):
         eps.setProblemType(SLEPc.EPS.ProblemType.GNHEP)
         eps.setType(SLEPc.EPS.Type.KRYLOVSCHUR)
         eps.setWhichEigenpairs(SLEPc.EPS.Which.TARGET_MAGNITUDE)
-        # `load` has already shifted the matrix.
+        # `load_matrices` has already shifted the matrix.
         eps.setTarget(0.0)
         spectral_transform = eps.getST()
         spectral_transform.setType(SLEPc.ST.Type.SINVERT)
@@ -148,7 +148,7 @@ class ShiftInvertSolver(ABC):
         return eps
 
     @abstractmethod
-    def load(self, rod: Rod, shift: float) -> CurrentPencil:
+    def load_matrices(self, rod: Rod, shift: float) -> CurrentPencil:
         """Fills PETSc's matrices A - shift B and B with the values for `rod`, and returns data of the pencil.
         shift: in 1/tau2."""
 
@@ -165,19 +165,25 @@ class ShiftInvertSolver(ABC):
         of the few digits that Newton's method on D needs. Raises PETSc.Error.
         """
         report()
-        self.current_pencil = self.load(rod, shift)
+        self.current_pencil = self.load_matrices(rod, shift)
         self.A.assemble()
         self.eps.setOperators(self.A, self.B)
         max_count = self.current_pencil.finite_eigenvalue_count
         requested_count = min(requested_count, max_count - 1)  # a conjugate pair may add one
         spare_vectors = (
-            KRYLOV_SETTINGS.tight_spare_vectors if to_rounding else KRYLOV_SETTINGS.loose_spare_vectors
+            KRYLOV_SETTINGS.spare_vectors_if_not_refined
+            if to_rounding
+            else KRYLOV_SETTINGS.spare_vectors_if_refined
         )
-        tolerance = KRYLOV_SETTINGS.tight_tolerance if to_rounding else KRYLOV_SETTINGS.loose_tolerance
+        tolerance = (
+            KRYLOV_SETTINGS.krylov_tolerance_if_not_refined
+            if to_rounding
+            else KRYLOV_SETTINGS.krylov_tolerance_if_refined
+        )
         vector_count = self.krylov_size_option or max(2 * requested_count, requested_count + spare_vectors)
         self.eps.setTolerances(self.tolerance_option or tolerance, KRYLOV_SETTINGS.max_restarts)
         # Beyond the finite eigenvalues only the infinite ones remain, which shift-and-invert maps to 0.
-        vector_count = min(vector_count, max_count + KRYLOV_SETTINGS.max_vectors_beyond_finite)
+        vector_count = min(vector_count, max_count + KRYLOV_SETTINGS.max_vectors_beyond_finite_eigenvalues)
         self.eps.setDimensions(requested_count, vector_count, vector_count)
         # A fixed start instead of SLEPc's random one gives the same bits in every run.
         self.eps.setInitialSpace(self.start_vector)
@@ -186,7 +192,7 @@ class ShiftInvertSolver(ABC):
         w: Complex = np.array([self.eps.getEigenvalue(i) for i in range(converged_count)], complex)
         return (w + self.current_pencil.shift) / self.current_pencil.deflection_ratio**2
 
-    def vectors(self, count: int) -> Complex:
+    def eigenvectors(self, count: int) -> Complex:
         """Eigenvectors of the first `count` eigenvalues of the last `solve`, (unknowns, count)."""
         real, imag = self.A.createVecs()
         X = np.empty((len(self.row_starts) - 1, count), dtype=complex)
@@ -209,7 +215,7 @@ class ShiftInvertSolver(ABC):
         matrices = (
             KRYLOV_SETTINGS.dense_matrices_per_solver * n * n
             if self.is_dense
-            else KRYLOV_SETTINGS.numbers_per_nonzero_entry * len(self.indices)
+            else KRYLOV_SETTINGS.stored_numbers_per_nonzero_entry * len(self.indices)
         )
         return 8 * (matrices + 2 * n * vector_count + 4 * vector_count**2)
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ...arrays import COMPLEX_NAN, Array, Complex
 from ...determinant.exponents import MACHINE_EPSILON
 from ...discretization.elements.quadrature import lobatto_points
-from ...discretization.straight.pencil import factors_to_unit_tip
+from ...discretization.straight.pencil import factors_to_unit_tip_displacement
 from ...discretization.straight.transverse_mesh import AnyMesh
 from ...model.rod import Rod
 from ..backend.solver_pools import destroy_pooled_solvers
@@ -23,7 +23,7 @@ from .status import SpectrumStatus
 class SpectrumRequest:
     """Request for the leading eigenvalues of every rod of a sweep."""
 
-    modes: int
+    mode_count: int
     """Number of leading eigenvalues."""
     accuracy: float
     """Relative accuracy of every eigenvalue, and of every eigenmode if requested."""
@@ -37,13 +37,13 @@ class SpectrumRequest:
 class SpectrumErrorSettings:
     """Settings for the rounding errors of eigenvalues, which are added to the error from the determinant."""
 
-    rounding_in_ulps: float = 6.0
+    rounding_error_in_ulps: float = 6.0
     """Rounding error of an eigenvalue of a uniform rod, divided by the spacing of doubles at |w|: the
     rounding of w itself and of the coefficients of D."""
-    rounding_of_arms_in_ulps: float = 24.0
-    """Like `rounding_in_ulps`, for an arm, whose determinant D is computed with propagators. Every propagator
-    rounds the coefficients of its element, and D may amplify these errors. Among 3960 eigenvalues of random
-    arms, compared with results of 34 digits, the largest error is 1.6 times the stated error."""
+    rounding_error_of_arms_in_ulps: float = 24.0
+    """Like `rounding_error_in_ulps`, for an arm, whose determinant D is computed with propagators. Every
+    propagator rounds the coefficients of its element, and D may amplify these errors. Among 3960 eigenvalues
+    of random arms, compared with results of 34 digits, the largest error is 1.6 times the stated error."""
 
 
 SPECTRUM_ERROR_SETTINGS = SpectrumErrorSettings()
@@ -96,6 +96,7 @@ class FollowedPoints:
 
     w: Complex
     error: Array
+    """Absolute errors of the eigenvalues w, (n, modes), in 1/tau2."""
     unstable_count: NDArray[np.int64]
     is_accepted: NDArray[np.bool_]
 
@@ -108,10 +109,10 @@ def modes_at_lobatto_nodes(
     if vectors is None:
         return None
     solver = problem.solver(mesh)
-    y, theta = solver.displacements(vectors[:, : request.modes], problem.rod)
+    y, theta = solver.displacements(vectors[:, : request.mode_count], problem.rod)
     # Polynomials of the elements are evaluated exactly; interpolation between nodes would lose digits.
     evaluation_matrix = solver.pencil.evaluation_matrix(lobatto_points(request.vector_node_count))
-    tip_factors = factors_to_unit_tip(y, theta)
+    tip_factors = factors_to_unit_tip_displacement(y, theta)
     return np.stack([(evaluation_matrix @ y * tip_factors).T, (evaluation_matrix @ theta * tip_factors).T])
 
 
@@ -120,7 +121,9 @@ def errors_with_rounding(w: Complex, error: Array, rod: Rod) -> Array:
     of equal shape. rod: the rod, or any rod of the path of these eigenvalues."""
     settings = SPECTRUM_ERROR_SETTINGS
     rounding_in_ulps = (
-        settings.rounding_in_ulps if rod.is_uniform_and_linear else settings.rounding_of_arms_in_ulps
+        settings.rounding_error_in_ulps
+        if rod.is_uniform_and_linear
+        else settings.rounding_error_of_arms_in_ulps
     )
     # An exponentially small eigenvalue may underflow to 0; its error is then the smallest number.
     return np.maximum(error + rounding_in_ulps * MACHINE_EPSILON * np.abs(w), np.nextafter(0.0, 1.0))
@@ -139,12 +142,12 @@ def spectrum_or_failure(solve: Callable[[], Spectrum], request: SpectrumRequest)
 
 def failed_spectrum(status: SpectrumStatus, request: SpectrumRequest, message: str) -> Spectrum:
     """The outcome of a failed solve: all eigenvalues, errors and eigenmodes are NaN."""
-    shape = (2, request.modes, request.vector_node_count)
+    shape = (2, request.mode_count, request.vector_node_count)
     vectors = np.full(shape, COMPLEX_NAN) if request.vector_node_count else None
     return Spectrum(
         status=status,
-        eigenvalues=np.full(request.modes, COMPLEX_NAN),
-        error_estimate=np.full(request.modes, np.nan),
+        eigenvalues=np.full(request.mode_count, COMPLEX_NAN),
+        error_estimate=np.full(request.mode_count, np.nan),
         vectors=vectors,
         message=message,
     )

@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 from ...arrays import Array, Complex
 from ...discretization.elements.resolution import RESOLUTION_SETTINGS, Resolution, mesh_accuracy
 from ...discretization.straight.transverse_mesh import AnyMesh
-from ...model.dispersion import end_coefficients, local_wave_numbers, sampled_arm
+from ...model.dispersion import local_coefficients_at_ends, local_wave_numbers, sampled_arm
 from ...model.rod import Rod
 from ..unsolvable import Unsolvable
-from .problem import TransverseProblem, meshes_text, transverse_problem
+from .problem import TransverseProblem, meshes_without_result_text, transverse_problem
 from .spectrum import Spectrum, SpectrumRequest, modes_at_lobatto_nodes, spectrum_or_failure
 from .status import SpectrumStatus
 
@@ -32,14 +32,15 @@ class TwoMeshSettings:
     """Maximum number of meshes after the first; each has a third more unknowns than its predecessor."""
     spare_eigenvalue_count: int = 2
     """Number of eigenvalues requested first on a mesh, in addition to the wanted modes."""
-    max_relative_change_by_doubling: float = 1e-9
+    max_relative_change_by_doubled_request: float = 1e-9
     """The number of requested eigenvalues is doubled until the leading ones change relatively by less."""
-    max_scaled_change_by_doubling: float = 3e-11
+    max_scaled_change_by_doubled_request: float = 3e-11
     """The doubling also ends if the leading eigenvalues change by less than this times (|shift| + F^2). The
-    value is a hundred times `rounding_ratio`, as rounding differs between SLEPc's releases and processors."""
-    mesh_error_factor: float = 3.0
+    value is a hundred times `scaled_rounding_error`, as rounding differs between SLEPc's releases and
+    processors."""
+    mesh_error_safety_factor: float = 3.0
     """Safety factor on the difference between two meshes, which estimates the error on the finer mesh."""
-    rounding_ratio: float = 3e-13
+    scaled_rounding_error: float = 3e-13
     """Rounding error of an eigenvalue w, divided by |w| + |shift| + F^2. F^2 is included because the first
     eigenvalue of a pulled rod is exponentially small compared with F^2."""
     min_unknowns_per_mode: int = 3
@@ -59,7 +60,7 @@ def solve_on_two_meshes(rod: Rod, request: SpectrumRequest) -> Spectrum:
 def _spectrum_or_raise(rod: Rod, request: SpectrumRequest) -> Spectrum:
     """The result of `solve_on_two_meshes`; raises Unsolvable if no mesh gives enough eigenvalues."""
     problem = transverse_problem(rod)
-    modes = request.modes
+    modes = request.mode_count
     mesh_tolerance = (
         mesh_accuracy(request.accuracy, needs_vectors=True) if request.vector_node_count else request.accuracy
     )
@@ -76,7 +77,7 @@ def _spectrum_or_raise(rod: Rod, request: SpectrumRequest) -> Spectrum:
         eigenvalues = _leading_eigenvalues(problem, mesh, modes)
         # Two meshes that are too coarse for a boundary layer may agree on a wrong eigenvalue.
         if is_resolved and len(eigenvalues.w):
-            rounding_scale = _shift_and_squared_force_sum(problem)
+            rounding_scale = _rounding_scale(problem)
             error = _errors_between_meshes(
                 eigenvalues.w, coarser_eigenvalues.w, abs(problem.shift), rounding_scale
             )
@@ -92,11 +93,12 @@ def _spectrum_or_raise(rod: Rod, request: SpectrumRequest) -> Spectrum:
                 smallest_error = largest_error
         coarser_eigenvalues = eigenvalues
     if best_spectrum is None:
-        meshes = meshes_text(1 + TWO_MESH_SETTINGS.max_finer_meshes, problem.finer_mesh(mesh))
+        meshes = meshes_without_result_text(1 + TWO_MESH_SETTINGS.max_finer_meshes, problem.finer_mesh(mesh))
         raise Unsolvable(f"{meshes} resolves the requested modes")
     # If rounding dominates, the error may exceed the difference between the two meshes.
     best_spectrum = replace(
-        best_spectrum, error_estimate=TWO_MESH_SETTINGS.mesh_error_factor * best_spectrum.error_estimate
+        best_spectrum,
+        error_estimate=TWO_MESH_SETTINGS.mesh_error_safety_factor * best_spectrum.error_estimate,
     )
     return replace(best_spectrum, message=_missed_accuracy_text(problem, request, best_spectrum))
 
@@ -106,9 +108,7 @@ def _missed_accuracy_text(problem: TransverseProblem, request: SpectrumRequest, 
     moduli = np.abs(spectrum.eigenvalues)
     relative_errors = spectrum.error_estimate / moduli
     index = int(np.argmax(relative_errors))
-    rounding_error = TWO_MESH_SETTINGS.rounding_ratio * (
-        moduli[index] + _shift_and_squared_force_sum(problem)
-    )
+    rounding_error = TWO_MESH_SETTINGS.scaled_rounding_error * (moduli[index] + _rounding_scale(problem))
     cause = "rounding errors" if rounding_error > request.accuracy * moduli[index] else "the meshes"
     max_error = float(relative_errors[index])
     return (
@@ -117,7 +117,7 @@ def _missed_accuracy_text(problem: TransverseProblem, request: SpectrumRequest, 
     )
 
 
-def _shift_and_squared_force_sum(problem: TransverseProblem) -> float:
+def _rounding_scale(problem: TransverseProblem) -> float:
     """Sum of |shift| and F^2, in 1/tau2: rounding errors of eigenvalues are proportional to this rate."""
     return abs(problem.shift) + problem.rod.F**2
 
@@ -126,7 +126,7 @@ class _MeshEigenvalues(NamedTuple):
     """Eigenvalues w of a mesh, (k,), sorted as in `rodsweep.model`, and their indices in SLEPc's list."""
 
     w: Complex
-    indices: NDArray[np.intp]
+    slepc_indices: NDArray[np.intp]
 
 
 def _leading_eigenvalues(problem: TransverseProblem, mesh: AnyMesh, mode_count: int) -> _MeshEigenvalues:
@@ -142,13 +142,11 @@ def _leading_eigenvalues(problem: TransverseProblem, mesh: AnyMesh, mode_count: 
         order = np.lexsort((-mesh_eigenvalues.imag, -mesh_eigenvalues.real))
         leading_w = mesh_eigenvalues[order[:mode_count]]
         is_complete = len(leading_w) == len(previous_w) == mode_count
-        rounding_change = TWO_MESH_SETTINGS.max_scaled_change_by_doubling * _shift_and_squared_force_sum(
-            problem
-        )
+        rounding_change = TWO_MESH_SETTINGS.max_scaled_change_by_doubled_request * _rounding_scale(problem)
         if is_complete and np.allclose(
             leading_w,
             previous_w,
-            rtol=TWO_MESH_SETTINGS.max_relative_change_by_doubling,
+            rtol=TWO_MESH_SETTINGS.max_relative_change_by_doubled_request,
             atol=rounding_change,
         ):
             return _MeshEigenvalues(mesh_eigenvalues[order], order)
@@ -165,7 +163,7 @@ def _are_waves_represented(rod: Rod, w: Complex, mesh: AnyMesh) -> bool:
     lengths = np.full(2, 1 / mesh.element_count) if isinstance(mesh, Resolution) else mesh.lengths
     _, weights, coefficients = sampled_arm(rod)
     mean_q = local_wave_numbers(w[:, None], rod.F, coefficients) @ weights
-    end_q = local_wave_numbers(w[:, None], rod.F, end_coefficients(rod))
+    end_q = local_wave_numbers(w[:, None], rod.F, local_coefficients_at_ends(rod))
     is_represented = (mean_q <= max_q * mesh.element_count) | (end_q * lengths[[0, -1]] <= max_q).any(axis=1)
     return len(w) > 0 and bool(is_represented.all())
 
@@ -174,7 +172,7 @@ def _errors_between_meshes(w: Complex, coarser_w: Complex, shift: float, roundin
     """Absolute errors of the sorted eigenvalues w, (k,), from the unsorted eigenvalues `coarser_w`, (l,), of
     a coarser mesh.
 
-    shift: modulus of the shift. rounding_scale: result of `_shift_and_squared_force_sum`. Two meshes may
+    shift: modulus of the shift. rounding_scale: result of `_rounding_scale`. Two meshes may
     agree on one eigenvalue by chance. The relative error of an eigenvalue is therefore the largest of three
     differences: of the eigenvalue and of its two neighbours, of which rounding errors are no part. Near a
     double eigenvalue the stated rounding errors are larger than elsewhere."""
@@ -182,18 +180,18 @@ def _errors_between_meshes(w: Complex, coarser_w: Complex, shift: float, roundin
     separations = np.abs(w[:, None] - w) + np.diag(np.full(len(w), np.inf))
     # Close eigenvalues are ill-conditioned: rounding changes the product (v - w1) (v - w2) of two close ones
     # by its error times |w|, and a double one by the root of this.
-    squared_errors = TWO_MESH_SETTINGS.rounding_ratio * (moduli + shift) * moduli
+    squared_errors = TWO_MESH_SETTINGS.scaled_rounding_error * (moduli + shift) * moduli
     crowding_errors = np.minimum(
         squared_errors / separations.min(axis=1, initial=np.inf), np.sqrt(squared_errors)
     )
-    rounding_errors = TWO_MESH_SETTINGS.rounding_ratio * (moduli + rounding_scale) + crowding_errors
+    rounding_errors = TWO_MESH_SETTINGS.scaled_rounding_error * (moduli + rounding_scale) + crowding_errors
     distances = np.abs(w[:, None] - coarser_w).min(axis=1)
     # In a cluster the nearest eigenvalue of the coarser mesh may be a neighbour's, so neighbours count too.
     # The leading eigenvalue of a pulled rod, a rounding error, says nothing about the next one.
     padded_distances = np.pad(np.maximum(distances - rounding_errors, 0) / moduli, 1)
     neighbour_distances = np.maximum(padded_distances[:-2], padded_distances[2:])
     mesh_errors = np.maximum(distances, neighbour_distances * moduli)
-    errors: Array = TWO_MESH_SETTINGS.mesh_error_factor * mesh_errors + rounding_errors
+    errors: Array = TWO_MESH_SETTINGS.mesh_error_safety_factor * mesh_errors + rounding_errors
     return errors
 
 
@@ -206,12 +204,12 @@ def _spectrum_of_mesh(
 ) -> Spectrum:
     """The spectrum of one mesh, with the status from the errors. error: of each found eigenvalue, (k,)."""
     w = eigenvalues.w
-    modes = request.modes
+    modes = request.mode_count
     is_accurate = bool((error[:modes] <= request.accuracy * np.abs(w[:modes])).all())
     vectors = None
     # Eigenvectors of a mesh that is not accepted would be thrown away.
     if request.vector_node_count and is_accurate:
-        vectors = problem.solver(mesh).vectors(len(w))[:, eigenvalues.indices]
+        vectors = problem.solver(mesh).eigenvectors(len(w))[:, eigenvalues.slepc_indices]
     unstable_count = int((w.real > 0).sum())
     decisive_modes = slice(max(modes, unstable_count + 1))  # later eigenvalues decay faster
     is_known = unstable_count < len(w) and not (np.abs(w.real) <= error)[decisive_modes].any()

@@ -12,18 +12,20 @@ from ...arrays import Array
 from ...config.arm.section import ArmConfig
 from ...config.arm.status import CRUSHED, FLUTTER_UNKNOWN, NO_FLUTTER, SLENDER, ArmOutsideModel
 from ...model.arm.arm import SlenderArm
-from ...model.arm.quantities import ARM_SCALES, LOAD_OF_RATIO, SCALE_NAMES
+from ...model.arm.quantities import ARM_SCALES, LOAD_NAME_BY_RELATIVE_LOAD, LOAD_SCALE_NAMES
 from ...model.arm.refusals import CRUSHED_FORCE_RATIO
 from ...model.material.rod_material import DEFAULT_MATERIAL, RodMaterial
-from ...model.parameters import NONLINEAR_PARAMETERS, parameter_names_except
+from ...model.parameters import NONLINEAR_ROD_PARAMETER_NAMES, parameter_names_except
 from .flutter_forces import FlutterForce
 from .points import Points
 
-FlutterSearch = Callable[[SlenderArm, float | None], FlutterForce]
+FlutterForceFinder = Callable[[SlenderArm, float | None], FlutterForce]
 """Function from (arm, taper that replaces the arm's taper or None) to the force of first flutter."""
-ForceArray = NDArray[np.object_]
+FlutterForceArray = NDArray[np.object_]
 """Array of `FlutterForce` objects, (arms, 1, combinations). Combinations are the combinations of values of
 the parameters that replace the arm's parameters."""
+ARM_PARAMETER_NAMES = parameter_names_except("F", NONLINEAR_ROD_PARAMETER_NAMES)
+"""Names of the parameters that follow from the quantities of an arm without its load, except the taper."""
 NO_FORCE = FlutterForce(np.nan)
 """Force (nan) of an arm without load, or to which the rod model does not apply."""
 
@@ -32,7 +34,7 @@ def grid_of_arms(
     arm_config: ArmConfig,
     given_parameters: Mapping[str, Array],
     names: tuple[str, ...],
-    find_force: FlutterSearch,
+    find_force: FlutterForceFinder,
     material: RodMaterial = DEFAULT_MATERIAL,
 ) -> Points:
     """Points of a grid over an arm's quantities, and over the parameters in `given_parameters` that have
@@ -48,20 +50,20 @@ def grid_of_arms(
     loads = arm_config.quantity_axes[arm_config.load_key].array() if arm_config.load_key else np.zeros(1)
     grid = dict(zip(given_parameters, np.meshgrid(*given_parameters.values(), indexing="ij"), strict=True))
     shape = (len(arms), len(loads), next(iter(grid.values())).size if grid else 1)
-    parameter_names = (*parameter_names_except("F", NONLINEAR_PARAMETERS), *arm_config.cone_parameters)
-    table = {name: _quantity_of_arms(arms, methodcaller("parameter", name)) for name in parameter_names}
+    own_names = (*ARM_PARAMETER_NAMES, *arm_config.cone_parameter_names)
+    table = {name: _quantity_of_arms(arms, methodcaller("parameter", name)) for name in own_names}
     units = {name: _quantity_of_arms(arms, attrgetter(name)) for name in ARM_SCALES}
     forces = _F_of_unit_load_on_arms(arm_config, arms, grid.get("taper"), find_force)
     unit_load_F = np.vectorize(attrgetter("F"), otypes=[float])(forces)
     # A copy, because a broadcast array cannot be written.
     codes = np.broadcast_to(_array_along(0, statuses), shape).copy()
-    if arm_config.load_key in LOAD_OF_RATIO:
+    if arm_config.load_key in LOAD_NAME_BY_RELATIVE_LOAD:
         codes = _with_flutter_codes(codes, unit_load_F)
-    if arm_config.load:
+    if arm_config.load_name:
         # An arm that does not flutter has no load relative to flutter.
         table["F"] = np.where(np.isinf(unit_load_F), np.nan, unit_load_F) * _array_along(1, loads)
-        if arm_config.load_key in LOAD_OF_RATIO:
-            units[arm_config.load] = table["F"] * units[SCALE_NAMES[arm_config.load]]
+        if arm_config.load_key in LOAD_NAME_BY_RELATIVE_LOAD:
+            units[arm_config.load_name] = table["F"] * units[LOAD_SCALE_NAMES[arm_config.load_name]]
     table |= {name: _array_along(2, column.ravel()) for name, column in grid.items()}
     materials = tuple(arm.material if arm else DEFAULT_MATERIAL for arm in arms if arm_config.is_nonuniform)
     if "F" in table:
@@ -97,12 +99,17 @@ def _arm_or_status(arm_config: ArmConfig, values: Mapping[str, float]) -> tuple[
 
 
 def _F_of_unit_load_on_arms(
-    arm_config: ArmConfig, arms: Sequence[SlenderArm | None], tapers: Array | None, find_force: FlutterSearch
-) -> ForceArray:
+    arm_config: ArmConfig,
+    arms: Sequence[SlenderArm | None],
+    tapers: Array | None,
+    find_force: FlutterForceFinder,
+) -> FlutterForceArray:
     """Dimensionless force F of a unit load (see `_F_of_unit_load_on_arm`) on each arm. tapers: values, (n,),
     that replace the arms' taper; None for no replacement."""
     given_tapers = (
-        [None] if tapers is None or arm_config.load_key not in LOAD_OF_RATIO else tapers.ravel().tolist()
+        [None]
+        if tapers is None or arm_config.load_key not in LOAD_NAME_BY_RELATIVE_LOAD
+        else tapers.ravel().tolist()
     )
     forces = np.empty((len(arms), 1, len(given_tapers)), object)
     for i, arm in enumerate(arms):
@@ -115,16 +122,16 @@ def _F_of_unit_load_on_arms(
 
 
 def _F_of_unit_load_on_arm(
-    arm_config: ArmConfig, arm: SlenderArm | None, taper: float | None, find_force: FlutterSearch
+    arm_config: ArmConfig, arm: SlenderArm | None, taper: float | None, find_force: FlutterForceFinder
 ) -> FlutterForce:
     """Dimensionless force F of a unit load on an arm; NO_FORCE if `arm` is None or has no load. The unit load
     is 1 Pa or 1 N; for a load relative to flutter, the load at first flutter. taper: replaces the arm's taper
     unless None."""
-    if arm is None or not arm_config.load:
+    if arm is None or not arm_config.load_name:
         return NO_FORCE
-    if arm_config.load_key in LOAD_OF_RATIO:
+    if arm_config.load_key in LOAD_NAME_BY_RELATIVE_LOAD:
         return find_force(arm, taper)
-    return FlutterForce(1.0 / getattr(arm, SCALE_NAMES[arm_config.load]))
+    return FlutterForce(1.0 / getattr(arm, LOAD_SCALE_NAMES[arm_config.load_name]))
 
 
 def _with_flutter_codes(status_codes: Array, flutter_F: Array) -> Array:
@@ -137,7 +144,7 @@ def _with_flutter_codes(status_codes: Array, flutter_F: Array) -> Array:
     return result
 
 
-def _search_failures(status_codes: Array, forces: ForceArray) -> dict[int, str]:
+def _search_failures(status_codes: Array, forces: FlutterForceArray) -> dict[int, str]:
     """Reasons why the search for flutter failed, by flat index of the point. status_codes: status codes,
     (arms, loads, combinations of replaced parameters)."""
     force_of_points = np.broadcast_to(forces, status_codes.shape).ravel()
@@ -151,7 +158,7 @@ def _refuse_grid_without_rods(
     arm_config: ArmConfig,
     given_parameters: Mapping[str, Array],
     has_arm_without_flutter: bool,
-    forces: ForceArray,
+    forces: FlutterForceArray,
 ) -> None:
     """Raises ValueError with the reason why the rod model applies to no point. given_parameters: values,
     (n,), of the parameters that replace the arm's parameters, by name. has_arm_without_flutter: whether some
@@ -160,11 +167,11 @@ def _refuse_grid_without_rods(
     arm_config.arm_of(arm_config.first_values, with_load=True)
     for force in forces.ravel():
         if force.failure:
-            raise ValueError(f"parameters.arm.{arm_config.load}: {force.failure}")
+            raise ValueError(f"parameters.arm.{arm_config.load_name}: {force.failure}")
     if has_arm_without_flutter:
         raise ValueError(
-            f"parameters.arm.{arm_config.load} is relative to flutter, but with the likeliest drag no arm "
-            "flutters; give an absolute load"
+            f"parameters.arm.{arm_config.load_name} is relative to flutter, but with the likeliest drag no "
+            "arm flutters; give an absolute load"
         )
     k1 = float(given_parameters["k1"][0])
     raise ValueError(

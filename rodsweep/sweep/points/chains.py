@@ -17,13 +17,13 @@ from ...arrays import Array
 from ..stop import StopRequest
 from .ranges import IndexRange, IndexSet, indices_along, merged_ranges
 
-Arrays = dict[str, Array]
+ArraysByName = dict[str, Array]
 
 
 class ChainState(Protocol):
     """State of the solver after a point of a chain, from which the solve of the next point starts."""
 
-    def arrays(self) -> Arrays:
+    def arrays(self) -> ArraysByName:
         """The complete state as arrays of any shape, (...,), by name, for a checkpoint."""
 
 
@@ -82,17 +82,18 @@ class SweepChains:
 
     chains: Chains
     solve_from: ChainStep
-    state_from_arrays: Callable[[Arrays], ChainState]
+    state_from_arrays: Callable[[ArraysByName], ChainState]
 
 
 @dataclass(frozen=True, slots=True)
 class ChainSolver:
     """Function from the number of a chain to the outcomes of its missing points; resumes from checkpoints.
-    work: the chains and the functions that solve them. missing: flat indices of the missing points.
-    checkpoints: store of solver states. stop: a stop request ends the chain after the current point."""
+    sweep_chains: the chains and the functions that solve them. missing_points: flat indices of the missing
+    points. checkpoints: store of solver states. stop: a stop request ends the chain after the current
+    point."""
 
-    work: SweepChains
-    missing: IndexSet
+    sweep_chains: SweepChains
+    missing_points: IndexSet
     checkpoints: CheckpointStore
     stop: StopRequest
 
@@ -104,14 +105,14 @@ class ChainSolver:
         The caller stores an outcome before the state of the chain after this point is stored. A kill in
         between costs a second solve of the point; in the reverse order the point could be lost.
         """
-        order = list(map(int, self.work.chains.indices(chain_number)))
+        order = list(map(int, self.sweep_chains.chains.indices(chain_number)))
         first_position, state = self._resume(chain_number, order)
         for index in order[first_position:]:
             if self.stop:
                 return
-            outcome, state = self.work.solve_from(index, state)
+            outcome, state = self.sweep_chains.solve_from(index, state)
             # A point is stored before its checkpoint: a killed run repeats a point rather than losing it.
-            if self.missing[index]:
+            if self.missing_points[index]:
                 yield index, outcome
             if index != order[-1]:
                 self.checkpoints.write(chain_number, index, state)
@@ -127,6 +128,6 @@ class ChainSolver:
             return 0, None
         position = order.index(checkpoint[0]) + 1
         # A missing point before the checkpoint can be reached only from the start of the chain.
-        if self.missing[order[:position]].any():
+        if self.missing_points[order[:position]].any():
             return 0, None
         return position, checkpoint[1]

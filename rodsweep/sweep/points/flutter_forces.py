@@ -14,7 +14,7 @@ from ...config.arm.section import ArmConfig
 from ...config.arm.status import ArmOutsideModel
 from ...errors import InputError
 from ...model.arm.arm import SlenderArm
-from ...model.arm.quantities import LOAD_OF_RATIO
+from ...model.arm.quantities import LOAD_NAME_BY_RELATIVE_LOAD
 from ...model.material.rod_material import RodMaterial
 from ...model.rod import Rod
 
@@ -28,21 +28,21 @@ class FlutterForce:
     failure: str = ""
 
 
-FlutterForces: TypeAlias = Mapping[Rod, FlutterForce]
+FlutterForceByRod: TypeAlias = Mapping[Rod, FlutterForce]
 """Force of first flutter by rod; the rods are without load and move in one plane."""
-ReplacedTapers: TypeAlias = Sequence[float | None]
+ReplacementTapers: TypeAlias = Sequence[float | None]
 """Tapers (tip radius over base radius) that replace an arm's taper; None keeps the arm's own taper."""
-OWN_TAPER: ReplacedTapers = (None,)
+OWN_TAPER: ReplacementTapers = (None,)
 """No replacement: the arm keeps its own taper."""
 
 
 def rods_needing_flutter_force(
-    arm_config: ArmConfig | None, material: RodMaterial | None = None, tapers: ReplacedTapers = OWN_TAPER
+    arm_config: ArmConfig | None, material: RodMaterial | None = None, tapers: ReplacementTapers = OWN_TAPER
 ) -> list[Rod]:
     """The distinct rods whose flutter forces the points of an arm need; empty if the load is not relative to
     flutter. material: constitutive law and profile from the config section `material`, None if the section is
     not given. Raises InputError for an invalid arm."""
-    if arm_config is None or arm_config.load_key not in LOAD_OF_RATIO:
+    if arm_config is None or arm_config.load_key not in LOAD_NAME_BY_RELATIVE_LOAD:
         return []
     from ...verdict.relative_load import rods_by_plane
 
@@ -73,7 +73,10 @@ def flutter_force_of_rod(rod: Rod) -> FlutterForce:
 
 
 def smallest_flutter_force_of_arm(
-    arm: SlenderArm, taper: float | None, flutter_forces: FlutterForces, material: RodMaterial | None = None
+    arm: SlenderArm,
+    taper: float | None,
+    flutter_forces: FlutterForceByRod,
+    material: RodMaterial | None = None,
 ) -> FlutterForce:
     """Force of first flutter of an arm, in k3/L^2 of the arm: the smallest force over the planes of motion.
 

@@ -26,20 +26,20 @@ GROUPS_TESTED_AT_ONCE = 1 << 12
 
 @dataclass(frozen=True, slots=True)
 class GroupResult:
-    """Result of a group of n points solved together. values: every variable of the result file at the points,
-    (n, ...), by name. is_solved: mask of points solved together, (n,); the other points must be solved one by
-    one."""
+    """Result of a group of n points solved together. variable_values: every variable of the result file at
+    the points, (n, ...), by name. is_solved: mask of points solved together, (n,); the other points must be
+    solved one by one."""
 
-    values: dict[str, NDArray]
+    variable_values: dict[str, NDArray]
     is_solved: NDArray[np.bool_]
 
     def part_at(self, indices: NDArray[np.int64]) -> "GroupResult":
         """The part of the result at the positions `indices` in the group, (m,)."""
-        values = {name: column[indices] for name, column in self.values.items()}
+        values = {name: column[indices] for name, column in self.variable_values.items()}
         return GroupResult(values, self.is_solved[indices])
 
 
-SolveGroup = Callable[[NDArray[np.int64]], GroupResult]
+GroupSolveFunction = Callable[[NDArray[np.int64]], GroupResult]
 """Function from the flat indices of the points of a group, (n,), to the result of the group."""
 
 
@@ -72,7 +72,7 @@ class PointGroups:
         return indices_along(self.shape, self.axis, line, positions)
 
     def missing_counts(self, groups: IndexRange, missing: IndexSet) -> NDArray[np.int64]:
-        """Number of points in `missing` of each group in a range of group numbers, (groups,)."""
+        """Number of points in `missing_points` of each group in a range of group numbers, (groups,)."""
         position_of_group, line = np.divmod(np.arange(*groups)[:, None], self.line_count)
         positions = position_of_group * MAX_GROUP_POINTS + np.arange(MAX_GROUP_POINTS)
         index = indices_along(self.shape, self.axis, line, positions)
@@ -92,7 +92,7 @@ class PointGroups:
             ranges += zip(map(int, edges[::2]), map(int, edges[1::2]), strict=True)
         return merged_ranges(ranges)
 
-    def missing_total(self, groups: Sequence[IndexRange], missing: Sequence[IndexRange]) -> int:
+    def missing_point_count(self, groups: Sequence[IndexRange], missing: Sequence[IndexRange]) -> int:
         """Number of missing points in groups. groups: ranges of group numbers. missing: ranges of flat
         indices."""
         missing_points = IndexSet(missing)
@@ -117,12 +117,13 @@ def groups_along_longest_axis(shape: tuple[int, ...], varied_parameters: Sequenc
 class GroupSolver:
     """Function from the number of a group of points to the results of its missing points. groups: all groups
     of the grid. solve_group: solves the points of a group together. solve: solves a point, given its flat
-    index, that could not be solved together with its group. missing: flat indices of the missing points."""
+    index, that could not be solved together with its group. missing_points: flat indices of the missing
+    points."""
 
     groups: PointGroups
-    solve_group: SolveGroup
+    solve_group: GroupSolveFunction
     solve: Callable[[int], Any]
-    missing: IndexSet
+    missing_points: IndexSet
 
     def __call__(self, group_number: int) -> Iterator[tuple[NDArray[np.int64] | int, Any]]:
         """Solves a group of points; yields (flat indices, (m,), `GroupResult`) of all missing points that are
@@ -130,7 +131,7 @@ class GroupSolver:
         points loses no point that was yielded before."""
         indices = self.groups.indices(group_number)
         result = self.solve_group(indices)
-        missing = self.missing[indices]
+        missing = self.missing_points[indices]
         solved_indices = np.flatnonzero(missing & result.is_solved)
         if len(solved_indices):
             yield indices[solved_indices], result.part_at(solved_indices)

@@ -36,7 +36,7 @@ class Points:
     """Whether the points are a grid of parameters, whose axes are `columns`."""
     arm_axes: dict[str, Array] = field(default_factory=dict)
     """Axes of a grid over an arm's quantities by name, in SI units, (n,) each; else empty."""
-    units: dict[str, Array] = field(default_factory=dict)
+    arm_units: dict[str, Array] = field(default_factory=dict)
     """The arm's units of time, force and pressure at every point of a grid over its quantities, (points,)."""
     material: RodMaterial = DEFAULT_MATERIAL
     """Constitutive law and profile of all rods, unless `materials` is given."""
@@ -46,7 +46,7 @@ class Points:
     validity_codes: NDArray[np.int8] | None = None
     """Status code of each point of an arm, (points,), from `rodsweep.config.arm.status`: SLENDER if the rod
     model applies, else the code of the reason why it does not apply. None if every point has a rod."""
-    failures: dict[int, str] = field(default_factory=dict)
+    flutter_search_failures: dict[int, str] = field(default_factory=dict)
     """Reason why the search for flutter failed at a point with a relative load, by flat index."""
 
     @property
@@ -76,7 +76,7 @@ class Points:
         """Values of each parameter by name, (n,) each, as in `columns`, without points that have no rod."""
         if self.validity_codes is None:
             return self.columns_by_name
-        return self.values_of(np.flatnonzero(self.validity_codes == SLENDER))
+        return self.parameter_values_of_points(np.flatnonzero(self.validity_codes == SLENDER))
 
     def is_in_model(self, index: int) -> bool:
         """Whether the point at a flat index has a rod."""
@@ -92,7 +92,7 @@ class Points:
         """Number of points."""
         return math.prod(self.shape)
 
-    def values(self, index: int) -> dict[str, float]:
+    def parameter_values_of_point(self, index: int) -> dict[str, float]:
         """Parameter values of the point at a flat index, by name."""
         values = {}
         for name, column in zip(reversed(self.names), reversed(self.columns), strict=True):
@@ -102,11 +102,13 @@ class Points:
             values[name] = float(column[index_on_axis])
         return {name: values[name] for name in self.names}
 
-    def text(self, index: int) -> str:
+    def parameter_text(self, index: int) -> str:
         """Text with the parameters of the point at a flat index: `F = 40, k1 = 200`."""
-        return ", ".join(f"{name} = {value:.15g}" for name, value in self.values(index).items())
+        return ", ".join(
+            f"{name} = {value:.15g}" for name, value in self.parameter_values_of_point(index).items()
+        )
 
-    def values_of(self, indices: NDArray[np.int64]) -> dict[str, Array]:
+    def parameter_values_of_points(self, indices: NDArray[np.int64]) -> dict[str, Array]:
         """Parameter values, (n,) each, of the points at flat indices, (n,), by name."""
         indices_by_axis = (
             np.unravel_index(indices, self.shape) if self.is_grid else [indices] * len(self.names)
@@ -117,7 +119,11 @@ class Points:
     def rod(self, index: int, **replaced_values: float) -> Rod:
         """Rod of the point at a flat index. replaced_values: values that replace the values of the point. A
         parameter with neither value has the value in NEUTRAL_VALUES. Raises Crushed."""
-        parameters: dict[str, Any] = {**NEUTRAL_VALUES, **self.values(index), **replaced_values}
+        parameters: dict[str, Any] = {
+            **NEUTRAL_VALUES,
+            **self.parameter_values_of_point(index),
+            **replaced_values,
+        }
         return Rod(**parameters, material=self.material_of(index))
 
     @property
@@ -145,9 +151,9 @@ class ParameterLine:
 
     name: str
     """Name of the parameter that varies."""
-    parameters: dict[str, float]
+    other_parameters: dict[str, float]
     """Values of all other parameters, by name."""
-    x: Array
+    values: Array
     """Values of the parameter that varies, (n,)."""
     indices: np.ndarray
     """Flat indices of the points in the sweep, (n,)."""

@@ -32,11 +32,11 @@ from ...solve.cycle.status import CycleStatus
 from ...solve.status import PointStatus
 from ...sweep.points.points import Points
 
-Record = Mapping[str, Any]
+ValuesByVariable = Mapping[str, Any]
 """Variables of a point, or of several points, by name."""
 CACHED_ARM_COUNT = 64
 """Maximum number of arms cached by an `ArmValidity`."""
-UNSUCCESSFUL_STATUSES_AT_REST: dict[str, tuple[str, ...]] = {
+STATUSES_TREATED_AS_REST: dict[str, tuple[str, ...]] = {
     "thresholds": ("accuracy_not_reached", "list_full"),
     "phase_diagram": ("accuracy_not_reached", "special_undecided", "special_full"),
 }
@@ -65,7 +65,7 @@ class ArmMotion:
     """Whether each point may have a motion that the solver did not find, (n,)."""
 
 
-def _motion_of_modes(record: Record) -> ArmMotion:
+def _motion_of_modes(record: ValuesByVariable) -> ArmMotion:
     """Motion of the oscillating mode with the largest growth rate; frequency NaN if no mode oscillates."""
     frequency = np.abs(record["frequency"])
     first_oscillating = np.argmax(frequency > 0, axis=-1, keepdims=True)  # 0 if no mode oscillates
@@ -73,11 +73,11 @@ def _motion_of_modes(record: Record) -> ArmMotion:
     return ArmMotion(np.where(leading > 0, leading, np.nan))
 
 
-def _motion_at_hopf_point(F_name: str) -> Callable[[Record], ArmMotion]:
+def _motion_at_hopf_point_function(F_name: str) -> Callable[[ValuesByVariable], ArmMotion]:
     """Function from a record to the motion at the first Hopf point; frequency and F are NaN without Hopf
     point."""
 
-    def motion(record: Record) -> ArmMotion:
+    def motion(record: ValuesByVariable) -> ArmMotion:
         is_hopf = np.isin(record["crossing_kind"], HOPF_CROSSING_CODES)
         first_hopf_index = np.argmax(is_hopf, axis=-1, keepdims=True)
         exists = is_hopf.any(axis=-1)
@@ -91,20 +91,20 @@ def _motion_at_hopf_point(F_name: str) -> Callable[[Record], ArmMotion]:
     return motion
 
 
-def _motion_of_row(record: Record) -> ArmMotion:
+def _motion_of_row(record: ValuesByVariable) -> ArmMotion:
     """Motion at the first Hopf point of a row. may_be_missed: whether rods of the row may flutter."""
     has_flutter = np.any(np.isin(record["class"], DIAGRAM_CLASSES_WITH_POSSIBLE_FLUTTER), axis=-1)
-    return replace(_motion_at_hopf_point("crossing_at")(record), may_be_missed=has_flutter)
+    return replace(_motion_at_hopf_point_function("crossing_at")(record), may_be_missed=has_flutter)
 
 
-def _motion_at_flutter(record: Record) -> ArmMotion:
+def _motion_at_flutter(record: ValuesByVariable) -> ArmMotion:
     """Motion at the first Hopf point, read from F_hopf, because a full list of crossings may lack this
     point."""
     frequency, F = (np.asarray(record[name], float) for name in ("hopf_frequency", "F_hopf"))
     return ArmMotion(np.abs(frequency), F)
 
 
-def _motion_of_cycle(record: Record) -> ArmMotion:
+def _motion_of_cycle(record: ValuesByVariable) -> ArmMotion:
     """Motion on the limit cycle, or of the leading mode of an arm that becomes straight, with amplitude 0."""
     frequency, amplitude = (np.asarray(record[name], float) for name in ("frequency", "tip_y_max"))
     decays = (record[STATUS_VARIABLE.name] == int(CycleStatus.straight)) & (record["linear_frequency"] > 0)
@@ -112,17 +112,17 @@ def _motion_of_cycle(record: Record) -> ArmMotion:
     return ArmMotion(frequency, None, np.where(np.isfinite(amplitude), amplitude, 0.0), is_cycle=True)
 
 
-def _motions_on_all_branches(record: Record) -> ArmMotion:
+def _motions_on_all_branches(record: ValuesByVariable) -> ArmMotion:
     """Motions on the cycles of all branches."""
     period, F, amplitude = (np.asarray(record[name], float) for name in ("period", "branch_F", "tip_y_max"))
     return ArmMotion(2 * pi / period, F, amplitude, is_cycle=True)
 
 
-MOTION_OF_TASK: dict[str, Callable[[Record], ArmMotion]] = {
+MOTION_OF_TASK: dict[str, Callable[[ValuesByVariable], ArmMotion]] = {
     "spectrum": _motion_of_modes,
     "modes": _motion_of_modes,
     "thresholds": _motion_at_flutter,
-    "criticality": _motion_at_hopf_point("crossing_F"),
+    "criticality": _motion_at_hopf_point_function("crossing_F"),
     "phase_diagram": _motion_of_row,
     "limit_cycle": _motion_of_cycle,
     "branch": _motions_on_all_branches,
@@ -139,16 +139,16 @@ class ArmValidity:
         self.section: ArmConfig = config.parameters.arm
         self.points = points
         self.task = config.task
-        at_rest = UNSUCCESSFUL_STATUSES_AT_REST.get(self.task, ())
+        at_rest = STATUSES_TREATED_AS_REST.get(self.task, ())
         self.searched_statuses = [int(each) for each in statuses if each.succeeded or each.name in at_rest]
         """Values of the statuses at which the solver missed no motion."""
         sections = [axis.size for name, axis in self.section.quantity_axes.items() if name in NON_LOAD_KEYS]
         self.points_per_arm = points.count // int(np.prod(sections)) if points.arm_axes else points.count
         """Number of consecutive points with the same arm."""
-        self.arm_by_number = lru_cache(CACHED_ARM_COUNT)(_arm_of_number(self.section))
+        self.arm_by_number = lru_cache(CACHED_ARM_COUNT)(_arm_by_number_function(self.section))
         """Function from a number to the arm with this number; caches the latest arms."""
 
-    def variables_of_points(self, record: Record, index: int | NDArray[np.int64]) -> dict[str, Any]:
+    def variables_of_points(self, record: ValuesByVariable, index: int | NDArray[np.int64]) -> dict[str, Any]:
         """The VALIDITY_VARIABLES for one point, or for n points of one arm, (n,).
 
         record: variables of the points, (n, ...). index: index of the point, or indices, (n,).
@@ -182,7 +182,7 @@ class ArmValidity:
         F = self._force_scaled_to_arm_stiffness(arm, motion, index)
         base_force = self._force_compressing_base_equally(F, index)
         effects = neglected_effects(arm, rate, base_force, drag=drag, amplitude=motion.amplitude)
-        relevant = [effect for effect in effects if motion.is_cycle or not effect.of_cycles_only]
+        relevant = [effect for effect in effects if motion.is_cycle or not effect.is_of_cycles_only]
         excesses = np.array([effect.value_over_limit for effect in relevant])  # (effects, n, ...)
         validity = worst_validity(effects, of_cycles=motion.is_cycle)
         # The last axis holds all motions of a point.
@@ -234,10 +234,10 @@ class ArmValidity:
         have this parameter. index: index of the point, or indices, (n,)."""
         if name not in self.points.names:
             return None
-        return np.asarray(self.points.values_of(np.asarray(index))[name])
+        return np.asarray(self.points.parameter_values_of_points(np.asarray(index))[name])
 
 
-def _arm_of_number(section: ArmConfig) -> Callable[[int], SlenderArm]:
+def _arm_by_number_function(section: ArmConfig) -> Callable[[int], SlenderArm]:
     """Function from a number to the arm with this number, without load. Arms are numbered in row-major order
     of the axes of the config's section `arm`. The axes are evaluated once, because their evaluation takes
     longer than a point."""

@@ -27,7 +27,7 @@ def boundary_curves(
     from ...solve.changes.diagram.boundaries import boundary_curves_through, seed_of
 
     names = ("crossing_at", "crossing_kind", "crossing_frequency", "crossing_growth_rate")
-    x, kind, frequency, growth_rate = map(view.by_point, names)
+    x, kind, frequency, growth_rate = map(view.flattened_by_point, names)
     seeds = [
         seed_of(
             (float(x[i, j]), float(rows[i])),
@@ -57,7 +57,7 @@ def criticality_along(
     return [
         curve_criticality(plane, curve, accuracy)
         if curve.consists_of_hopf_points
-        else CurveCriticality(np.full(len(curve.values), np.nan), (), 0)
+        else CurveCriticality(np.full(len(curve.parameter_values), np.nan), (), 0)
         for curve in traced.curves
     ]
 
@@ -88,7 +88,7 @@ def generalised_hopf_curves(
     space = BautinProblem(plane.rod, (*plane.axes, plane_axis), all_values, accuracy)
     curves: list[BautinCurve] = []
     points_of_plane = [point for curve in criticalities for point in curve.points]
-    for start in [space.curve_point(point, 2, value_in_plane) for point in points_of_plane]:
+    for start in [space.as_curve_point(point, 2, value_in_plane) for point in points_of_plane]:
         # A curve may return to the plane: its further points need no curve of their own.
         if not any(lies_on_curve(start, curve) for curve in curves):
             curves.append(bautin_curve(space, start))

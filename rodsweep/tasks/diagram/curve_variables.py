@@ -13,12 +13,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...results.file.view import ResultView
-from ...results.layouts.fold_curve_extrema import EXTREMA_UNLOCATED, fold_curve_extremum_variables
+from ...results.layouts.bautin_points import bautin_curve_variables, criticality_variables
+from ...results.layouts.fold_curve_extrema import UNLOCATED_EXTREMA_VARIABLE, fold_curve_extremum_variables
 from ...results.layouts.phase_diagram import (
     CYCLE_SPECIAL_DIMENSION,
     MAX_CYCLE_SPECIAL_POINTS,
-    bautin_curve_variables,
-    criticality_variables,
     curve_variables,
     cycle_curve_variables,
     cycle_variables,
@@ -40,53 +39,52 @@ def fold_curve_extremum_values(
 ) -> list[FilledVariable]:
     """Variables of the extrema of the row parameter along the curves `traced`, located or not; [] if there
     are none. plane: (parameter along a row, parameter that differs between rows)."""
+    points = [(number, p) for number, curve in enumerate(traced.curves, 1) for p in curve.points]
     rows = [
-        (number, point.parameter_value, point.row_value, point.error, point.row_extremum_error)
-        for number, curve in enumerate(traced.curves, 1)
-        for point in curve.points
-        if point.row_extremum_error > 0
+        (number, p.parameter_value, p.row_parameter_value, p.error, p.row_parameter_error_at_extremum)
+        for number, p in points
+        if p.row_parameter_error_at_extremum > 0
     ]
     variables = fold_curve_extremum_variables(*plane).values() if rows else ()
     columns = zip(variables, zip(*rows, strict=True), strict=True)
     filled = [(variable, np.array(column)) for variable, column in columns]
-    points = (point for curve in traced.curves for point in curve.points)
-    unlocated_count = sum(isnan(point.row_extremum_error) for point in points)
-    return filled + ([(EXTREMA_UNLOCATED, np.array(unlocated_count))] if unlocated_count else [])
+    unlocated_count = sum(isnan(p.row_parameter_error_at_extremum) for _, p in points)
+    return filled + ([(UNLOCATED_EXTREMA_VARIABLE, np.array(unlocated_count))] if unlocated_count else [])
 
 
 def boundary_curve_values(
     traced: "TracedCurves[BoundaryCurve]", plane: tuple[str, str], **limit_values: Any
 ) -> list[FilledVariable]:
     """Variables of the boundary curves and of their folds. plane: (parameter along a row, parameter that
-    differs between rows). limit_values: values of the variables on the partial beam limit, by name.
-    """
+    differs between rows). limit_values: values of the variables on the partial beam limit, by name."""
     points = []
     folds = []
     for number, curve in enumerate(traced.curves, 1):
         arrays = np.broadcast_arrays(
-            curve.frequency, curve.growth_rate, curve.values[:, 0], curve.values[:, 1]
+            curve.frequency, curve.growth_rate, curve.parameter_values[:, 0], curve.parameter_values[:, 1]
         )
         for *numbers, reasons in zip(
-            *arrays, _end_reasons(curve.end_reasons, len(curve.values)), strict=True
+            *arrays, _end_reasons(curve.end_reasons, len(curve.parameter_values)), strict=True
         ):
             columns = dict(zip(("frequency", "growth_rate", *plane), numbers, strict=True)) | reasons
             points.append((SimpleNamespace(number=number, kind=curve.consists_of_hopf_points, **columns),))
         folds += [
-            _object_and_point(fold, plane, curve=number, kind=curve.consists_of_hopf_points, of=fold.axis)
+            _point_with_named_values(
+                fold, plane, curve=number, kind=curve.consists_of_hopf_points, of=fold.axis
+            )
             for fold in curve.folds
         ]
     declared = curve_variables(*plane)
-    values = _values_along_dimension(declared, "curve_point", "curve_", points) | _values_along_dimension(
-        declared, "fold", "fold_", folds
-    )
+    values = _values_along_dimension(declared, "curve_point", "curve_", points)
+    values |= _values_along_dimension(declared, "fold", "fold_", folds)
     values |= {
-        "curve_agreement": traced.max_seed_distance_in_rows,
+        "curve_agreement": traced.max_seed_distance_per_row_length,
         "curves_untraced": traced.untraced_seed_count,
     }
     return _variables_with_values(declared, values | limit_values)
 
 
-def criticality_and_bautin_record(
+def criticality_and_bautin_values(
     criticalities: Sequence["CurveCriticality"], plane: tuple[str, str], gamma1: float
 ) -> list[FilledVariable]:
     """Variables of the criticality along each boundary curve, and of the generalised Hopf points.
@@ -98,13 +96,15 @@ def criticality_and_bautin_record(
     for number, curve in enumerate(criticalities, 1):
         for point in curve.points:
             rows.append(
-                _object_and_point(point, plane, curve=number, curve_point=start + point.preceding_index + 1)
+                _point_with_named_values(
+                    point, plane, curve=number, curve_point=start + point.preceding_index + 1
+                )
             )
         start += len(curve.criticality)
     variables = criticality_variables(*plane)
     values = _values_along_dimension(variables, "bautin", "bautin_", rows) | {
         "curve_criticality": np.concatenate([np.empty(0), *(curve.criticality for curve in criticalities)]),
-        "bautin_unlocated": sum(curve.unlocated_count for curve in criticalities),
+        "bautin_unlocated": sum(curve.unlocated_sign_change_count for curve in criticalities),
         "curve_gamma1": gamma1,
     }
     return _variables_with_values(variables, values)
@@ -117,7 +117,7 @@ def bautin_curve_values(
     (parameter along a row, parameter that differs between rows).
     """
     rows = [
-        _object_and_point(point, (*plane, third_parameter), curve=number, **reasons)
+        _point_with_named_values(point, (*plane, third_parameter), curve=number, **reasons)
         for number, curve in enumerate(curves, 1)
         for point, reasons in zip(
             curve.points, _end_reasons(curve.end_reasons, len(curve.points)), strict=True
@@ -139,23 +139,27 @@ def fold_and_torus_curve_values(
     for number, curve in enumerate(traced.curves, 1):
         start, end = ([point] if point else [] for point in curve.hopf_ends)
         points: list[Any] = [*start, *curve.points, *end]
-        for point, reasons in zip(points, _end_reasons(curve.ends, len(points)), strict=True):
-            columns = dict(zip(plane, (point.parameter_value, point.row_value), strict=True)) | reasons
+        for point, reasons in zip(points, _end_reasons(curve.end_reasons, len(points)), strict=True):
+            columns = (
+                dict(zip(plane, (point.parameter_value, point.row_parameter_value), strict=True)) | reasons
+            )
             rows.append((SimpleNamespace(number=number, kind=int(curve.kind), **columns), point))
     variables = cycle_curve_variables(*plane)
     values = _values_along_dimension(variables, "cycle_curve_point", "cycle_curve_", rows)
     values |= {
-        "cycle_curve_agreement": traced.max_seed_distance_in_rows,
+        "cycle_curve_agreement": traced.max_seed_distance_per_row_length,
         "cycle_curves_untraced": traced.untraced_seed_count,
     }
     return _variables_with_values(variables, values)
 
 
-def _object_and_point(point: Any, names: Sequence[str], **extra_values: Any) -> tuple[Any, ...]:
+def _point_with_named_values(point: Any, names: Sequence[str], **extra_values: Any) -> tuple[Any, ...]:
     """Returns (object, point). The attributes of the object are the point's parameter values and errors,
     under `names`, and the values in `extra_values`."""
-    errors = {f"{name}_error": error for name, error in zip(names, point.errors, strict=True)}
-    return SimpleNamespace(**dict(zip(names, point.values, strict=True)), **errors, **extra_values), point
+    errors = {f"{name}_error": error for name, error in zip(names, point.parameter_errors, strict=True)}
+    return SimpleNamespace(
+        **dict(zip(names, point.parameter_values, strict=True)), **errors, **extra_values
+    ), point
 
 
 def _values_along_dimension(
@@ -169,7 +173,7 @@ def _values_along_dimension(
     variables_of_dimension = [
         variable
         for variable in variables.values()
-        if variable.extra == (dimension,) and variable.name.startswith(prefix)
+        if variable.extra_dimensions == (dimension,) and variable.name.startswith(prefix)
     ]
     return value_lists(
         variables_of_dimension, [outcome_values(variables_of_dimension, *row, prefix=prefix) for row in rows]
@@ -193,7 +197,7 @@ def _end_reasons(end_reasons: Sequence[int], point_count: int) -> list[dict[str,
     return reasons
 
 
-def cycles_record(result: "CoexistenceRow", line_parameter: str) -> dict[str, Any]:
+def row_cycle_values(result: "CoexistenceRow", line_parameter: str) -> dict[str, Any]:
     """Variables of the cycles of a row: special points, stable states, time and status.
 
     line_parameter: parameter that varies along the row.
@@ -201,7 +205,7 @@ def cycles_record(result: "CoexistenceRow", line_parameter: str) -> dict[str, An
     variables = [
         variable
         for variable in cycle_variables(line_parameter)
-        if variable.extra == (CYCLE_SPECIAL_DIMENSION,)
+        if variable.extra_dimensions == (CYCLE_SPECIAL_DIMENSION,)
     ]
     attribute_names = {f"cycle_special_{line_parameter}": "parameter_value"}
     rows = [
@@ -214,13 +218,13 @@ def cycles_record(result: "CoexistenceRow", line_parameter: str) -> dict[str, An
     return values | {"seconds": result.seconds, "status": int(result.status)}
 
 
-def unstored_special_count(view: ResultView, finite: np.ndarray) -> int:
+def unstored_special_point_count(view: ResultView, finite: np.ndarray) -> int:
     """Number of special points that are not stored because the list of their row is full; no curve can start
     at these points.
 
     finite: whether the parameter value of each row is finite, (rows,).
     """
-    stored_counts = np.count_nonzero(view.by_point("cycle_special_kind"), axis=1)
+    stored_counts = np.count_nonzero(view.flattened_by_point("cycle_special_kind"), axis=1)
     lacking = view.variables["cycle_special_count"].ravel() - stored_counts
     return int(lacking[finite].clip(min=0).sum())
 

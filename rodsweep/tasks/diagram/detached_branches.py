@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...results.file.view import ResultView
-from ...results.layouts.detached_branches import CURVES_LOST_BEYOND, DETACHED_ROW_VARIABLES_BY_NAME
+from ...results.layouts.detached_branches import DETACHED_ROW_VARIABLES_BY_NAME, LOST_CURVE_ENDS_VARIABLE
 from ...results.layouts.variables import FilledVariable
 from ..protocol import NamedArrays
 
@@ -18,19 +18,19 @@ if TYPE_CHECKING:
 COMPLETE_ROW_STATUS = "ok"
 """Status of the rows on which every branch from a Hopf point is followed to its end, and all special points
 are located; on other rows a special point might be taken for one of another branch."""
-ROW_MESSAGE = "message"
+ROW_MESSAGE_ARRAY_NAME = "message"
 """Name under which the result of a row that was solved again has its message, as bytes."""
 
 
-def row_result(row: "CoexistenceRow", record: Mapping[str, Any]) -> NamedArrays:
+def named_arrays_of_solved_row(row: "CoexistenceRow", record: Mapping[str, Any]) -> NamedArrays:
     """Result of a row that was solved again, as named arrays. record: variables of the row, by name."""
     values = {name: np.asarray(value) for name, value in record.items()}
-    return values | {ROW_MESSAGE: np.frombuffer(row.message.encode(), np.uint8)}
+    return values | {ROW_MESSAGE_ARRAY_NAME: np.frombuffer(row.message.encode(), np.uint8)}
 
 
 def row_message(result: NamedArrays) -> str:
     """Message of a row, from its result."""
-    return result[ROW_MESSAGE].tobytes().decode()
+    return result[ROW_MESSAGE_ARRAY_NAME].tobytes().decode()
 
 
 def special_points_of_rows(
@@ -39,7 +39,7 @@ def special_points_of_rows(
     """Folds and torus points of all rows of the file with a finite parameter value. line_parameter: parameter
     along the rows. rows: parameter value of every row, (rows,).
     """
-    columns = {name: view.by_point(name) for name in _special_point_names(line_parameter)}
+    columns = {name: view.flattened_by_point(name) for name in _special_point_names(line_parameter)}
     return [
         point
         for i in np.flatnonzero(np.isfinite(rows))
@@ -54,20 +54,20 @@ def special_points_of_row(
 ) -> "list[RowSpecialPoint]":
     """Folds and torus points of a row from its variables, by name, (special points,) each. line_parameter:
     parameter along the row. row_index, row_value: index of the row, and value of its parameter."""
-    from ...solve.branch.special.special_curve_tracer import FOLLOWED_KINDS
-    from ...solve.branch.special.special_point import RowSpecialPoint, SpecialKind
+    from ...solve.branch.special.special_curve_tracer import FOLLOWED_KIND_NOUNS
+    from ...solve.branch.special.special_point import RowSpecialPoint, SpecialPointKind
 
     kinds, positions, period, height = (values[name] for name in _special_point_names(line_parameter))
     return [
         RowSpecialPoint(
             row_index=row_index,
-            row_value=row_value,
-            kind=SpecialKind(int(kinds[item])),
+            row_parameter_value=row_value,
+            kind=SpecialPointKind(int(kinds[item])),
             parameter_value=float(positions[item]),
             period=float(period[item]),
             tip_y_max=float(height[item]),
         )
-        for item in np.flatnonzero(np.isin(kinds, tuple(FOLLOWED_KINDS)))
+        for item in np.flatnonzero(np.isin(kinds, tuple(FOLLOWED_KIND_NOUNS)))
     ]
 
 
@@ -82,16 +82,16 @@ def rows_with_branches_across_limits(
     """The rows of `rows` with branches that leave or enter the range `limits`; values of the row parameter by
     index of the row. view: the file with all rows. line_parameter: parameter along the rows."""
     from ...solve.branch.special.special_curves import CURVE_IDENTITY_SETTINGS
-    from ...solve.branch.special.special_point import SpecialKind
+    from ...solve.branch.special.special_point import SpecialPointKind
 
     kinds, positions = (
-        view.by_point(name) for name in ("cycle_special_kind", f"cycle_special_{line_parameter}")
+        view.flattened_by_point(name) for name in ("cycle_special_kind", f"cycle_special_{line_parameter}")
     )
     distances = np.abs(positions[..., None] - limits)
-    is_at_limit = (distances <= CURVE_IDENTITY_SETTINGS.max_row_distance_fraction * np.ptp(limits)).any(
-        axis=-1
-    )
-    is_leaving = ((kinds == SpecialKind.end) & is_at_limit).any(axis=1)
+    is_at_limit = (
+        distances <= CURVE_IDENTITY_SETTINGS.max_distance_from_curve_per_row_length * np.ptp(limits)
+    ).any(axis=-1)
+    is_leaving = ((kinds == SpecialPointKind.end) & is_at_limit).any(axis=1)
     return {row: value for row, value in rows.items() if is_leaving[row]}
 
 
@@ -100,7 +100,7 @@ def rows_changed_when_solved_again(
 ) -> dict[int, NamedArrays]:
     """The rows of `solved_again` that have further branches or another status than in the file. view: the
     file with all rows. solved_again: results of rows, by index."""
-    counts = view.by_point("cycle_special_count")
+    counts = view.flattened_by_point("cycle_special_count")
     statuses = view.variables["status"].ravel()
     return {
         row: values
@@ -109,9 +109,9 @@ def rows_changed_when_solved_again(
     }
 
 
-def curves_lost_beyond_values(lost_end_count: int) -> list[FilledVariable]:
+def lost_curve_end_count_values(lost_end_count: int) -> list[FilledVariable]:
     """Variable with the number `lost_end_count` of ends of curves lost beyond the range; [] for 0."""
-    return [(CURVES_LOST_BEYOND, np.array(lost_end_count))] if lost_end_count else []
+    return [(LOST_CURVE_ENDS_VARIABLE, np.array(lost_end_count))] if lost_end_count else []
 
 
 def detached_branch_values(view: ResultView, changed: Mapping[int, NamedArrays]) -> list[FilledVariable]:
@@ -119,7 +119,7 @@ def detached_branch_values(view: ResultView, changed: Mapping[int, NamedArrays])
     all rows. changed: new results of these rows, by index."""
     if not changed:
         return []
-    stored_counts = view.by_point("cycle_special_count")
+    stored_counts = view.flattened_by_point("cycle_special_count")
     values = (
         [row + 1 for row in changed],
         [int(result["cycle_special_count"]) - int(stored_counts[row]) for row, result in changed.items()],

@@ -8,7 +8,11 @@ needed, so that files can be merged without PETSc.
 import numpy as np
 
 from ...arrays import Complex
-from ...determinant.stability_changes import CoefficientsAlongForce, StabilityChange, onset_between
+from ...determinant.stability_changes import (
+    CoefficientsAlongForce,
+    StabilityChange,
+    oscillation_onset_between,
+)
 from ...discretization.elements.resolution import expected_wave_number, resolution_for
 from ...discretization.straight.dense_eigenproblem import dense_eigenproblem
 from ...discretization.straight.transverse_mesh import pencil_on
@@ -43,7 +47,7 @@ def locate_oscillation_onset(
     low, high = end_forces
     for _ in range(1 + MAX_HALVINGS):
         if not lower_eigenvalues[:2].imag.any():
-            change = onset_between(rods, (low, high), lower_eigenvalues, upper_eigenvalues)
+            change = oscillation_onset_between(rods, (low, high), lower_eigenvalues, upper_eigenvalues)
             if change is not None and _is_double_eigenvalue_leading(rod, change):
                 return change
         middle = (low + high) / 2

@@ -1,5 +1,5 @@
 """Results of a job in memory, without a file: as a `ResultView`, and as variables with attributes.
-`solved_view` also solves jobs without chains and without variables that depend on all points."""
+`solve_job_in_memory` also solves jobs without chains and without variables that depend on all points."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -14,18 +14,19 @@ from threadpoolctl import ThreadpoolController
 from ...results.file.creation import FilePlan
 from ...results.file.provenance import utc_time
 from ...results.file.view import ResultView
-from ...results.layouts.variables import MISSING_STATUS, FilledVariable, dimension_attributes, flag_attributes
+from ...results.layouts.dimensions import dimension_attributes
+from ...results.layouts.variables import MISSING_STATUS, FilledVariable, flag_attributes
 from ...solve.backend.availability import require_solvers
 from ...solve.solve_lock import exclusive_solve
 from ...sweep.points.ranges import Shard
-from .job import Job, plan_of
+from .job import Job, result_file_plan
 
 StoredVariable = tuple[tuple[str, ...], np.ndarray, dict[str, Any]]
 """Variable of a file: (dimensions, values, attributes)."""
 
 
 @exclusive_solve
-def solved_view(job: Job) -> ResultView:
+def solve_job_in_memory(job: Job) -> ResultView:
     """Solves all points of a job; returns the results as a `ResultView`, which `show` and figures read.
 
     The job must have no chains and no variables that depend on all points. Raises EnvironmentIncomplete if
@@ -34,16 +35,17 @@ def solved_view(job: Job) -> ResultView:
     require_solvers()
     start_time = utc_time()
     solver = job.solver()
-    plan = plan_of(job, solver, Shard(), blas_kernels())
+    plan = result_file_plan(job, solver, Shard(), blas_kernels())
     solver.warm_up()
     point_count = job.points.count
     columns = {
-        name: np.repeat(value[None], point_count, axis=0) for name, value in plan.layout.empty_point.items()
+        name: np.repeat(value[None], point_count, axis=0)
+        for name, value in plan.layout.fill_values_of_point.items()
     }
     # One thread, as in the command: threads change the order of sums.
-    with blas_pool().limit(limits=1, user_api="blas"):
+    with blas_thread_controller().limit(limits=1, user_api="blas"):
         for index in range(point_count):
-            record = solver.record(index, solver.solve(index))
+            record = solver.file_values_of_outcome(index, solver.solve(index))
             for name, array in columns.items():
                 array[index] = record[name]
     values = {name: array.reshape(*job.points.shape, *array.shape[1:]) for name, array in columns.items()}
@@ -66,7 +68,7 @@ def view_in_memory(
         {"task": job.config.task, "config_resolved": json.dumps(plan.config)},
         {name: array for name, (_, array, _) in (coordinates | variables).items()},
         plan.layout.parameters,
-        {MISSING_STATUS: "missing", **dict(plan.flags)},
+        {MISSING_STATUS: "missing", **dict(plan.status_flags)},
         journalled_count=0,
         arm_axes=plan.layout.arm_axes,
         typed_units={
@@ -85,14 +87,14 @@ def stored_variables(
     coordinates = _coordinates(plan)
     variables: dict[str, StoredVariable] = {}
     for variable in plan.layout.variables:
-        dimensions = (*plan.dimensions, *variable.extra)
+        dimensions = (*plan.dimensions, *variable.extra_dimensions)
         variables[variable.name] = (dimensions, values[variable.name], variable.attributes)
     for variable, array in sweep_wide:
         data = array.astype(variable.dtype)
-        variables[variable.name] = (variable.extra, data, variable.attributes)
-        for name, length in zip(variable.extra, data.shape, strict=True):
+        variables[variable.name] = (variable.extra_dimensions, data, variable.attributes)
+        for name, length in zip(variable.extra_dimensions, data.shape, strict=True):
             coordinates.setdefault(name, ((name,), np.arange(1, length + 1), dimension_attributes(name)))
-    variables["status"][2].update(flag_attributes(((MISSING_STATUS, "missing"), *plan.flags)))
+    variables["status"][2].update(flag_attributes(((MISSING_STATUS, "missing"), *plan.status_flags)))
     return coordinates, variables
 
 
@@ -106,7 +108,7 @@ def _coordinates(plan: FilePlan) -> dict[str, StoredVariable]:
     for name, column in () if points.arm_axes else points.columns_by_name.items():
         coordinates[name] = ((name if points.is_grid else "point",), column, dimension_attributes(name))
     for variable, values in plan.quantity_variables:
-        coordinates[variable.name] = (variable.extra, values, variable.attributes)
+        coordinates[variable.name] = (variable.extra_dimensions, values, variable.attributes)
     for name, length in plan.layout.extents.items():
         coordinate = plan.coordinates.get(name, np.arange(1, length + 1))
         coordinates[name] = ((name,), coordinate, dimension_attributes(name))
@@ -122,6 +124,6 @@ def blas_kernels() -> str:
 
 
 @cache
-def blas_pool() -> ThreadpoolController:
+def blas_thread_controller() -> ThreadpoolController:
     """Controller of the threads of all loaded BLAS libraries. PETSc must be loaded before the first call."""
     return ThreadpoolController()

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...config import Config, read_config, refusals_with_file
+from ...config import Config, read_config, refusals_naming_file
 from ...config.document.reading import resolved_config, tree_yaml
 from ...errors import InputError
 from ...results.file import provenance
@@ -19,13 +19,13 @@ from ...results.layouts.si_units import load_kind_of
 from ...results.layouts.si_variables import arm_variables, quantities_at_points, si_values
 from ...results.layouts.variables import FilledVariable, Layout
 from ...solve.status import PointStatus
-from ...sweep.points.flutter_forces import FlutterForces
-from ...sweep.points.grid import parameter_grid_size, points_of
+from ...sweep.points.flutter_forces import FlutterForceByRod
 from ...sweep.points.groups import GroupResult
 from ...sweep.points.points import Points
+from ...sweep.points.points_from_config import parameter_grid_size, points_of
 from ...sweep.points.ranges import Shard
 from .. import TASKS
-from ..arm.point_solver import SkippingSolver, solver_with_outcome_cache
+from ..arm.arm_points import SolverSkippingPointsOutsideModel, solver_with_outcome_cache
 from ..arm.validity import ArmValidity
 from ..base_classes import CertifiedTask
 from ..protocol import Solver, Task
@@ -46,19 +46,19 @@ class Job:
     path: Path
     """Path of the config file; for a call in Python, a path with the name of the task."""
     config: Config
-    source: str | dict[str, Any]
+    given_config: str | dict[str, Any]
     """The config as the user wrote it: the text of a YAML file, or the tree of keys of a call in Python."""
     points: Points
     task: Task
-    resolved: dict[str, Any]
+    resolved_config: dict[str, Any]
     """The config as a tree of keys with all defaults."""
     layout: Layout
     """Variables of the results of a point."""
 
     @property
-    def config_text(self) -> str:
+    def given_config_yaml(self) -> str:
         """YAML text of the config as the user wrote it."""
-        return self.source if isinstance(self.source, str) else tree_yaml(self.source)
+        return self.given_config if isinstance(self.given_config, str) else tree_yaml(self.given_config)
 
     @property
     def title(self) -> str:
@@ -72,7 +72,9 @@ class Job:
 
     def point_text(self, index: int) -> str:
         """Text with the parameters of the point at a flat index: `F=40.0, k1=200.0`."""
-        return ", ".join(f"{name}={value!r}" for name, value in self.points.values(index).items())
+        return ", ".join(
+            f"{name}={value!r}" for name, value in self.points.parameter_values_of_point(index).items()
+        )
 
     def solver(self) -> Solver:
         """The solver of the task; for an arm, the results also contain values in SI units and the validity of
@@ -84,15 +86,17 @@ class Job:
         validity_codes = self.points.validity_codes
         if validity_codes is None or not validity_codes.any():
             return cached_solver
-        skipping = SkippingSolver(cached_solver, validity_codes, self.points.failures, self.layout)
+        skipping = SolverSkippingPointsOutsideModel(
+            cached_solver, validity_codes, self.points.flutter_search_failures, self.layout
+        )
         return skipping.solver_of_all_points()
 
     def _with_arm_results(self, solver: Solver) -> Solver:
         """The solver, with values in SI units and the validity of the model added to the results of a
         point."""
-        layout = LAYOUT_MAKERS[self.config.task](self.resolved)
+        layout = LAYOUT_MAKERS[self.config.task](self.resolved_config)
         quantities = quantities_at_points(self.quantity_variables, self.points)
-        is_force = load_kind_of(self.resolved["parameters"]["arm"]) == "force"
+        is_force = load_kind_of(self.resolved_config["parameters"]["arm"]) == "force"
         validity = ArmValidity(self.config, self.points, solver.statuses)
 
         def complete(values: dict[str, Any], index: int | NDArray[np.int64]) -> dict[str, Any]:
@@ -100,14 +104,17 @@ class Job:
             return values | in_si | validity.variables_of_points(values, index)
 
         def together(indices: NDArray[np.int64]) -> GroupResult:
-            assert solver.grouped is not None
-            result = solver.grouped[1](indices)
-            return replace(result, values=complete(result.values, indices))
+            assert solver.groups_and_group_solver is not None
+            result = solver.groups_and_group_solver[1](indices)
+            return replace(result, variable_values=complete(result.variable_values, indices))
 
         return replace(
             solver,
-            record=lambda index, outcome: complete(solver.record(index, outcome), index),
-            grouped=solver.grouped and (solver.grouped[0], together),
+            file_values_of_outcome=lambda index, outcome: complete(
+                solver.file_values_of_outcome(index, outcome), index
+            ),
+            groups_and_group_solver=solver.groups_and_group_solver
+            and (solver.groups_and_group_solver[0], together),
         )
 
 
@@ -122,12 +129,12 @@ def job_of_file(path: Path, overrides: tuple[str, ...]) -> Job:
     overrides: texts KEY=VALUE that override keys of the config.
     """
     config, text = read_config(path, overrides)
-    with refusals_with_file(path):
+    with refusals_naming_file(path):
         return job_of_config(path, config, text)
 
 
 def job_of_config(
-    path: Path, config: Config, source: str | dict[str, Any], flutter: FlutterForces | None = None
+    path: Path, config: Config, source: str | dict[str, Any], flutter: FlutterForceByRod | None = None
 ) -> Job:
     """The job of a config. A file of points is relative to the folder of the config file `path`.
 
@@ -161,11 +168,11 @@ def job_of_config(
         )
     points = replace(points_of(config, path.parent, flutter), material=config.rod_material)
     task = TASKS[config.task](config, points)
-    _refuse_extreme_search(task, points)
+    _refuse_search_beyond_law_limits(task, points)
     return Job(path, config, source, points, task, document, layout)
 
 
-def _refuse_extreme_search(task: Task, points: Points) -> None:
+def _refuse_search_beyond_law_limits(task: Task, points: Points) -> None:
     """Raises InputError if a search compresses or stretches rubber beyond the limits of its law."""
     if not isinstance(task, CertifiedTask) or not task.searched_range_ends():
         return
@@ -183,10 +190,10 @@ def plan_without_solver(config: Config, points: Points) -> FilePlan:
     """Plan of the result file of a config on given points, without attributes and status flags."""
     document = resolved_config(config)
     task = TASKS[config.task](config, replace(points, material=config.rod_material))
-    return _plan(task, document, layout_of(document))
+    return _file_plan_of_task(task, document, layout_of(document))
 
 
-def _plan(task: Task, document: dict[str, Any], layout: Layout) -> FilePlan:
+def _file_plan_of_task(task: Task, document: dict[str, Any], layout: Layout) -> FilePlan:
     return FilePlan(
         points=task.points,
         layout=layout,
@@ -195,7 +202,7 @@ def _plan(task: Task, document: dict[str, Any], layout: Layout) -> FilePlan:
         variables_from_points=task.variables_from_points,
         config=document,
         attributes={},
-        flags=(),
+        status_flags=(),
         chains=task.chains,
         groups=task.groups,
     )
@@ -205,11 +212,13 @@ def plan_in_memory(job: Job, statuses: Sequence[PointStatus]) -> FilePlan:
     """Plan of the results of a job with these statuses, without the attributes of a file."""
     flags = tuple((int(status), status.name) for status in statuses)
     return replace(
-        _plan(job.task, job.resolved, job.layout), quantity_variables=job.quantity_variables, flags=flags
+        _file_plan_of_task(job.task, job.resolved_config, job.layout),
+        quantity_variables=job.quantity_variables,
+        status_flags=flags,
     )
 
 
-def plan_of(job: Job, solver: Solver, shard: Shard, kernels: str) -> FilePlan:
+def result_file_plan(job: Job, solver: Solver, shard: Shard, kernels: str) -> FilePlan:
     """Plan of the result file that a run of the job creates or continues.
 
     shard: part of the points that the run solves.
@@ -228,11 +237,11 @@ def file_attributes(job: Job, statuses: Sequence[PointStatus], kernels: str) -> 
         "title": job.title,
         "task": job.config.task,
         "time_unit": "tau2 = gamma2 L^4/k3",
-        "config": job.config_text,
+        "config": job.given_config_yaml,
         "petsc_options": petsc.user_options_text(),
         "shard": "",
         "status_sentences": "\n".join(f"{status.name}: {status.sentence}" for status in statuses),
         provenance.KERNELS_ATTRIBUTE: kernels,
     }
-    versions = {f"{name}_version": value for name, value in petsc.versions().items()}
+    versions = {f"{name}_version": value for name, value in petsc.library_versions().items()}
     return attributes | job.config.parameters.constant_parameters | versions | provenance.provenance()

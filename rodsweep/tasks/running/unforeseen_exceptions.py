@@ -35,12 +35,12 @@ class FailureReasons:
     """Distinct reasons why points failed, each with the first point that failed for this reason; at most
     MAX_FAILURE_REASONS.
 
-    point_text: function from the flat index of a point to a text with its parameters. examples: text with
-    parameters, status and message, by the reason with all numbers replaced.
+    point_text: function from the flat index of a point to a text with its parameters. example_by_reason: text
+    with parameters, status and message, by the reason with all numbers replaced.
     """
 
     point_text: Callable[[int], str]
-    examples: dict[str, str] = field(default_factory=dict)
+    example_by_reason: dict[str, str] = field(default_factory=dict)
 
     def add(self, index: PointIndexOrIndices, result: Any) -> list[str]:
         """Adds the reason why a point failed; returns a list with this example, or an empty list if the
@@ -51,17 +51,17 @@ class FailureReasons:
         """
         if isinstance(result, GroupResult) or result.status.succeeded:
             return []
-        if len(self.examples) >= MAX_FAILURE_REASONS:
+        if len(self.example_by_reason) >= MAX_FAILURE_REASONS:
             return []
         point = self.point_text(int(index))
         line = " ".join(f"{point}: {result.status.name} {result.message}".split())
-        if failure_kind(line) in self.examples:
+        if failure_kind(line) in self.example_by_reason:
             return []
-        self.examples[failure_kind(line)] = line
+        self.example_by_reason[failure_kind(line)] = line
         return [line]
 
 
-def failure_reasons_of_changed_points(
+def changed_point_failure_reasons(
     result: SweepWideResult, statuses: Sequence[PointStatus], point_text: Callable[[int], str]
 ) -> list[str]:
     """Distinct reasons why points that have changed since they were solved failed. point_text: function from
@@ -71,7 +71,7 @@ def failure_reasons_of_changed_points(
     for index, values in result.changed_points.items():
         status = status_by_value[int(values[STATUS_VARIABLE.name])]
         reasons.add(index, SimpleNamespace(status=status, message=result.messages[index]))
-    return [*reasons.examples.values()]
+    return [*reasons.example_by_reason.values()]
 
 
 RUN_ENDING_EXCEPTIONS = (UserError, OSError)
@@ -80,10 +80,10 @@ MAX_LOGGED_EXCEPTIONS = 1000
 """Maximum number of exceptions that a rank writes into the log; more exceptions would repeat the same bug."""
 FAILED_STATUS = "failed"
 """Status, in every task, of a point with an unforeseen exception in the solver."""
-PointExceptionNote = Callable[[Sequence[int], Exception], None]
+PointExceptionCallback = Callable[[Sequence[int], Exception], None]
 """Function called with the flat indices of the points that were solved together, and the exception of the
 solver."""
-SweepWideExceptionNote = Callable[[str, Exception], None]
+SweepWideExceptionCallback = Callable[[str, Exception], None]
 """Function called with the name of a work item for variables that depend on all points, and the exception of
 the solver."""
 
@@ -98,24 +98,26 @@ class StorableOutcome:
     values: dict[str, Any]
 
 
-def guarded_solver(solver: Solver, layout: Layout, note: PointExceptionNote) -> Solver:
+def guarded_solver(solver: Solver, layout: Layout, note: PointExceptionCallback) -> Solver:
     """A solver that catches unforeseen exceptions, calls `note`, and gives a failed point fill values.
 
     After an exception in a group, each of its points is solved alone. Only points that fail again get fill
     values.
     """
     guard = _GuardedSolver(solver, layout, note)
-    return solver.with_wrapper(guard.outcome, guard.solve_group, record=lambda _, outcome: outcome.values)
+    return solver.with_wrapper(
+        guard.outcome, guard.solve_group, file_values_of_outcome=lambda _, outcome: outcome.values
+    )
 
 
 @dataclass(frozen=True, slots=True)
 class _GuardedSolver:
-    """Implementation of `guarded_solver`. guarded: the solver whose exceptions are caught. layout: variables
-    of a point. note_exception: function called with every exception that is caught."""
+    """Implementation of `guarded_solver`. wrapped_solver: the solver whose exceptions are caught. layout:
+    variables of a point. note_exception: function called with every exception that is caught."""
 
-    guarded: Solver
+    wrapped_solver: Solver
     layout: Layout
-    note_exception: PointExceptionNote
+    note_exception: PointExceptionCallback
 
     def outcome(
         self, index: int, start: State, solve: Callable[[], tuple[Any, State]]
@@ -125,34 +127,37 @@ class _GuardedSolver:
         began = time.perf_counter()
         try:
             outcome, state = solve()
-            record = self.guarded.record(index, outcome)
+            record = self.wrapped_solver.file_values_of_outcome(index, outcome)
             return StorableOutcome(outcome.status, outcome.message, record), state
         except RUN_ENDING_EXCEPTIONS:
             raise
         except Exception as error:
             destroy_pooled_solvers()
             self.note_exception([index], error)
-            return self._failed(error, time.perf_counter() - began), None
+            return self._failed_outcome(error, time.perf_counter() - began), None
 
-    def _failed(self, error: Exception, seconds: float) -> StorableOutcome:
+    def _failed_outcome(self, error: Exception, seconds: float) -> StorableOutcome:
         """Outcome of a failed point, with the fill value of every variable."""
-        status = next(status for status in self.guarded.statuses if status.name == FAILED_STATUS)
+        status = next(status for status in self.wrapped_solver.statuses if status.name == FAILED_STATUS)
         values = {SECONDS_VARIABLE.name: seconds, STATUS_VARIABLE.name: int(status)}
-        return StorableOutcome(status, describe_exception(error), self.layout.empty_point | values)
+        return StorableOutcome(status, describe_exception(error), self.layout.fill_values_of_point | values)
 
     def solve_group(self, indices: NDArray[np.int64]) -> GroupResult:
         """Result of a group of points, at `indices`, (n,). After an unforeseen exception the result has fill
         values, and states of every point that the point must be solved alone."""
-        assert self.guarded.grouped is not None
+        assert self.wrapped_solver.groups_and_group_solver is not None
         try:
-            return self.guarded.grouped[1](indices)
+            return self.wrapped_solver.groups_and_group_solver[1](indices)
         except RUN_ENDING_EXCEPTIONS:
             raise
         except Exception as error:
             destroy_pooled_solvers()
             self.note_exception(list_of(indices), error)
             point_count = len(indices)
-            empty = {name: np.stack([value] * point_count) for name, value in self.layout.empty_point.items()}
+            empty = {
+                name: np.stack([value] * point_count)
+                for name, value in self.layout.fill_values_of_point.items()
+            }
             return GroupResult(empty, np.zeros(point_count, np.bool_))
 
 
@@ -164,7 +169,7 @@ def describe_exception(error: Exception) -> str:
     return f"unforeseen {type(error).__name__}{': ' if message else ''}{message} ({place}), a bug of rodsweep"
 
 
-def log_file(output: Path) -> Path:
+def traceback_log_path(output: Path) -> Path:
     """Path of the log with the tracebacks of failed points, in the folder of the result file `output`."""
     return output.with_name(output.name + ".log")
 
@@ -176,7 +181,7 @@ class TracebackLog:
     def __init__(self, output: Path, rank: int, point_text: Callable[[int], str], is_strict: bool = False):
         """output: the result file. is_strict: whether every exception is raised again after it is logged."""
         self.strict = is_strict
-        self.path = log_file(output)
+        self.path = traceback_log_path(output)
         self.rank = rank
         self.point_text = point_text
         self.count = 0

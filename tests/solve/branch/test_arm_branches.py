@@ -9,7 +9,7 @@ from rodsweep.model.material.laws import LAWS
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
-from rodsweep.solve.branch.bordered.scale import deflection_of
+from rodsweep.solve.branch.bordered.scale import deflection_at_time_zero
 from rodsweep.solve.orbit.orbit import Orbit
 from rodsweep.solve.orbit.symmetry import REFLECTION
 
@@ -32,4 +32,4 @@ def test_the_deflection_of_a_shape_does_not_depend_on_the_mesh(order, names):
     x = form.layout.state_with_stresses({"m3": m3[:-1]})
     orbit = Orbit.from_states(form, REFLECTION, 1.0, np.array([x] * 7), 3)
     exact = 2 * JUMP - 1.5 * JUMP**2 + JUMP**3 / 3 + 0.5 * (1 - JUMP) ** 3 / SOFTER
-    assert deflection_of(orbit) == pytest.approx(exact, rel=1e-13)
+    assert deflection_at_time_zero(orbit) == pytest.approx(exact, rel=1e-13)

@@ -13,13 +13,13 @@ import pytest
 from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
-from rodsweep.solve.branch import branches, region_beyond, regions_beyond
+from rodsweep.solve.branch import branches, region_beyond_range, regions_beyond_range
 from rodsweep.solve.branch.branch_limits import BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
 from rodsweep.solve.branch.coexistence import solve_coexistence, stability_intervals
 from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem
 from rodsweep.solve.branch.special.row_crossing import RowCrossing
-from rodsweep.solve.branch.special.special_point import SpecialKind
+from rodsweep.solve.branch.special.special_point import SpecialPointKind
 from rodsweep.solve.branch.status import BranchStatus, CoexistenceStatus
 from rodsweep.solve.changes.diagram.rows import RowRequest
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
@@ -52,7 +52,7 @@ def within_only(monkeypatch):
     def switch(off):
         monkeypatch.undo()
         if off:
-            monkeypatch.setattr(branches, "regions_beyond", lambda *_: [])
+            monkeypatch.setattr(branches, "regions_beyond_range", lambda *_: [])
 
     return switch
 
@@ -79,7 +79,7 @@ def test_a_branch_that_turns_back_beyond_the_range_comes_back_stable():
     assert found.followed_range == (0.0, pytest.approx(1.5 * 137.56))
     # On the wide range the same cycles lie beyond the fold of one branch.
     (wide, *_) = followed(RUBBER, 50.0, 137.56).curves
-    fold = next(i for i, point in enumerate(wide.special_points) if point.kind == SpecialKind.fold)
+    fold = next(i for i, point in enumerate(wide.special_points) if point.kind == SpecialPointKind.fold)
     after = wide.special_points[fold].index_of_cycle_before + 1
     upper = replace(wide, points=wide.points[after:])
     for force in (100.0, 120.0):
@@ -92,16 +92,16 @@ def test_a_branch_that_turns_back_beyond_the_range_comes_back_stable():
 def test_a_branch_enters_the_range_from_a_fold_beyond_it_without_a_hopf_point():
     """At k1 = 321.7 there is no Hopf point; the fold is on a curve through the fold at k1 = 322.11."""
     request = BranchRequest("F", 88.04, 137.56, ACCURACY, False, 500, 50)
-    (fold,) = solve_branches(RUBBER, request).folds_beyond
+    (fold,) = solve_branches(RUBBER, request).folds_beyond_range
     assert fold.parameter_value == pytest.approx(77.690, abs=2e-3)
     axes = PlaneAxis("F", 50.0, 137.56), PlaneAxis("k1", 321.0, 323.0)
-    problem = SpecialCurveProblem(SpecialKind.fold, *axes, NewtonWorkspace(), -1.0)
+    problem = SpecialCurveProblem(SpecialPointKind.fold, *axes, NewtonWorkspace(), -1.0)
     points, _ = problem.follow_from(fold, RUBBER.k1)
-    row = axes[1].coordinate(321.7)
+    row = axes[1].scaled_coordinate(321.7)
     number = next(i for i, point in enumerate(points) if point.row_coordinate < row)
     one, other = points[number - 1 : number + 1]
     crossing = problem.point_on_row(one, other, row)
-    start = RowCrossing.from_solved_point(0, SpecialKind.fold, crossing, 0.0).special_point
+    start = RowCrossing.from_solved_point(0, SpecialPointKind.fold, crossing, 0.0).special_point
     rod = RUBBER.with_values(k1=321.7)
     assert solve_branches(rod, request).curves == ()
     found = solve_branches(rod, request, starts=[start])
@@ -109,16 +109,16 @@ def test_a_branch_enters_the_range_from_a_fold_beyond_it_without_a_hopf_point():
     assert [kinds(curve) for curve in found.curves] == [["end", "end"]] * 2
     stable = [[interval.stability for interval in stability_intervals(curve)] for curve in found.curves]
     assert sorted(stable) == [[0], [1]]
-    (same,) = found.folds_beyond
+    (same,) = found.folds_beyond_range
     # The branch through a fold that is known starts no other branch, nor does the fold of a known branch.
     again = solve_branches(rod, request, starts=[start, same])
     assert len(again.curves) == 2
     assert len(solve_branches(RUBBER, request, starts=[fold]).curves) == 3
     # On a range that contains the fold it is a point of the branch.
     (wide,) = solve_branches(rod, replace(request, start=70.0), starts=[start]).curves
-    (located,) = [point for point in wide.special_points if point.kind == SpecialKind.fold]
+    (located,) = [point for point in wide.special_points if point.kind == SpecialPointKind.fold]
     assert located.parameter_value == pytest.approx(same.parameter_value, rel=2e-9)
-    assert crossing.parameter == pytest.approx(same.parameter_value, rel=1e-7)
+    assert crossing.branch_parameter == pytest.approx(same.parameter_value, rel=1e-7)
 
 
 @pytest.mark.long
@@ -163,7 +163,7 @@ def test_the_amplitude_just_beyond_a_hopf_point_has_the_error_of_the_normal_form
     end = curve.special_points[0]
     exact = start / hopf_point - 1
     amplitude = exact**0.5 * (0.898059510153 + 0.162248 * exact)
-    assert (end.kind, end.parameter_value) == (SpecialKind.end, start)
+    assert (end.kind, end.parameter_value) == (SpecialPointKind.end, start)
     assert abs(end.tip_y_max / amplitude - 1) <= end.tip_y_max_error <= largest_error
     # The error contains a part of the error of a cycle, which is a fraction of the accuracy at least.
     assert end.period_error < max(1e-7, 1e-2 * accuracy)
@@ -202,14 +202,14 @@ def test_a_branch_that_enters_the_range_by_less_than_the_accuracy_is_found():
     range."""
     rod = Rod(F=0.0, k1=150.0, k2=1e4, gamma3=1e-4)
     whole = next(curve for curve in followed(rod, 75.0, 86.0).curves if "fold" in kinds(curve))
-    fold = next(point for point in whole.special_points if point.kind == SpecialKind.fold)
+    fold = next(point for point in whole.special_points if point.kind == SpecialPointKind.fold)
     widths = {}
     for distance in (6.7e-6, 1e-3):
         found = followed(rod, fold.parameter_value - distance, 86.0)
         (curve,) = found.curves
         assert kinds(curve) == ["end", "fold", "end"]
         assert curve.special_points[1].is_same_as(fold)
-        assert not any(point.is_same_as(fold) for point in found.folds_beyond)
+        assert not any(point.is_same_as(fold) for point in found.folds_beyond_range)
         first, _, last = curve.special_points
         widths[distance] = abs(first.tip_y_max - last.tip_y_max) / distance**0.5
     # Near a fold the two cycles differ by the square root of the distance from it.
@@ -228,7 +228,7 @@ def test_a_branch_that_enters_the_range_by_less_than_any_mesh_resolves_is_a_fail
 @pytest.mark.long
 def test_a_branch_that_is_lost_beyond_the_range_leaves_the_row_undecided():
     request = BranchRequest("F", 88.04, 137.56, ACCURACY, False, 500, 50)
-    (fold,) = solve_branches(RUBBER, request).folds_beyond
+    (fold,) = solve_branches(RUBBER, request).folds_beyond_range
     wrong = replace(fold, parameter_value=fold.parameter_value - 1.0, orbit=None, message="its cycle is lost")
     found = solve_branches(RUBBER.with_values(k1=321.7), request, starts=[wrong])
     assert found.status == BranchStatus.stopped
@@ -294,14 +294,14 @@ def test_branches_enter_a_range_of_a_stiffness_and_of_a_drag():
 
 @pytest.mark.parametrize(
     "limits",
-    [{"min_work_limit": 0.0, "work_ratio": 0.0}, {"max_cycles": 2}],
+    [{"min_work_limit": 0.0, "work_limit_per_work_within_range": 0.0}, {"max_cycles": 2}],
     ids=["limit of work", "limit of cycles"],
 )
 def test_a_limit_beyond_the_range_is_stated(limits, monkeypatch):
     """The branches within the range are complete; `followed_range` says how far the others were followed."""
-    settings = replace(region_beyond.BEYOND_RANGE_SETTINGS, **limits)
-    monkeypatch.setattr(region_beyond, "BEYOND_RANGE_SETTINGS", settings)
-    monkeypatch.setattr(regions_beyond, "BEYOND_RANGE_SETTINGS", settings)
+    settings = replace(region_beyond_range.BEYOND_RANGE_SETTINGS, **limits)
+    monkeypatch.setattr(region_beyond_range, "BEYOND_RANGE_SETTINGS", settings)
+    monkeypatch.setattr(regions_beyond_range, "BEYOND_RANGE_SETTINGS", settings)
     found = followed(RUBBER, 88.04, 137.56)
     assert [kinds(curve) for curve in found.curves] == [["hopf", "end"]] * 2
     low, high = found.followed_range
@@ -313,9 +313,9 @@ def test_a_branch_given_up_on_its_way_to_the_range_is_followed_only_to_its_last_
     """The branch from the Hopf point at F = 49.758 enters the range at 60, unless it is given up before."""
     low, _ = followed(FIG_2C, 60.0, 80.0).followed_range
     assert low == 0.0
-    settings = replace(region_beyond.BEYOND_RANGE_SETTINGS, max_cycles=4)
-    monkeypatch.setattr(region_beyond, "BEYOND_RANGE_SETTINGS", settings)
-    monkeypatch.setattr(regions_beyond, "BEYOND_RANGE_SETTINGS", settings)
+    settings = replace(region_beyond_range.BEYOND_RANGE_SETTINGS, max_cycles=4)
+    monkeypatch.setattr(region_beyond_range, "BEYOND_RANGE_SETTINGS", settings)
+    monkeypatch.setattr(regions_beyond_range, "BEYOND_RANGE_SETTINGS", settings)
     found = followed(FIG_2C, 60.0, 80.0)
     assert found.curves == ()
     low, _ = found.followed_range
@@ -326,7 +326,7 @@ def test_a_failure_beyond_the_range_leaves_the_branches_within(monkeypatch):
     def overflows(*_):
         raise ZeroDivisionError
 
-    monkeypatch.setattr(region_beyond.RegionBeyond, "_follow", overflows)
+    monkeypatch.setattr(region_beyond_range.RegionBeyondRange, "_follow_to_range_entry", overflows)
     found = followed(FIG_2C, 0.0, 150.0)
     assert [kinds(curve) for curve in found.curves] == [["hopf", "end"]]
     assert found.followed_range == (0.0, 150.0)

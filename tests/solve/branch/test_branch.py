@@ -12,22 +12,24 @@ from surveyed import survey_only
 from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.model.rod import Rod
-from rodsweep.solve import seldom_used_kernels
+from rodsweep.solve import seldom_used_functions
 from rodsweep.solve.branch import branch_continuation, branches
 from rodsweep.solve.branch.bordered import matrix
 from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
-from rodsweep.solve.branch.branch_continuation import follow_branch
+from rodsweep.solve.branch.branch_continuation import follow_branch_from_hopf_point
 from rodsweep.solve.branch.branch_limits import BranchLimits, BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
-from rodsweep.solve.branch.special.augmented.fold_and_torus_functions import pair_nearest_unit_circle
+from rodsweep.solve.branch.special.augmented.fold_and_torus_test_functions import (
+    multiplier_pair_nearest_unit_circle,
+)
 from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem
 from rodsweep.solve.branch.special.special_curves import CurveEndReason
-from rodsweep.solve.branch.special.special_point import SpecialKind
+from rodsweep.solve.branch.special.special_point import SpecialPointKind
 from rodsweep.solve.branch.start import first_cycle as start_of_branch
 from rodsweep.solve.branch.start.first_cycle import first_cycle
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
 from rodsweep.solve.branch.status import BranchEndReason, BranchStatus
-from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings
+from rodsweep.solve.changes.thresholds_along_path import find_imaginary_axis_crossings
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.orbit import orbit_mesh
 from rodsweep.solve.orbit.matrix.linearisation import reduced_stage_residual_variations
@@ -57,9 +59,9 @@ def only(curve, kind):
 def first_branch(rod, stop, accuracy=1e-7):
     """The branch from the first Hopf point alone."""
     straight = Rod(F=0.0, k1=rod.k1, k2=rod.k2, gamma3=rod.gamma3)
-    crossing = find_axis_crossings(ParameterPath(straight, "F"), 0.0, stop).thresholds[0]
+    crossing = find_imaginary_axis_crossings(ParameterPath(straight, "F"), 0.0, stop).thresholds[0]
     hopf = hopf_branch_start(ParameterPath(rod, "F"), crossing)
-    return follow_branch(
+    return follow_branch_from_hopf_point(
         0,
         BranchLimits([hopf], (0.0, stop), (BranchEndReason.range_end,) * 2, accuracy, 500, NewtonWorkspace()),
     )
@@ -104,9 +106,9 @@ def test_a_fold_needs_no_compilation_beyond_that_of_the_installation(monkeypatch
         called.append(tuple(map(numba.typeof, arguments)))
         return reduced_stage_residual_variations(*arguments)
 
-    for module in (seldom_used_kernels, matrix):
+    for module in (seldom_used_functions, matrix):
         monkeypatch.setattr(module, "reduced_stage_residual_variations", recorded)
-    seldom_used_kernels.warm_up()
+    seldom_used_functions.warm_up()
     (compiled,) = called
     (curve,) = solve_branches(SHORT, BranchRequest("F", 0.0, 200.0, 1e-4, True, 500, 50)).curves
     assert "fold" in kinds(curve)
@@ -122,7 +124,7 @@ def test_forward_and_backward_give_the_same_cycle():
     assert kinds(forward) == ["hopf", "end"]
     assert kinds(backward) == ["hopf", "fold", "end"]
     for curve in (forward, backward):
-        assert curve.special_points[-1].reason == BranchEndReason.range_end
+        assert curve.special_points[-1].end_reason == BranchEndReason.range_end
         assert curve.points[-1].parameter_value == pytest.approx(100.0, rel=1e-14)
     one, other = forward.points[-1], backward.points[-1]
     for name in ("period", "tip_y_max", "tip_x_min", "tip_x_max"):
@@ -133,7 +135,7 @@ def test_forward_and_backward_give_the_same_cycle():
 @pytest.mark.long
 @pytest.mark.parametrize("rod", [pytest.param(FIG_2C, marks=survey_only), SHORT])
 def test_fold_moves_no_further_than_its_error_on_finer_meshes(rod):
-    rough, fine = (only(solved(rod, 0.0, 200.0, a).curves[0], SpecialKind.fold) for a in (1e-5, 1e-8))
+    rough, fine = (only(solved(rod, 0.0, 200.0, a).curves[0], SpecialPointKind.fold) for a in (1e-5, 1e-8))
     assert abs(rough.parameter_value - fine.parameter_value) <= rough.error + fine.error
     assert max(rough.error, fine.error) <= 1e-9 * fine.parameter_value
     assert rough.period == pytest.approx(fine.period, rel=1e-6)
@@ -157,7 +159,9 @@ def test_first_cycles_have_the_amplitude_that_the_hopf_point_tells(along, rod, e
         assert np.sign(away) == np.sign(a)
         assert first.measures.tip_y_max == pytest.approx(abs(a) * abs(away) ** 0.5, rel=0.02)
     if along == "F":
-        told = [s.amplitude_coefficient for s in found.curves[0].special_points if s.kind == SpecialKind.hopf]
+        told = [
+            s.amplitude_coefficient for s in found.curves[0].special_points if s.kind == SpecialPointKind.hopf
+        ]
         assert told == pytest.approx([0.581140652, 0.236415530], rel=1e-3)  # tests/second_normal_form.py
 
 
@@ -176,7 +180,7 @@ def test_branch_that_leaves_the_model_ends_where_h1_is_0():
     found = solved(Rod(F=0.0, k1=100.0, k2=1e4, gamma3=0.1), 60.0, 120.0)
     (curve, _) = found.curves  # the other branch enters the range from the Hopf point near 42.8
     end = curve.special_points[-1]
-    assert end.kind == SpecialKind.left_the_model
+    assert end.kind == SpecialPointKind.left_the_model
     assert end.parameter_value == pytest.approx(99.14065359, abs=1e-6)
     assert 0 < curve.points[-1].measures.least_stretch < 0.05
     finer = solved(Rod(F=0.0, k1=100.0, k2=1e4, gamma3=0.1), 60.0, 120.0, 1e-9).curves[0].special_points[-1]
@@ -188,7 +192,7 @@ def test_torus_point_lies_where_the_cycle_of_its_own_loses_its_stability():
     rod = Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2)
     curve = first_branch(rod, 207.0, 1e-5)
     assert kinds(curve) == ["hopf", "torus", "end"]
-    torus = only(curve, SpecialKind.torus)
+    torus = only(curve, SpecialPointKind.torus)
     assert torus.error < 1e-9 * torus.parameter_value
     after = torus.index_of_cycle_before + 1
     assert [point.unstable_count for point in curve.points[after - 1 : after + 1]] == [0, 2]
@@ -201,23 +205,31 @@ def test_torus_point_lies_where_the_cycle_of_its_own_loses_its_stability():
         assert 1e-4 < side * (cycle.multiplier - 1) < 2e-3
         assert cycle.measures.tip_y_max == pytest.approx(torus.tip_y_max, rel=2e-3)
     points, end = SpecialCurveProblem(
-        SpecialKind.torus, PlaneAxis("F", 150.0, 220.0), PlaneAxis("k2", 97.0, 103.0), NewtonWorkspace(), -1.0
+        SpecialPointKind.torus,
+        PlaneAxis("F", 150.0, 220.0),
+        PlaneAxis("k2", 97.0, 103.0),
+        NewtonWorkspace(),
+        -1.0,
     ).follow_from(torus, 100.0)
     assert end is CurveEndReason.edge
-    assert points[0].parameter == pytest.approx(torus.parameter_value, abs=points[0].error + torus.error)
+    assert points[0].branch_parameter == pytest.approx(
+        torus.parameter_value, abs=points[0].branch_parameter_error + torus.error
+    )
     for point in points:
-        assert point.error <= 1e-7 * point.parameter
+        assert point.branch_parameter_error <= 1e-7 * point.branch_parameter
         # By the eigenvalues of a matrix of its own, where the curve has the eigenvector of one near by.
-        pair = pair_nearest_unit_circle(BorderedMatrix(point.orbit, point.scale, NewtonWorkspace()))
+        pair = multiplier_pair_nearest_unit_circle(
+            BorderedMatrix(point.orbit, point.scale, NewtonWorkspace())
+        )
         assert abs(pair) == pytest.approx(1.0, abs=1e-7)
 
 
 @pytest.mark.long
 def test_fold_along_the_stretch_stiffness_is_the_fold_along_the_force():
     along_k1 = solved(Rod(k1=np.inf, F=100.0, k2=1e4, gamma3=1e-4), 120.0, 170.0, along="k1")
-    fold = only(along_k1.curves[0], SpecialKind.fold)
+    fold = only(along_k1.curves[0], SpecialPointKind.fold)
     along_F = solved(Rod(F=0.0, k1=fold.parameter_value, k2=1e4, gamma3=1e-4), 50.0, 150.0)
-    same = only(along_F.curves[0], SpecialKind.fold)
+    same = only(along_F.curves[0], SpecialPointKind.fold)
     assert same.parameter_value == pytest.approx(100.0, abs=1e-6)
     assert same.period == pytest.approx(fold.period, rel=1e-6)
 
@@ -237,7 +249,7 @@ def test_branch_along_another_parameter_has_the_cycle_that_the_force_has(along, 
     assert found.status == BranchStatus.ok
     curve = found.curves[0]
     end, point = curve.special_points[-1], curve.points[-1]
-    assert end.reason == BranchEndReason.range_end
+    assert end.end_reason == BranchEndReason.range_end
     request = CycleRequest(1e-7, 0.01, 8, 0, 0, 0, 400, "hopf")
     cycle = solve_cycle(Rod(gamma1=1.0, **values | {along: end.parameter_value}), request)
     assert cycle.status == CycleStatus.cycle
@@ -265,26 +277,26 @@ def test_branch_that_cannot_be_followed_says_where_and_why(monkeypatch):
     solved.cache_clear()
     first, second = found.curves
     assert found.status == BranchStatus.stopped
-    assert first.special_points[-1].kind == SpecialKind.end
-    assert first.special_points[-1].reason == BranchEndReason.no_cycle_found
+    assert first.special_points[-1].kind == SpecialPointKind.end
+    assert first.special_points[-1].end_reason == BranchEndReason.no_cycle_found
     said = "the next cycle is not solved: there is no cycle near on the branch at F = "
     assert f"branch 1: {said}{first.points[-1].parameter_value:.9g}; branch 2: {said}" in found.message
     assert first.points[-1].parameter_value > 75
-    assert second.start_hopf == 1  # the other end is tried by itself
+    assert second.start_hopf_index == 1  # the other end is tried by itself
 
 
 def test_list_that_is_full_says_so():
     found = solved(SHORT, points=8)
     assert found.status == BranchStatus.list_full
     assert sum(len(curve.points) for curve in found.curves) == 8
-    assert found.curves[0].special_points[-1].reason == BranchEndReason.list_full
+    assert found.curves[0].special_points[-1].end_reason == BranchEndReason.list_full
 
 
 def test_search_that_fails_is_a_status(monkeypatch):
     def failing(*_):
         raise Unsolvable("no a-priori bound on the eigenvalues applies to this rod")
 
-    monkeypatch.setattr(branches, "find_axis_crossings", failing)
+    monkeypatch.setattr(branches, "find_imaginary_axis_crossings", failing)
     found = solve_branches(SHORT, BranchRequest("F", 0.0, 200.0, 1e-7, True, 500, 50))
     assert found.status == BranchStatus.failed
     assert found.message == "no a-priori bound on the eigenvalues applies to this rod"
@@ -318,7 +330,7 @@ def test_a_fold_close_to_crushing_is_located_from_both_ends_of_its_branch():
     for start in (0.0, 100.0):  # from the first Hopf point, and from the restabilization
         found = solved(rod, start, stop=0.9998 * rod.k1, accuracy=1e-5)
         assert found.status == BranchStatus.ok
-        folds += [only(curve, SpecialKind.fold) for curve in found.curves]
+        folds += [only(curve, SpecialPointKind.fold) for curve in found.curves]
     one, other = folds
     assert abs(one.parameter_value - other.parameter_value) <= one.error + other.error
     assert max(one.error, other.error) < 1e-7 * rod.k1
@@ -327,7 +339,9 @@ def test_a_fold_close_to_crushing_is_located_from_both_ends_of_its_branch():
 def unmeasured(orbit):
     """A first cycle without measured errors, on a branch that follows its normal form."""
     measures = SimpleNamespace(tip_y_max=float(orbit.form.tip_coordinates(orbit.start_state)[1]))
-    return SimpleNamespace(orbit=orbit, parameter_rate=0.0, cycle=SimpleNamespace(measures=measures))
+    return SimpleNamespace(
+        orbit=orbit, parameter_per_arc_length=0.0, cycle=SimpleNamespace(measures=measures)
+    )
 
 
 def test_a_branch_begins_where_the_mesh_of_a_coarse_accuracy_has_no_cycle(monkeypatch):
@@ -336,12 +350,12 @@ def test_a_branch_begins_where_the_mesh_of_a_coarse_accuracy_has_no_cycle(monkey
     beginning = replace(start_of_branch.BRANCH_START_SETTINGS, first_amplitudes=(smallest,))
     monkeypatch.setattr(start_of_branch, "BRANCH_START_SETTINGS", beginning)
     monkeypatch.setattr(
-        start_of_branch, "first_measured_cycle", lambda first, *others: unmeasured(first.orbit)
+        start_of_branch, "first_cycle_with_measured_errors", lambda first, *others: unmeasured(first.orbit)
     )
     path = ParameterPath(
         Rod(F=159.0, k1=1597.4434592561727, k2=19.205853519589944, gamma3=2.45e-8, gamma1=0.72), "F"
     )
-    (crossing,) = find_axis_crossings(path, 159.0, 161.0, False).thresholds
+    (crossing,) = find_imaginary_axis_crossings(path, 159.0, 161.0, False).thresholds
     orbit = first_cycle(hopf_branch_start(path, crossing), 2.0785686460875202e-05, NewtonWorkspace()).orbit
     assert float(orbit.form.tip_coordinates(orbit.start_state)[1]) == pytest.approx(smallest, rel=1e-3)
 
@@ -351,10 +365,12 @@ def test_a_branch_begins_where_the_mesh_of_a_coarse_accuracy_has_no_cycle(monkey
 def test_branches_whose_cycles_have_multipliers_of_1e20_go_on_to_the_end_of_the_range(start, stop):
     """Their first cycles, and the errors beyond F = 174, were lost in rounding errors of Newton's steps."""
     rod = Rod(F=0.0, k1=251.35, k2=10.5379, gamma3=1.0956e-7, gamma1=0.91638)
-    crossing = find_axis_crossings(ParameterPath(rod, "F"), start, start + 5).thresholds[0]
+    crossing = find_imaginary_axis_crossings(ParameterPath(rod, "F"), start, start + 5).thresholds[0]
     ends = ((0.0, stop), (BranchEndReason.range_end,) * 2, 9.9e-4, 500, NewtonWorkspace())
-    curve = follow_branch(0, BranchLimits([hopf_branch_start(ParameterPath(rod, "F"), crossing)], *ends))
-    assert curve.complete
+    curve = follow_branch_from_hopf_point(
+        0, BranchLimits([hopf_branch_start(ParameterPath(rod, "F"), crossing)], *ends)
+    )
+    assert curve.is_complete
     assert curve.special_points[-1].parameter_value == pytest.approx(stop)
     assert max(point.multiplier for point in curve.points) > 1e20
 
@@ -372,7 +388,7 @@ def test_two_cycles_lie_behind_a_corner_before_the_end_of_the_range():
 
 
 def test_a_branch_that_needs_too_fine_a_mesh_ends_with_the_limits_of_meshes(monkeypatch):
-    smaller = replace(orbit_mesh.ORBIT_MESH_SETTINGS, max_unknowns=45)
+    smaller = replace(orbit_mesh.ORBIT_MESH_SETTINGS, max_unknown_count=45)
     monkeypatch.setattr(orbit_mesh, "ORBIT_MESH_SETTINGS", smaller)
     rod = Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0)
     found = solve_branches(rod, BranchRequest("F", 0.0, 80.0, 1e-6, True, 99, 9))

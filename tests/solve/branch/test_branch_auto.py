@@ -16,17 +16,17 @@ from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.arc_length_step import cycle_at_length, next_cycle
-from rodsweep.solve.branch.branch_mesh_choice import is_measurement_due, solve_on_sufficient_mesh
+from rodsweep.solve.branch.branch_mesh_choice import is_error_measurement_due, solve_on_sufficient_mesh
 from rodsweep.solve.branch.range_end import cycle_at_range_end, range_end_condition
 from rodsweep.solve.branch.special.detection import special_points_between
-from rodsweep.solve.branch.special.special_point import SpecialKind
+from rodsweep.solve.branch.special.special_point import SpecialPointKind
 from rodsweep.solve.branch.start.first_cycle import first_cycle
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
-from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings
+from rodsweep.solve.changes.thresholds_along_path import find_imaginary_axis_crossings
 from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
-from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
+from rodsweep.solve.cycle.hopf_start import hopf_point_below_force, orbit_from_hopf
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
-from rodsweep.solve.orbit.newton import newton
+from rodsweep.solve.orbit.newton import solve_by_newton
 
 CONSTANTS = """NDIM={unknowns}, IPS=2, IRS=0, ILP=1, ISP=2, ISW=1, MXBF=0, JAC=1, IID=2
 ICP=[1, 11], SP=['BP0', 'PD0'], NTST={intervals}, NCOL=4, IAD=3
@@ -52,8 +52,8 @@ def branch_of_auto(program, rod, setting, place):
     order, intervals, step, most = setting
     form = StressForm(rod, uniform_mesh(1, 16))
     memory = NewtonWorkspace()
-    near = refined_cycle(orbit_from_hopf(form, hopf_point_below(rod), memory), 1e-6, memory).orbit
-    first = newton(near.on_mesh(uniform_mesh(1, order), 40, 5), 1e-10, memory).orbit
+    near = refined_cycle(orbit_from_hopf(form, hopf_point_below_force(rod), memory), 1e-6, memory).orbit
+    first = solve_by_newton(near.on_mesh(uniform_mesh(1, order), 40, 5), 1e-10, memory).orbit
     (place / "rod").write_bytes(rod_file(first.form))
     (place / "start").write_bytes(start_file(first, 4 * intervals))
     unknowns = first.form.unknown_count
@@ -69,7 +69,7 @@ def branch_of_auto(program, rod, setting, place):
 def branch_of_this(rod, kind, F):
     """The special point of a kind on the branch from the first Hopf point, and the cycle at F beyond it."""
     straight = Rod(F=0.0, k1=rod.k1, k2=rod.k2, gamma3=rod.gamma3)
-    crossing = find_axis_crossings(ParameterPath(straight, "F"), 0.0, rod.F).thresholds[0]
+    crossing = find_imaginary_axis_crossings(ParameterPath(straight, "F"), 0.0, rod.F).thresholds[0]
     here, special = (
         first_cycle(hopf_branch_start(ParameterPath(straight, "F"), crossing), ACCURACY, NewtonWorkspace()),
         None,
@@ -86,7 +86,9 @@ def branch_of_this(rod, kind, F):
             return special, solve_on_sufficient_mesh(
                 cycle_at_range_end(here, there, edge, ACCURACY), ACCURACY, edge
             )
-        here = solve_on_sufficient_mesh(there, ACCURACY) if is_measurement_due(there, ACCURACY) else there
+        here = (
+            solve_on_sufficient_mesh(there, ACCURACY) if is_error_measurement_due(there, ACCURACY) else there
+        )
 
 
 @pytest.mark.long
@@ -94,7 +96,7 @@ def test_auto_has_the_same_fold_and_the_same_unstable_cycle_beyond(auto, tmp_pat
     rod = Rod(F=85.5, k1=150.0, k2=1e4, gamma3=1e-4)
     lines, multipliers = branch_of_auto(auto, rod, (14, 15, 0.05, 16), tmp_path)
     (place,) = [F for kind, F in lines if kind == FOLD]
-    fold, cycle = branch_of_this(rod, SpecialKind.fold, lines[-1][1])
+    fold, cycle = branch_of_this(rod, SpecialPointKind.fold, lines[-1][1])
     assert fold.parameter_value == pytest.approx(place, rel=1e-8)
     largest = multipliers[np.argmax(np.abs(multipliers))]
     assert largest.real > 1.0004
@@ -106,7 +108,7 @@ def test_auto_has_the_same_torus_point_and_the_same_pair_beyond(auto, tmp_path):
     rod = Rod(F=205.2, k1=1e4, k2=1e2, gamma3=1e-2)
     lines, multipliers = branch_of_auto(auto, rod, (24, 34, 0.1, 4), tmp_path)
     (place,) = [F for kind, F in lines if kind == TORUS]
-    torus, cycle = branch_of_this(rod, SpecialKind.torus, lines[-1][1])
+    torus, cycle = branch_of_this(rod, SpecialPointKind.torus, lines[-1][1])
     assert torus.parameter_value == pytest.approx(place, rel=1e-6)
     pair = multipliers[np.argmax(np.abs(multipliers))]
     assert abs(pair) > 1.005

@@ -5,13 +5,13 @@ import pytest
 from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
-from rodsweep.solve.branch.branch_continuation import follow_branch
+from rodsweep.solve.branch.branch_continuation import follow_branch_from_hopf_point
 from rodsweep.solve.branch.branch_limits import BranchLimits, BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
-from rodsweep.solve.branch.special.special_point import SpecialKind
+from rodsweep.solve.branch.special.special_point import SpecialPointKind
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
 from rodsweep.solve.branch.status import BranchEndReason, BranchStatus
-from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings
+from rodsweep.solve.changes.thresholds_along_path import find_imaginary_axis_crossings
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 
 FOLDED = Rod(F=0.0, k1=175.0, k2=1e4, gamma3=1e-4)
@@ -24,7 +24,7 @@ def branches_to(stop, rod=FOLDED):
 @pytest.fixture(scope="module")
 def fold():
     (curve,) = branches_to(150.0).curves
-    (found,) = (one for one in curve.special_points if one.kind == SpecialKind.fold)
+    (found,) = (one for one in curve.special_points if one.kind == SpecialPointKind.fold)
     return found
 
 
@@ -35,14 +35,14 @@ def test_branch_ends_before_a_fold_beyond_the_range(fold, share):
     assert found.status == BranchStatus.ok
     first = found.curves[0]
     assert [one.kind.name for one in first.special_points] == ["hopf", "end"]
-    assert first.special_points[-1].reason == BranchEndReason.range_end
+    assert first.special_points[-1].end_reason == BranchEndReason.range_end
     assert first.special_points[-1].parameter_value == pytest.approx(stop, rel=1e-9)
     assert max(point.parameter_value for point in first.points) <= stop * (1 + 1e-9)
 
 
 def test_branch_passes_a_fold_within_the_range(fold):
     (curve, *_) = branches_to(fold.parameter_value * (1 + 1e-4)).curves
-    (same,) = (one for one in curve.special_points if one.kind == SpecialKind.fold)
+    (same,) = (one for one in curve.special_points if one.kind == SpecialPointKind.fold)
     assert same.parameter_value == pytest.approx(fold.parameter_value, abs=fold.error + same.error)
 
 
@@ -50,12 +50,12 @@ def test_branch_passes_a_fold_within_the_range(fold):
 def test_a_range_that_starts_beside_a_hopf_point_has_its_branch(distance):
     """The relative distance of the start above (+) or below (-) the Hopf point is far below the accuracy."""
     rod = Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4)
-    (hopf,) = find_axis_crossings(ParameterPath(rod, "F"), 0.0, 40.0).thresholds
+    (hopf,) = find_imaginary_axis_crossings(ParameterPath(rod, "F"), 0.0, 40.0).thresholds
     start = hopf.value * (1 + distance)
     found = solve_branches(rod, BranchRequest("F", start, 40.0, 1e-5, True, 100, 10))
     assert found.status == BranchStatus.ok, found.message
     (curve,) = found.curves
-    kinds = [SpecialKind.end if distance > 0 else SpecialKind.hopf, SpecialKind.end]
+    kinds = [SpecialPointKind.end if distance > 0 else SpecialPointKind.hopf, SpecialPointKind.end]
     assert [point.kind for point in curve.special_points] == kinds
     begin = hopf.value if distance <= 0 else start
     assert curve.special_points[0].parameter_value == pytest.approx(begin, rel=1e-13)
@@ -66,7 +66,7 @@ def test_the_period_is_accurate_where_the_amplitude_is_steep(distance):
     """Near its Hopf point a mesh displaces this point: y at a force changes by far more than the accuracy,
     the period does not."""
     rod = Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4)
-    (hopf,) = find_axis_crossings(ParameterPath(rod, "F"), 0.0, 40.0).thresholds
+    (hopf,) = find_imaginary_axis_crossings(ParameterPath(rod, "F"), 0.0, 40.0).thresholds
     start = hopf.value * (1 + distance)
     ends = []
     for accuracy in (1e-9, 1e-5):
@@ -90,7 +90,7 @@ def test_the_normal_form_and_cycles_beside_the_hopf_point_give_the_cycle_at_an_e
 def test_cycles_on_another_mesh_show_the_deviation_from_the_normal_form_at_an_end():
     """Before the last cycle the mesh changes: on its mesh alone the largest y had an error of 3e-5."""
     rod = Rod(F=0.0, k1=295.8168, k2=177.39654, gamma3=0.02556)
-    (hopf, *_) = find_axis_crossings(ParameterPath(rod, "F"), 0.0, 60.0).thresholds
+    (hopf, *_) = find_imaginary_axis_crossings(ParameterPath(rod, "F"), 0.0, 60.0).thresholds
     start = hopf.value * (1 + 1.3e-5)
     exact, end = (
         solve_branches(rod, BranchRequest("F", start, 1.06 * start, a, False, 100, 10))
@@ -107,7 +107,7 @@ def test_the_normal_form_gives_the_cycle_at_an_end_next_to_the_hopf_point(distan
     """Its errors fall with the distance: the cycles before the end show them, free of the errors of a mesh,
     which grow towards the Hopf point."""
     rod = Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4)
-    (hopf,) = find_axis_crossings(ParameterPath(rod, "F"), 0.0, 40.0).thresholds
+    (hopf,) = find_imaginary_axis_crossings(ParameterPath(rod, "F"), 0.0, 40.0).thresholds
     start = hopf.value * (1 + distance)
     exact, end = (
         solve_branches(rod, BranchRequest("F", start, 40.0, a, True, 100, 10)).curves[0].special_points[0]
@@ -127,7 +127,7 @@ def test_a_branch_passes_the_drag_below_which_omega_is_an_unknown():
     whole = solve_branches(rod, BranchRequest("taper", 0.25, 0.45, 1e-5, True, 100, 10))
     assert whole.status == BranchStatus.ok
     (curve,) = whole.curves
-    assert curve.special_points[-1].reason == BranchEndReason.range_end
+    assert curve.special_points[-1].end_reason == BranchEndReason.range_end
     assert min(point.parameter_value for point in curve.points) == pytest.approx(0.25, rel=1e-9)
 
 
@@ -139,21 +139,21 @@ def test_a_branch_along_the_taper_ends_where_the_force_crushes_the_tip():
     )
     assert found.status == BranchStatus.ok
     end = found.curves[0].special_points[-1]
-    assert (end.kind, end.reason) == (SpecialKind.end, BranchEndReason.crushed)
+    assert (end.kind, end.end_reason) == (SpecialPointKind.end, BranchEndReason.crushed)
     assert end.parameter_value == pytest.approx((0.1 / (1 - 1e-4)) ** 0.5, rel=1e-6)
 
 
 @pytest.mark.long
 def test_cycles_are_the_same_whether_omega_is_an_unknown_or_eliminated():
     path = ParameterPath(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.33), "taper")
-    (crossing,) = find_axis_crossings(path, 0.33, 0.45).thresholds
+    (crossing,) = find_imaginary_axis_crossings(path, 0.33, 0.45).thresholds
     ends = []
     for is_omega_always_unknown in (False, True):
         hopf = hopf_branch_start(path, crossing, is_omega_always_unknown)
         reasons = (BranchEndReason.range_end,) * 2
         limits = BranchLimits([hopf], (0.33, 0.45), reasons, 1e-6, 100, NewtonWorkspace())
-        last = follow_branch(0, limits).special_points[-1]
-        assert last.reason == BranchEndReason.range_end
+        last = follow_branch_from_hopf_point(0, limits).special_points[-1]
+        assert last.end_reason == BranchEndReason.range_end
         ends.append(last)
     one, other = ends
     assert abs(one.period - other.period) <= one.period_error + other.period_error < 1e-6
@@ -171,7 +171,7 @@ def test_a_branch_along_a_stiffness_ends_almost_at_infinity(stop):
         assert found.status == BranchStatus.ok
         (curve,) = found.curves
         ends.append(curve.special_points[-1])
-        assert ends[-1].reason == BranchEndReason.range_end
+        assert ends[-1].end_reason == BranchEndReason.range_end
         assert curve.points[-1].parameter_value == pytest.approx(end, rel=1e-12)
     # Linear in 1/k1: from 1e5 to infinity y changes by 1e-3, so that squares are 1e-6.
     y = [end.tip_y_max for end in ends]
@@ -196,7 +196,7 @@ def test_a_branch_along_the_rotational_drag_ends_at_zero():
         found = solve_branches(rod, BranchRequest("gamma3", 0.0, 5.3, accuracy, False, 100, 10))
         assert found.status == BranchStatus.ok
         (curve,) = found.curves
-        assert curve.special_points[-1].reason == BranchEndReason.range_end
+        assert curve.special_points[-1].end_reason == BranchEndReason.range_end
         assert curve.points[-1].parameter_value == 0.0
         ends.append(curve.special_points[-1])
     rough, fine = ends

@@ -11,13 +11,13 @@ from test_paper import stated
 import rodsweep as rs
 from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.model.rod import Rod
-from rodsweep.post.branch_curves import StoredBranch, StoredSpecialPoint
+from rodsweep.post.stored_branches import StoredBranch, StoredSpecialPoint
 from rodsweep.post.summary.branch import _ends_phrase
 from rodsweep.solve.branch import branch_continuation
 from rodsweep.solve.branch.arc_length_step import next_cycle
 from rodsweep.solve.branch.branch_continuation import (
     follow_asymmetric_branch,
-    follow_branch,
+    follow_branch_from_hopf_point,
     follow_from_cycle,
 )
 from rodsweep.solve.branch.branch_curve import BranchCurve
@@ -26,17 +26,17 @@ from rodsweep.solve.branch.branch_mesh_choice import solve_on_sufficient_mesh
 from rodsweep.solve.branch.branches import BranchesOfRod
 from rodsweep.solve.branch.special import locating
 from rodsweep.solve.branch.special.detection import special_kinds_between
-from rodsweep.solve.branch.special.special_point import SPECIAL_POINT_SETTINGS, SpecialKind
+from rodsweep.solve.branch.special.special_point import SPECIAL_POINT_SETTINGS, SpecialPointKind
 from rodsweep.solve.branch.start.first_asymmetric_cycle import first_asymmetric_cycle
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
 from rodsweep.solve.branch.status import BranchEndReason, BranchStatus
 from rodsweep.solve.branch.symmetry_breaking import (
-    asymmetry,
+    bending_moment_asymmetry,
+    ends_within_extrapolation_tolerances,
     extended_to_whole_period,
-    is_extrapolated_to,
     symmetry_breakings_in,
 )
-from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings
+from rodsweep.solve.changes.thresholds_along_path import find_imaginary_axis_crossings
 from rodsweep.solve.orbit.matrix.right_sides import write_rates_of_state
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CycleMotion, measures_of
@@ -52,7 +52,7 @@ def limits():
     """The first Hopf point of a rod that is soft in shear, whose stable cycles lose their symmetry."""
     straight = Rod(F=0.0, k1=30.0, k2=0.5, gamma3=0.1)
     path = ParameterPath(straight, "F")
-    hopf = hopf_branch_start(path, find_axis_crossings(path, 0.0, 5.0).thresholds[0])
+    hopf = hopf_branch_start(path, find_imaginary_axis_crossings(path, 0.0, 5.0).thresholds[0])
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(locating, "SPECIAL_POINT_SETTINGS", replace(SPECIAL_POINT_SETTINGS, accuracy=1e-5))
         yield BranchLimits(
@@ -62,7 +62,7 @@ def limits():
 
 @pytest.fixture(scope="module")
 def symmetric(limits):
-    return follow_branch(0, limits)
+    return follow_branch_from_hopf_point(0, limits)
 
 
 @pytest.fixture(scope="module")
@@ -96,7 +96,7 @@ def test_stable_cycles_lose_their_symmetry_and_those_without_it_turn_at_a_fold(s
     assert abs(fold.parameter_value / turns_at - 1) < 1e-5
     assert max(born.error, fold.error) < 1e-3
     assert end.parameter_value == pytest.approx(STOP, rel=1e-14)
-    assert end.reason == BranchEndReason.range_end
+    assert end.end_reason == BranchEndReason.range_end
     turn = symmetric.special_points[1].index_of_cycle_before + 1
     assert {point.unstable_count for point in symmetric.points[:turn]} - {-1} == {0}
     assert {point.unstable_count for point in symmetric.points[turn:]} - {-1} == {1}
@@ -138,7 +138,7 @@ def test_a_cycle_without_symmetry_closes_when_another_integrator_marches_it(know
 
     def rate(_, x):
         write_rates_of_state(x, F, V, G, p)
-        return F / p.mass
+        return F / p.mass_diagonal
 
     times = orbit.period * np.array([0.5, 1.0])
     size = np.abs(orbit.all_states).max()
@@ -174,9 +174,9 @@ def test_followed_back_the_branch_ends_where_it_was_born(known):
     for _ in range(2):
         here = next_cycle(here, ROUGH)
     curve = follow_from_cycle(
-        BranchCurve(start_hopf=-1), turned_back(solve_on_sufficient_mesh(here, ROUGH)), known
+        BranchCurve(start_hopf_index=-1), turned_back(solve_on_sufficient_mesh(here, ROUGH)), known
     )
-    assert curve.complete
+    assert curve.is_complete
     assert curve.end_breaking is known.breakings[0]
     assert kinds(curve) == ["symmetry_breaking"]
 
@@ -190,14 +190,16 @@ def test_a_symmetric_orbit_over_its_whole_period_is_the_same_motion(known):
         np.abs(whole.states_at_time_fractions(times / 2) - orbit.states_at_time_fractions(times)).max()
         < 1e-4 * np.abs(orbit.all_states).max()
     )
-    assert np.abs(asymmetry(whole)).max() < 1e-5 * np.abs(orbit.start_state).max()
+    assert np.abs(bending_moment_asymmetry(whole)).max() < 1e-5 * np.abs(orbit.start_state).max()
 
 
 def test_a_known_breaking_that_lies_elsewhere_is_not_taken_for_the_end(known):
     here, _ = first_asymmetric_cycle(known.breakings[0], "F", ROUGH, known.workspace)
-    curve = follow_from_cycle(BranchCurve(start_hopf=-1), turned_back(here), replace(known, breakings=[]))
-    assert not curve.complete
-    assert curve.special_points[-1].reason == BranchEndReason.no_cycle_found
+    curve = follow_from_cycle(
+        BranchCurve(start_hopf_index=-1), turned_back(here), replace(known, breakings=[])
+    )
+    assert not curve.is_complete
+    assert curve.special_points[-1].end_reason == BranchEndReason.no_cycle_found
     assert "no symmetry breaking is known there" in curve.special_points[-1].message
 
 
@@ -205,20 +207,20 @@ def test_a_known_breaking_that_lies_elsewhere_is_not_taken_for_the_end(known):
 def test_a_multiplier_that_passes_minus_one_is_told_by_the_symmetry(has, kind):
     here, there = (
         SimpleNamespace(
-            parameter_rate=1.0,
-            multipliers_over_solved_part=np.array([h, 0.1, 0.2j, -0.2j]),
+            parameter_per_arc_length=1.0,
+            multipliers_over_solved_time_interval=np.array([h, 0.1, 0.2j, -0.2j]),
             orbit=SimpleNamespace(is_symmetric=has),
         )
         for h in (-0.9, -1.1)
     )
-    assert special_kinds_between(here, there) == ([SpecialKind[kind]], True)
+    assert special_kinds_between(here, there) == ([SpecialPointKind[kind]], True)
 
 
 def test_errors_within_the_accuracy_do_not_keep_a_branch_from_its_end():
     """The period at a Hopf point had a tolerance of 1e-3 at any accuracy."""
     end, with_errors = (40.0, 0.04), (40.2, 0.0402)
-    assert is_extrapolated_to(with_errors, end, end, accuracy=1e-2)
-    assert not is_extrapolated_to(with_errors, end, end, accuracy=1e-4)
+    assert ends_within_extrapolation_tolerances(with_errors, end, end, accuracy=1e-2)
+    assert not ends_within_extrapolation_tolerances(with_errors, end, end, accuracy=1e-4)
 
 
 def test_the_file_says_which_branches_meet(symmetric, asymmetric):

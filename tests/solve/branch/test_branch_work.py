@@ -5,16 +5,16 @@ import pytest
 from surveyed import survey_only
 
 from rodsweep.model.rod import Rod
-from rodsweep.solve.branch.branch_errors import BranchCalibration
-from rodsweep.solve.branch.branch_limits import WORK_UNIT, BranchRequest
+from rodsweep.solve.branch.branch_errors import BranchErrorCalibration
+from rodsweep.solve.branch.branch_limits import MULTIPLICATIONS_PER_WORK_UNIT, BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
 from rodsweep.solve.branch.multiplier_sensitivity import MultiplierSensitivity
 from rodsweep.solve.branch.special import locating
-from rodsweep.solve.branch.special.augmented.fold_and_torus_functions import correct_until_converged
-from rodsweep.solve.branch.special.special_point import SpecialKind
-from rodsweep.solve.branch.special.special_point_errors import first_mesh
+from rodsweep.solve.branch.special.augmented.fold_and_torus_test_functions import correct_until_converged
+from rodsweep.solve.branch.special.special_point import SpecialPointKind
+from rodsweep.solve.branch.special.special_point_errors import first_mesh_for_special_point
 from rodsweep.solve.branch.status import BranchEndReason, BranchStatus
-from rodsweep.solve.cycle.accuracy.calibration import ERROR_COUNT, Calibration
+from rodsweep.solve.cycle.accuracy.calibration import ERROR_COUNT, MeshErrorCalibration
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.orbit_mesh import OrbitMesh
 from rodsweep.solve.unsolvable import Unsolvable
@@ -33,7 +33,7 @@ def test_branch_ends_where_its_work_is_used_up():
     part = branches_of(ROD, 60.0, work=0.2)
     assert (whole.status, part.status) == (BranchStatus.ok, BranchStatus.stopped)
     (curve,) = part.curves
-    assert curve.special_points[-1].reason == BranchEndReason.list_full
+    assert curve.special_points[-1].end_reason == BranchEndReason.list_full
     assert "`work`" in part.message
     known = [point.parameter_value for point in whole.curves[0].points]
     assert 1 <= len(curve.points) < len(known)
@@ -52,7 +52,7 @@ def test_rod_after_a_limited_rod_has_its_own_work():
 def test_branch_without_work_for_its_first_cycle_says_so():
     (curve,) = branches_of(ROD, 60.0, work=1e-6).curves
     assert not curve.points
-    assert curve.special_points[-1].reason == BranchEndReason.list_full
+    assert curve.special_points[-1].end_reason == BranchEndReason.list_full
 
 
 @pytest.mark.long
@@ -80,13 +80,13 @@ def test_special_point_has_its_error_on_the_meshes_that_the_work_allows(monkeypa
 
 
 def torus_of(found):
-    (torus,) = (one for one in found.curves[0].special_points if one.kind == SpecialKind.torus)
+    (torus,) = (one for one in found.curves[0].special_points if one.kind == SpecialPointKind.torus)
     return torus
 
 
 def test_further_stages_replace_time_intervals_on_the_first_mesh_of_a_special_point():
     """The errors of a cone of taper 0.19: with four stages 114 intervals are needed, with five about 50."""
-    known = Calibration(
+    known = MeshErrorCalibration(
         OrbitMesh((0.0, 0.5, 1.0), 20, 38, 4),
         np.full((2, ERROR_COUNT), 1e-8),
         np.full(ERROR_COUNT, 1.0),
@@ -94,15 +94,19 @@ def test_further_stages_replace_time_intervals_on_the_first_mesh_of_a_special_po
         np.array([1e-4, 1e-4, 1.0]),
         0.0,
     )
-    branch = BranchCalibration(known, np.full(2, 1e-8), 1.0, 1.0, MultiplierSensitivity(1.0, 1.0))
-    mesh = first_mesh(branch, 1e-9)
+    branch = BranchErrorCalibration(known, np.full(2, 1e-8), 1.0, 1.0, MultiplierSensitivity(1.0, 1.0))
+    mesh = first_mesh_for_special_point(branch, 1e-9)
     assert mesh.stage_count == 5
     assert mesh.interval_count < 2 * known.mesh.interval_count
     assert branch.cheapest_mesh_for_parameter(2e-10).interval_count > 2 * known.mesh.interval_count
 
 
 def test_unit_of_work_is_the_documented_number_of_multiplications():
-    assert BranchRequest("F", 0.0, 1.0, 1e-5, False, 1, 1, 2.0).max_work == 2 * WORK_UNIT == 2e9
+    assert (
+        BranchRequest("F", 0.0, 1.0, 1e-5, False, 1, 1, 2.0).max_multiplications
+        == 2 * MULTIPLICATIONS_PER_WORK_UNIT
+        == 2e9
+    )
 
 
 @survey_only
@@ -134,7 +138,7 @@ class ListedValues:
     def value(self, _):
         return self.now
 
-    def correct_vectors(self, _):
+    def correct_null_vectors(self, _):
         self.now = next(self.values)
 
 

@@ -18,13 +18,13 @@ from rodsweep.model.rod import Rod
 from rodsweep.post.summary.phase_diagram import phase_diagram_summary
 from rodsweep.post.summary.selection import Selection
 from rodsweep.results.file.view import read_view
-from rodsweep.results.layouts.phase_diagram import CYCLE_CURVE_ENDS
+from rodsweep.results.layouts.phase_diagram import CYCLE_CURVE_END_REASONS
 from rodsweep.solve.branch import coexistence
 from rodsweep.solve.branch.bordered.condition import BorderCondition
 from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
 from rodsweep.solve.branch.bordered.scale import ArcLengthScale
 from rodsweep.solve.branch.coexistence import StableStates, solve_coexistence
-from rodsweep.solve.branch.special.augmented.fold_and_torus_functions import FoldTestFunction
+from rodsweep.solve.branch.special.augmented.fold_and_torus_test_functions import FoldTestFunction
 from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem
 from rodsweep.solve.branch.special.special_curves import (
     CurveEndReason,
@@ -32,7 +32,7 @@ from rodsweep.solve.branch.special.special_curves import (
     HalfCurve,
     SpecialPointCurve,
 )
-from rodsweep.solve.branch.special.special_point import SpecialKind
+from rodsweep.solve.branch.special.special_point import SpecialPointKind
 from rodsweep.solve.branch.status import BranchStatus, CoexistenceStatus
 from rodsweep.solve.changes.diagram.rows import RowRequest
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
@@ -70,7 +70,7 @@ def test_fig_2c_has_two_stable_states_from_the_restabilization_to_the_fold(fig_2
     assert fig_2c.status == CoexistenceStatus.ok
     assert fig_2c.stable_states.tolist() == [1, 2, 2, 2, 3, 3, 3, 1, 1, 5]
     kinds = [point.kind for point in fig_2c.special_points]
-    assert kinds == [SpecialKind.hopf, SpecialKind.fold, SpecialKind.hopf]
+    assert kinds == [SpecialPointKind.hopf, SpecialPointKind.fold, SpecialPointKind.hopf]
     assert fig_2c.special_points[1].parameter_value == pytest.approx(FOLD, abs=2e-9)
     assert fig_2c.special_points[2].parameter_value == pytest.approx(RESTABILIZATION, abs=1e-10)
     assert fig_2c.special_points[1].error <= 1e-9 * FOLD
@@ -137,23 +137,23 @@ def test_a_list_of_special_points_that_is_full_is_told():
 def test_a_curve_of_folds_leads_into_the_generalised_hopf_point():
     """From the row k1 = 149.9 down, and up to the edge of the plane, where AUTO-07p has the fold."""
     row = solve_coexistence(FIG_2C.with_values(k1=149.9), request([60, 110]))
-    (fold,) = [point for point in row.special_points if point.kind == SpecialKind.fold]
+    (fold,) = [point for point in row.special_points if point.kind == SpecialPointKind.fold]
     plane = PlaneAxis("F", 60.0, 110.0), PlaneAxis("k1", 149.5, 150.0)
     halves = []
     for side in (1.0, -1.0):
-        points, end = SpecialCurveProblem(SpecialKind.fold, *plane, NewtonWorkspace(), side).follow_from(
+        points, end = SpecialCurveProblem(SpecialPointKind.fold, *plane, NewtonWorkspace(), side).follow_from(
             fold, 149.9
         )
         halves.append(HalfCurve(tuple(map(CurvePoint.from_solved_point, points)), end))
-    curve = SpecialPointCurve.joined(SpecialKind.fold, *halves)
-    assert curve.ends == (CurveEndReason.hopf, CurveEndReason.edge)
+    curve = SpecialPointCurve.joined(SpecialPointKind.fold, *halves)
+    assert curve.end_reasons == (CurveEndReason.hopf, CurveEndReason.edge)
     last = curve.points[-1]
-    assert last.row_value == 150.0
+    assert last.row_parameter_value == 150.0
     assert last.parameter_value == pytest.approx(FOLD_AT_150, abs=last.error + 1e-9)
     assert last.error <= 1e-7 * last.parameter_value
     end = curve.hopf_ends[0]
     assert abs(end.parameter_value - BAUTIN_F) <= end.error
-    assert end.row_value == pytest.approx(BAUTIN_K1, rel=1e-5)
+    assert end.row_parameter_value == pytest.approx(BAUTIN_K1, rel=1e-5)
     assert curve.hopf_ends[1] is None
     heights = [point.tip_y_max for point in curve.points]
     assert heights == sorted(heights)
@@ -161,7 +161,7 @@ def test_a_curve_of_folds_leads_into_the_generalised_hopf_point():
 
 def test_rise_along_a_branch_is_known_with_the_factors_of_a_cycle_near_by():
     row = solve_coexistence(FIG_2C.with_values(k1=149.9), request([60, 110]))
-    (fold,) = [point for point in row.special_points if point.kind == SpecialKind.fold]
+    (fold,) = [point for point in row.special_points if point.kind == SpecialPointKind.fold]
     scale = ArcLengthScale.at_orbit(fold.orbit, "F", 0.0)
     own = BorderedMatrix(fold.orbit, scale, NewtonWorkspace())
     ahead = scale.directional_derivative(fold.orbit, own.branch_tangent(np.array([1.0, 0.0, 0.0])))
@@ -177,7 +177,7 @@ def test_rise_along_a_branch_is_known_with_the_factors_of_a_cycle_near_by():
     )
     before = abs(function.value(fold.orbit) - truth)
     for _ in range(8):
-        function.correct_vectors(fold.orbit)
+        function.correct_null_vectors(fold.orbit)
     assert abs(function.value(fold.orbit) - truth) < 1e-2 * before
 
 
@@ -202,8 +202,8 @@ def test_a_diagram_classes_the_plane_and_continues_the_folds(diagram):
         untraced = int(file["cycle_curves_untraced"][()])
     assert states.tolist() == [[1, 2, 2, 1, 1, 1, 1, 1, 1], [1, 2, 2, 2, 2, 3, 3, 1, 1]]
     assert set(curve["number"]) == {1}
-    assert set(curve["kind"]) == {SpecialKind.fold}
-    words = tuple(CYCLE_CURVE_ENDS)
+    assert set(curve["kind"]) == {SpecialPointKind.fold}
+    words = tuple(CYCLE_CURVE_END_REASONS)
     assert [words[i] for name in ("start", "end") for i in curve[name] if i] == ["hopf", "edge"]
     assert (curve["F"][0], curve["k1"][0]) == pytest.approx((BAUTIN_F, BAUTIN_K1), rel=1e-8)
     assert curve["tip_y_max"][0] == 0
@@ -268,7 +268,7 @@ def test_cycles_of_a_diagram_are_as_accurate_as_asked_for():
     for accuracy in (1e-3, 1e-6, 1e-9):
         asked = {"F": [20.0, 40.0], "k1": rows, "cycle_accuracy": accuracy}
         data = rs.sweep("phase_diagram", **asked, **beside, **options)
-        ends = data.cycle_special_kind.values == SpecialKind.end
+        ends = data.cycle_special_kind.values == SpecialPointKind.end
         for name, true in truths.items():
             stored, error = (data[f"cycle_special_{name}{of}"].values[ends] for of in ("", "_error"))
             assert (np.abs(stored / true - 1) <= error).all()

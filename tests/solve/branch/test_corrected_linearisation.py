@@ -16,7 +16,7 @@ from rodsweep.solve.branch.branches import solve_branches
 from rodsweep.solve.branch.start.first_cycle import first_cycle
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
 from rodsweep.solve.branch.status import BranchStatus
-from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings
+from rodsweep.solve.changes.thresholds_along_path import find_imaginary_axis_crossings
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 
 ACCURACY = 1e-7
@@ -39,7 +39,7 @@ class CountedWorkspace(NewtonWorkspace):
 @pytest.fixture(scope="module")
 def cycle():
     """A large cycle of the branch from the first Hopf point."""
-    crossing = find_axis_crossings(ParameterPath(ROD, "F"), 0.0, 80.0).thresholds[0]
+    crossing = find_imaginary_axis_crossings(ParameterPath(ROD, "F"), 0.0, 80.0).thresholds[0]
     point = first_cycle(hopf_branch_start(ParameterPath(ROD, "F"), crossing), ACCURACY, NewtonWorkspace())
     for _ in range(7):
         point = next_cycle(point, ACCURACY)
@@ -60,10 +60,10 @@ def test_corrected_multipliers_and_tangent_are_those_of_a_matrix_at_the_cycle(cy
     exact = BorderedMatrix(cycle.orbit, cycle.scale, NewtonWorkspace())
     nearby = BorderedMatrix(moved(cycle, distance), cycle.scale, NewtonWorkspace())
     corrected = corrected_linearisation(nearby, cycle.orbit, cycle.unit_tangent, 1e-8)
-    assert corrected is not None and corrected.error <= 1e-8
-    there = sorted_by_modulus(exact.multipliers_over_solved_part, 3)
-    error = np.abs(corrected.multipliers_over_solved_part[:, None] - there).min(axis=0).max()
-    uncorrected = np.abs(nearby.multipliers_over_solved_part[:, None] - there).min(axis=0).max()
+    assert corrected is not None and corrected.relative_error <= 1e-8
+    there = sorted_by_modulus(exact.multipliers_over_solved_time_interval, 3)
+    error = np.abs(corrected.multipliers_over_solved_time_interval[:, None] - there).min(axis=0).max()
+    uncorrected = np.abs(nearby.multipliers_over_solved_time_interval[:, None] - there).min(axis=0).max()
     assert error <= 10 * 1e-8 < uncorrected
     tangents = [one.branch_tangent(cycle.unit_tangent) for one in (exact, corrected)]
     parts = [cycle.scale.directional_derivative(cycle.orbit, tangent) for tangent in tangents]

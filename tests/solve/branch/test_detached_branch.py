@@ -12,11 +12,11 @@ import pytest
 import rodsweep as rs
 from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.model.rod import Rod
-from rodsweep.solve.branch.coexistence import row_branches, special_points_of, stable_cycles_at
+from rodsweep.solve.branch.coexistence import existence_of_stable_cycle, row_branches, special_points_of
 from rodsweep.solve.branch.special.row_crossing import crossings_from_arrays, numbered_arrays
 from rodsweep.solve.branch.special.special_curve_tracer import SpecialCurveTracer
 from rodsweep.solve.branch.special.special_curves import CurveEndReason, TracedHalfCurve
-from rodsweep.solve.branch.special.special_point import RowSpecialPoint, SpecialKind
+from rodsweep.solve.branch.special.special_point import RowSpecialPoint, SpecialPointKind
 from rodsweep.solve.branch.status import BranchEndReason, BranchStatus
 from rodsweep.solve.changes.diagram.rows import RowRequest
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
@@ -41,11 +41,12 @@ def beside():
 def half(beside):
     """The half curve of folds from k1 = 133.072 to smaller k1, across the row k1 = 133.03."""
     fold = max(
-        (point for point in beside if point.kind == SpecialKind.fold), key=lambda point: point.parameter_value
+        (point for point in beside if point.kind == SpecialPointKind.fold),
+        key=lambda point: point.parameter_value,
     )
     stored = RowSpecialPoint(
         row_index=1,
-        row_value=BESIDE.k1,
+        row_parameter_value=BESIDE.k1,
         kind=fold.kind,
         parameter_value=fold.parameter_value,
         period=fold.period,
@@ -70,11 +71,11 @@ def closed(starts):
 
 @pytest.mark.long
 def test_a_curve_of_folds_crosses_a_row_without_hopf_points_twice(half, starts):
-    assert half.half.end is CurveEndReason.hopf
+    assert half.half_curve.end_reason is CurveEndReason.hopf
     assert sorted(start.parameter_value for start in starts) == pytest.approx([FIRST, LAST], abs=1e-5)
     # On its own row the curve passes the two folds of the branch between the Hopf points; one is known.
     assert [crossing.row_index for crossing in half.crossings] == [0, 0, 1]
-    assert half.distances == {0: pytest.approx(0, abs=1e-6)}
+    assert half.distances_along_row == {0: pytest.approx(0, abs=1e-6)}
 
 
 @pytest.mark.long
@@ -93,9 +94,9 @@ def test_a_crossing_survives_a_checkpoint(half):
 def test_a_closed_branch_is_followed_once_around_from_either_fold(closed, starts):
     assert (closed.status, closed.message, closed.crossings) == (BranchStatus.ok, "", ())
     (curve,) = closed.curves
-    assert curve.closed
-    assert curve.complete
-    assert [point.kind for point in curve.special_points] == [SpecialKind.fold] * 3
+    assert curve.is_closed
+    assert curve.is_complete
+    assert [point.kind for point in curve.special_points] == [SpecialPointKind.fold] * 3
     assert curve.special_points[0].parameter_value == pytest.approx(
         curve.special_points[2].parameter_value, rel=2e-9
     )
@@ -110,7 +111,7 @@ def test_a_closed_branch_is_followed_once_around_from_either_fold(closed, starts
 @pytest.mark.long
 def test_cycles_of_a_closed_branch_are_stable_on_one_side_of_both_folds(closed):
     values = np.array([FIRST - 1e-6, FIRST + 1e-6, 79, LAST - 1e-6, LAST + 1e-6])
-    assert stable_cycles_at(values, closed, certify=True).tolist() == [0, 1, 1, 1, 0]
+    assert existence_of_stable_cycle(values, closed, certify=True).tolist() == [0, 1, 1, 1, 0]
     (curve,) = closed.curves
     counts = {
         point.unstable_count for point in curve.points if FIRST + 0.1 < point.parameter_value < LAST - 0.1
@@ -124,14 +125,14 @@ def test_a_branch_that_leaves_the_range_has_both_ends_there(starts):
     found = row_branches(ROD, request(60, 79), starts=[low])
     assert found.status == BranchStatus.ok
     (curve,) = found.curves
-    assert not curve.closed
+    assert not curve.is_closed
     assert [point.kind for point in curve.special_points] == [
-        SpecialKind.end,
-        SpecialKind.fold,
-        SpecialKind.end,
+        SpecialPointKind.end,
+        SpecialPointKind.fold,
+        SpecialPointKind.end,
     ]
     first, fold, last = curve.special_points
-    assert {first.reason, last.reason} == {BranchEndReason.range_end}
+    assert {first.end_reason, last.end_reason} == {BranchEndReason.range_end}
     assert fold.parameter_value == pytest.approx(FIRST, abs=1e-8)
     assert [curve.points[i].unstable_count for i in (0, -1)] == [1, 0]
     assert [curve.points[i].parameter_value for i in (0, -1)] == pytest.approx([79, 79], rel=1e-13)
@@ -156,13 +157,13 @@ def test_a_branch_that_leaves_the_range_has_both_ends_there(starts):
 def test_a_closed_branch_beyond_the_range_is_followed_once_around_and_left_out(starts):
     found = row_branches(ROD, request(88, 100), starts=starts)
     assert (found.status, found.message, found.curves) == (BranchStatus.ok, "", ())
-    places = [fold.parameter_value for fold in found.folds_beyond]
+    places = [fold.parameter_value for fold in found.folds_beyond_range]
     assert sorted(places) == pytest.approx([FIRST, LAST], abs=1e-7)
 
 
 @pytest.mark.long
 def test_a_point_on_a_known_branch_starts_no_other(beside):
-    folds = [point for point in beside if point.kind == SpecialKind.fold]
+    folds = [point for point in beside if point.kind == SpecialPointKind.fold]
     found = row_branches(BESIDE, request(60, 86), starts=folds)
     assert len(found.curves) == 1
     assert found.status == BranchStatus.ok
@@ -171,7 +172,7 @@ def test_a_point_on_a_known_branch_starts_no_other(beside):
 @pytest.mark.long
 def test_a_point_that_a_known_branch_does_not_have_is_none(beside):
     """As the crossing of a curve that a coarse mesh displaces: the branch turns out to be known."""
-    fold = next(point for point in beside if point.kind == SpecialKind.fold)
+    fold = next(point for point in beside if point.kind == SpecialPointKind.fold)
     displaced = replace(fold, parameter_value=fold.parameter_value + 0.01)
     found = row_branches(BESIDE, request(60, 86), starts=[displaced])
     assert (len(found.curves), found.status, found.message) == (1, BranchStatus.ok, "")
@@ -184,7 +185,7 @@ def test_a_point_without_a_branch_is_said_and_leaves_the_row_undecided(starts):
     assert found.status == BranchStatus.stopped
     where = f"the fold at F = {wrong.parameter_value:.9g}"
     assert found.message == f"no branch is followed through {where}: its cycle is lost"
-    assert stable_cycles_at(np.array([79.0]), found, certify=True).tolist() == [-1]
+    assert existence_of_stable_cycle(np.array([79.0]), found, certify=True).tolist() == [-1]
     # Branches are followed beyond the range, up to F = 45 here, but not as far as this fold.
     outside = row_branches(ROD, request(20, 30), starts=starts[:1])
     assert "the cycle found lies outside the range" in outside.message

@@ -32,7 +32,7 @@ def test_the_end_at_a_hopf_point_follows_from_few_points(count):
     points = [
         CurvePoint(
             parameter_value=F + 0.3 * y**2,
-            row_value=K1 + y**2 / SQUARED_Y_PER_K1,
+            row_parameter_value=K1 + y**2 / SQUARED_Y_PER_K1,
             row_coordinate=0.5,
             error=1e-9,
             period=6.48e-3 * (1 - y**2),
@@ -41,7 +41,7 @@ def test_the_end_at_a_hopf_point_follows_from_few_points(count):
         for y in sizes
     ]
     end = extrapolated_hopf_end(points)
-    assert (end.parameter_value, end.row_value) == pytest.approx((F, K1), rel=1e-13)
+    assert (end.parameter_value, end.row_parameter_value) == pytest.approx((F, K1), rel=1e-13)
     assert end.period == pytest.approx(6.48e-3, rel=1e-13)
     assert 1e-8 <= end.error < 1e-4
     assert extrapolated_hopf_end(points[:1]) is None

@@ -6,13 +6,13 @@ import pytest
 from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
-from rodsweep.solve.branch.branch_continuation import follow_branch
+from rodsweep.solve.branch.branch_continuation import follow_branch_from_hopf_point
 from rodsweep.solve.branch.branch_limits import BranchLimits
 from rodsweep.solve.branch.multiplier_sensitivity import MultiplierSensitivity
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
 from rodsweep.solve.branch.status import BranchEndReason
-from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings
-from rodsweep.solve.cycle.accuracy.settings import CALIBRATION_SETTINGS
+from rodsweep.solve.changes.thresholds_along_path import find_imaginary_axis_crossings
+from rodsweep.solve.cycle.accuracy.settings import MESH_ERROR_CALIBRATION_SETTINGS
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 
 RUBBER_ROD = Rod(
@@ -35,9 +35,11 @@ LINEAR_ROD = Rod(
 def followed_down(rod, end, top, accuracy):
     """The branch along the taper from the uppermost Hopf point below `top` down to the taper `end`."""
     path = ParameterPath(rod.with_values(taper=top), "taper")
-    hopf = hopf_branch_start(path, find_axis_crossings(path, end, top).thresholds[-1])
+    hopf = hopf_branch_start(path, find_imaginary_axis_crossings(path, end, top).thresholds[-1])
     reasons = (BranchEndReason.range_end,) * 2
-    return follow_branch(0, BranchLimits([hopf], (end, top), reasons, accuracy, 100, NewtonWorkspace()))
+    return follow_branch_from_hopf_point(
+        0, BranchLimits([hopf], (end, top), reasons, accuracy, 100, NewtonWorkspace())
+    )
 
 
 @pytest.mark.long
@@ -67,21 +69,21 @@ def test_errors_of_nearly_coincident_multipliers_are_those_of_a_quadratic_polyno
     everywhere: the error of the root follows from the error at another discriminant."""
     quotient = 1e-4
     measured = MultiplierSensitivity(1.0, 1.0)
-    assert measured.error(quotient) == quotient
+    assert measured.error_from_quotient(quotient) == quotient
     limit = 0.3
     amplification = max(limit / max(abs(distance), 1e-300), 1.0)
-    stated = MultiplierSensitivity(50.0, amplification).error(quotient) / 50.0
+    stated = MultiplierSensitivity(50.0, amplification).error_from_quotient(quotient) / 50.0
     # Roots at the relative distance d are (1 + d)/2 +- d/2; an error e at d = 0.3 is 0.3 e of d^2/2.
     squared = np.sign(distance) * distance**2
     moved = [np.emath.sqrt(squared + sign * 2 * limit * quotient) for sign in (-1, 1)]
     error = max(abs(root - np.emath.sqrt(squared)) / 2 for root in moved)
-    assert error <= CALIBRATION_SETTINGS.safety_factor * stated
-    assert stated <= CALIBRATION_SETTINGS.safety_factor * error
+    assert error <= MESH_ERROR_CALIBRATION_SETTINGS.error_safety_factor * stated
+    assert stated <= MESH_ERROR_CALIBRATION_SETTINGS.error_safety_factor * error
 
 
 def test_a_multiplier_that_differs_by_powers_of_ten_between_meshes_is_extrapolated_by_its_logarithm():
     """Multipliers of 1e36, 1e51 and 1e54 on a mesh, on a finer one and exactly (a cone of taper 0.6)."""
     cycle = MultiplierSensitivity(1e36, 1.0)
-    stated = CALIBRATION_SETTINGS.safety_factor * cycle.measured_error(1e51, 0.8)
+    stated = MESH_ERROR_CALIBRATION_SETTINGS.error_safety_factor * cycle.error_from_mesh_difference(1e51, 0.8)
     assert 1e54 < stated < np.inf
-    assert cycle.measured_error(1e33, 0.8) == 1e33 / 0.8
+    assert cycle.error_from_mesh_difference(1e33, 0.8) == 1e33 / 0.8

@@ -22,7 +22,7 @@ from rodsweep.solve.branch.special.half_curve import trace_half_curve
 from rodsweep.solve.branch.special.parameter_roles import ParameterRoles
 from rodsweep.solve.branch.special.row_crossing import RowCrossing
 from rodsweep.solve.branch.special.special_curves import CurveEndReason
-from rodsweep.solve.branch.special.special_point import RowSpecialPoint, SpecialKind
+from rodsweep.solve.branch.special.special_point import RowSpecialPoint, SpecialPointKind
 from rodsweep.solve.branch.status import BranchEndReason, BranchStatus
 from rodsweep.solve.changes.diagram.rows import RowRequest
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
@@ -37,16 +37,16 @@ SMALLEST = 79.0040695, 133.01451425
 
 def folds_of(rod, starts=()):
     found = special_points_of(row_branches(rod, REQUEST, starts=starts))
-    return [point for point in found if point.kind == SpecialKind.fold]
+    return [point for point in found if point.kind == SpecialPointKind.fold]
 
 
 def followed(special, row, direction, axes=AXES):
-    problem = SpecialCurveProblem(SpecialKind.fold, *axes, NewtonWorkspace(), direction)
+    problem = SpecialCurveProblem(SpecialPointKind.fold, *axes, NewtonWorkspace(), direction)
     return problem.follow_from(special, row)
 
 
 def extrema_of(points):
-    return [point for point in points if point.row_extremum_error]
+    return [point for point in points if point.row_parameter_error_at_extremum]
 
 
 @pytest.fixture(scope="module")
@@ -68,12 +68,12 @@ def points(fold):
 def test_a_curve_of_folds_passes_the_smallest_closed_branch(points):
     (extremum,) = extrema_of(points)
     assert extremum.row_parameter == min(point.row_parameter for point in points)
-    assert extremum.parameter == pytest.approx(SMALLEST[0], abs=extremum.error + 1e-7)
-    assert extremum.row_parameter == pytest.approx(SMALLEST[1], abs=extremum.row_extremum_error)
-    assert extremum.error <= 1e-7 * SMALLEST[0]
-    assert extremum.row_extremum_error <= 1e-8 * SMALLEST[1]
+    assert extremum.branch_parameter == pytest.approx(SMALLEST[0], abs=extremum.branch_parameter_error + 1e-7)
+    assert extremum.row_parameter == pytest.approx(SMALLEST[1], abs=extremum.row_parameter_error_at_extremum)
+    assert extremum.branch_parameter_error <= 1e-7 * SMALLEST[0]
+    assert extremum.row_parameter_error_at_extremum <= 1e-8 * SMALLEST[1]
     # The curve is regular there: its points lie on both sides, in order.
-    forces = [point.parameter for point in points]
+    forces = [point.branch_parameter for point in points]
     assert forces == sorted(forces, reverse=True)
     assert forces[0] > 90 > SMALLEST[0] > 75 > forces[-1]
     assert all(point.scale.parameter_name == "F" for point in points)
@@ -86,7 +86,7 @@ def test_the_extremum_is_that_of_folds_along_the_row_parameter():
         "branch", along="k1", F=forces, k2=1e4, gamma3=0.006, gamma1=1, start=133, stop=133.6, progress=False
     )
     kinds, at = (along[name].values.reshape(len(forces), -1) for name in ("special_kind", "special_at"))
-    folds = [values[kind == SpecialKind.fold].item() for kind, values in zip(kinds, at, strict=True)]
+    folds = [values[kind == SpecialPointKind.fold].item() for kind, values in zip(kinds, at, strict=True)]
     fit = np.polynomial.Polynomial.fit(forces, folds, 4)
     vertex = min(fit.deriv().roots(), key=lambda F: abs(F - 79)).real
     assert (vertex, fit(vertex)) == pytest.approx(SMALLEST, abs=1e-7)
@@ -95,26 +95,30 @@ def test_the_extremum_is_that_of_folds_along_the_row_parameter():
 @pytest.mark.long
 def test_folds_near_the_extremum_are_those_of_branches_along_the_row(points):
     near = [point for point in points if 133.015 < point.row_parameter < 133.1]
-    assert {point.parameter > SMALLEST[0] for point in near} == {True, False}
+    assert {point.branch_parameter > SMALLEST[0] for point in near} == {True, False}
     assert len(near) > 5
     for point in near:
-        crossing = RowCrossing.from_solved_point(0, SpecialKind.fold, point, point.error)
+        crossing = RowCrossing.from_solved_point(
+            0, SpecialPointKind.fold, point, point.branch_parameter_error
+        )
         folds = folds_of(replace(ROD, k1=point.row_parameter), [crossing.special_point])
-        distance = min(abs(fold.parameter_value - point.parameter) for fold in folds)
-        assert distance <= min(point.error, 1e-7 * point.parameter)
+        distance = min(abs(fold.parameter_value - point.branch_parameter) for fold in folds)
+        assert distance <= min(point.branch_parameter_error, 1e-7 * point.branch_parameter)
 
 
 @pytest.mark.long
 def test_a_curve_begins_near_an_extremum_in_both_directions(points):
     extremum = extrema_of(points)[0]
     row = extremum.row_parameter + 6e-4
-    problem = SpecialCurveProblem(SpecialKind.fold, *AXES, NewtonWorkspace(), 1.0)
-    beyond = next(p for p in points if p.parameter < extremum.parameter and p.row_parameter > row)
+    problem = SpecialCurveProblem(SpecialPointKind.fold, *AXES, NewtonWorkspace(), 1.0)
+    beyond = next(
+        p for p in points if p.branch_parameter < extremum.branch_parameter and p.row_parameter > row
+    )
     before = points[points.index(beyond) - 1]
-    crossing = problem.point_on_row(before, beyond, AXES[1].coordinate(row))
-    start = RowCrossing.from_solved_point(0, SpecialKind.fold, crossing, 1e-4).special_point
+    crossing = problem.point_on_row(before, beyond, AXES[1].scaled_coordinate(row))
+    start = RowCrossing.from_solved_point(0, SpecialPointKind.fold, crossing, 1e-4).special_point
     low, high = sorted(folds_of(replace(ROD, k1=row), [start]), key=lambda fold: fold.parameter_value)
-    assert low.parameter_value == pytest.approx(crossing.parameter, abs=1e-4)
+    assert low.parameter_value == pytest.approx(crossing.branch_parameter, abs=1e-4)
     for axes in (
         AXES,
         (AXES[0], PlaneAxis("k1", 136.0, 132.0)),
@@ -125,7 +129,7 @@ def test_a_curve_begins_near_an_extremum_in_both_directions(points):
                 # `direction` belongs to the row coordinate, which may decrease with k1.
                 rises = np.sign(axes[1].stop - axes[1].start)
                 curve, _ = followed(special, row, direction * rises, axes)
-                at = [round(point.parameter, 5) for point in extrema_of(curve)]
+                at = [round(point.branch_parameter, 5) for point in extrema_of(curve)]
                 assert (79.00407 in at) == (direction == leads_over)
                 assert (118.45785 in at) == ((special is low) == (direction == leads_over))
 
@@ -137,13 +141,15 @@ def test_a_tiny_closed_branch_is_followed(points, distance):
     displaces by more than this distance."""
     index = points.index(extrema_of(points)[0])
     row = points[index].row_parameter + distance
-    problem = SpecialCurveProblem(SpecialKind.fold, *AXES, NewtonWorkspace(), 1.0)
+    problem = SpecialCurveProblem(SpecialPointKind.fold, *AXES, NewtonWorkspace(), 1.0)
     ends = points[index - 1 : index + 1], points[index : index + 2]
-    crossings = [problem.point_on_row(*pair, AXES[1].coordinate(row)) for pair in ends]
-    starts = [RowCrossing.from_solved_point(0, SpecialKind.fold, c, 1e-4).special_point for c in crossings]
+    crossings = [problem.point_on_row(*pair, AXES[1].scaled_coordinate(row)) for pair in ends]
+    starts = [
+        RowCrossing.from_solved_point(0, SpecialPointKind.fold, c, 1e-4).special_point for c in crossings
+    ]
     found = row_branches(replace(ROD, k1=row), REQUEST, starts=starts)
     (curve,) = found.curves
-    assert (found.status, curve.closed) == (BranchStatus.ok, True)
+    assert (found.status, curve.is_closed) == (BranchStatus.ok, True)
     low, high = sorted(fold.parameter_value for fold in special_points_of(found))
     # k1 = 133.0155 has folds at F = 78.339 and 79.679, from the curve and from its branch.
     assert (high - low) / distance**0.5 == pytest.approx(42.1, rel=5e-3)
@@ -171,11 +177,11 @@ def test_no_step_leads_from_one_branch_to_another_that_nearly_touches_it(row, ki
         assert ends == pytest.approx(heights, abs=1e-4)
         assert [curve.points[-1].unstable_count for curve in found.curves] == [0, 1]
         return
-    (fold,) = [point for point in special_points_of(found) if point.kind == SpecialKind.fold]
+    (fold,) = [point for point in special_points_of(found) if point.kind == SpecialPointKind.fold]
     # The same fold on the branch along k1.
     along = BranchRequest("k1", 133.9, 134.3, 1e-6, False, 500, 64)
     across = solve_branches(replace(rod, F=fold.parameter_value), along, starts=[fold])
-    (same,) = [point for point in special_points_of(across) if point.kind == SpecialKind.fold]
+    (same,) = [point for point in special_points_of(across) if point.kind == SpecialPointKind.fold]
     assert same.parameter_value == pytest.approx(row, abs=1e-7)
 
 
@@ -195,15 +201,15 @@ def test_two_branches_with_one_cycle_at_the_end_of_the_range_are_a_failure():
 def test_a_row_near_an_extremum_is_crossed_twice(fold):
     stored = RowSpecialPoint(
         row_index=0,
-        row_value=ROD.k1,
+        row_parameter_value=ROD.k1,
         kind=fold.kind,
         parameter_value=fold.parameter_value,
         period=fold.period,
         tip_y_max=fold.tip_y_max,
     )
-    problem = SpecialCurveProblem(SpecialKind.fold, *AXES, NewtonWorkspace(), -1.0)
+    problem = SpecialCurveProblem(SpecialPointKind.fold, *AXES, NewtonWorkspace(), -1.0)
     half = trace_half_curve(problem, stored, [fold], [stored], {1: 133.0155, 2: 133.0145})
-    assert half.distances == {0: pytest.approx(0, abs=1e-6)}
+    assert half.distances_along_row == {0: pytest.approx(0, abs=1e-6)}
     assert [crossing.row_index for crossing in half.crossings] == [1, 1]
     starts = [crossing.special_point for crossing in half.crossings]
     folds = sorted(point.parameter_value for point in folds_of(replace(ROD, k1=133.0155), starts))
@@ -222,16 +228,16 @@ def test_an_extremum_that_is_not_located_is_left_out(fold, points, monkeypatch):
     assert end is CurveEndReason.hopf
     extremum = extrema_of(points)[0]
     kept = [point for point in points if point is not extremum]
-    assert [point.parameter for point in others] == [point.parameter for point in kept]
-    (marked,) = [i for i, point in enumerate(others) if np.isnan(point.row_extremum_error)]
-    assert others[marked - 1].parameter > extremum.parameter > others[marked].parameter
+    assert [point.branch_parameter for point in others] == [point.branch_parameter for point in kept]
+    (marked,) = [i for i, point in enumerate(others) if np.isnan(point.row_parameter_error_at_extremum)]
+    assert others[marked - 1].branch_parameter > extremum.branch_parameter > others[marked].branch_parameter
 
 
 @pytest.mark.long
 def test_without_the_exchange_of_roles_the_curve_is_lost(fold, monkeypatch):
     """What the exchange is for; from k1 = 134 on, with the steps of this curve."""
     start = folds_of(replace(ROD, k1=134.0))[0]
-    settings = replace(parameter_roles.PARAMETER_ROLE_SETTINGS, max_slope=0.0)
+    settings = replace(parameter_roles.PARAMETER_ROLE_SETTINGS, max_slope_to_exchange_roles=0.0)
     monkeypatch.setattr(parameter_roles, "PARAMETER_ROLE_SETTINGS", settings)
     monkeypatch.setattr(ParameterRoles, "need_exchange_beyond", lambda *_: False)
     points, end = followed(start, 134.0, -1.0)
@@ -240,6 +246,6 @@ def test_without_the_exchange_of_roles_the_curve_is_lost(fold, monkeypatch):
 
 
 def test_curves_of_torus_points_never_exchange_the_roles():
-    roles = ParameterRoles(SpecialKind.torus, *AXES)
-    assert not roles._is_flat(ROD, 1.0, 0.0)
-    assert ParameterRoles(SpecialKind.fold, *AXES)._is_flat(ROD, 1.0, 0.0)
+    roles = ParameterRoles(SpecialPointKind.torus, *AXES)
+    assert not roles._is_row_parameter_almost_constant(ROD, 1.0, 0.0)
+    assert ParameterRoles(SpecialPointKind.fold, *AXES)._is_row_parameter_almost_constant(ROD, 1.0, 0.0)

@@ -9,7 +9,7 @@ from reference.dense_arm import eigenvalues
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
-from rodsweep.solve.changes.arm.axis_modes import ArmModes, next_count_interval_fraction
+from rodsweep.solve.changes.arm.imaginary_axis_modes import ArmModes, interval_fraction_of_next_count
 from rodsweep.solve.changes.status import ThresholdStatus
 from rodsweep.solve.changes.threshold_kinds import Threshold, ThresholdKind
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds, thresholds_with_status
@@ -85,7 +85,7 @@ def test_a_pair_may_leave_the_axis_and_return_where_tangents_and_slopes_allow_it
         ArmModes(p, np.array([distance + 1j * (150 + 10 * p)]), np.array([slope + 10j]), 2)
         for p, distance, slope in zip((0.0, length), distances, slopes, strict=True)
     )
-    assert (next_count_interval_fraction(left, right) > 0) == is_counted
+    assert (interval_fraction_of_next_count(left, right) > 0) == is_counted
 
 
 EXCHANGING_SEGMENTS = (
@@ -125,15 +125,15 @@ def test_a_pair_far_from_the_axis_may_come_from_it_while_another_one_leaves():
     """Two pairs of an arm of three segments exchange their parts; the slopes of the wrong pairs agree."""
     left = ArmModes(5.31448, np.array([13.2 + 169j]), np.array([-40 + 130j]), 20)
     right = ArmModes(5.5, np.array([-9.7 + 157j, 69 + 309j]), np.array([140 - 90j, 716 + 780j]), 20)
-    assert next_count_interval_fraction(left, right) > 0
+    assert interval_fraction_of_next_count(left, right) > 0
 
 
 def test_a_growing_pair_without_partner_at_the_other_end_has_crossed_the_axis():
     places = [(5.29213, 13.5 + 164j, 10 + 90j), (5.56706, -1e-4 + 154j, 146 - 60j)]
     left, right = (ArmModes(p, np.array([w]), np.array([slope]), 20) for p, w, slope in places)
-    assert next_count_interval_fraction(left, right) > 0
+    assert interval_fraction_of_next_count(left, right) > 0
     same = ArmModes(5.56706, np.array([16.0 + 189j]), np.array([8 + 90j]), 20)
-    assert next_count_interval_fraction(left, same) == 0
+    assert interval_fraction_of_next_count(left, same) == 0
 
 
 def search_result(*errors, **others):
@@ -141,7 +141,7 @@ def search_result(*errors, **others):
         Threshold(float(F), ThresholdKind.hopf, 30.0, 0.0, error, 2 * F) for F, error in enumerate(errors, 1)
     )
     return ThresholdSearchResult(
-        thresholds=thresholds, searched_interval=(0.0, 9.0), proved=True, doubt_text="the text", **others
+        thresholds=thresholds, searched_interval=(0.0, 9.0), is_proved=True, doubt_text="the text", **others
     )
 
 

@@ -12,7 +12,7 @@ from rodsweep.model.material.profile import Profile
 from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.diagram.boundary_curves import trace_boundary
-from rodsweep.solve.changes.diagram.rows import RodClass, RowRequest, solve_row
+from rodsweep.solve.changes.diagram.rows import RowRequest, StabilityClass, solve_row
 from rodsweep.solve.changes.status import ThresholdStatus
 from rodsweep.solve.changes.threshold_kinds import ThresholdKind
 from rodsweep.solve.changes.thresholds_along_path import find_thresholds
@@ -35,7 +35,7 @@ def traced(material, kind, axes=FORCE_AND_STIFFNESS, **values):
     plane = ParameterPlane(Rod(**{"F": 0.0, "k1": 300.0, **ROD, **values}, material=material), axes)
     sign = 0.0 if kind == ThresholdKind.hopf else -1.0
     return trace_boundary(
-        sign, plane, (first.coordinate(change.value), 0.5), change.frequency or change.growth_rate
+        sign, plane, (first.scaled_coordinate(change.value), 0.5), change.frequency or change.growth_rate
     )
 
 
@@ -43,9 +43,9 @@ def traced(material, kind, axes=FORCE_AND_STIFFNESS, **values):
 def test_the_hopf_curve_of_a_uniform_arm_folds_where_the_closed_form_does():
     exact, found = (traced(material, ThresholdKind.hopf) for material in (RodMaterial(), ONES))
     (fold,), (of_arm,) = exact.folds, found.folds
-    assert of_arm.values[1] == pytest.approx(fold.values[1], rel=1e-13)
-    assert abs(of_arm.values[0] - fold.values[0]) <= of_arm.errors[0] < 2e-7
-    assert found.values[[0, -1]] == pytest.approx(exact.values[[0, -1]], rel=1e-10)
+    assert of_arm.parameter_values[1] == pytest.approx(fold.parameter_values[1], rel=1e-13)
+    assert abs(of_arm.parameter_values[0] - fold.parameter_values[0]) <= of_arm.parameter_errors[0] < 2e-7
+    assert found.parameter_values[[0, -1]] == pytest.approx(exact.parameter_values[[0, -1]], rel=1e-10)
 
 
 @pytest.mark.parametrize("kind", [ThresholdKind.hopf, ThresholdKind.onset])
@@ -54,7 +54,7 @@ def test_tangents_of_a_uniform_arm_are_those_of_the_closed_form(kind):
     boundaries = [
         StabilityBoundary(
             ParameterPlane(Rod(F=20.0, k1=300.0, **ROD, material=material), FORCE_AND_STIFFNESS),
-            curve.eigenvalue_sign,
+            curve.double_eigenvalue_sign,
         )
         for material in (RodMaterial(), ONES)
     ]
@@ -68,7 +68,7 @@ def test_the_fold_of_rubber_bounds_the_rows_that_flutter():
     axes = PlaneAxis("F", 20.0, 500.0), PlaneAxis("k1", 350.0, 550.0)
     (fold,) = traced(SWELLING, ThresholdKind.hopf, axes).folds
     assert fold.axis == 1
-    k1, error = fold.values[1], 1e-6
+    k1, error = fold.parameter_values[1], 1e-6
 
     def hopfs(stiffness):
         found = find_thresholds(
@@ -80,14 +80,14 @@ def test_the_fold_of_rubber_bounds_the_rows_that_flutter():
 
     assert hopfs(k1 * (1 - error)) == []
     low, high = hopfs(k1 * (1 + error))
-    assert low < fold.values[0] < high < low * 1.02
+    assert low < fold.parameter_values[0] < high < low * 1.02
 
 
 @pytest.mark.long
 def test_a_curve_over_the_taper_folds_where_the_window_of_flutter_closes():
     axes = PlaneAxis("F", 40.0, 560.0), PlaneAxis("taper", 1.1, 1.8)
     (fold,) = (f for f in traced(SWELLING, ThresholdKind.hopf, axes, k1=500.0).folds if f.axis == 1)
-    taper = fold.values[1]
+    taper = fold.parameter_values[1]
     numbers = []
     for side in (-1e-5, 1e-5):
         rod = Rod(F=0.0, k1=500.0, **ROD, taper=taper + side, material=SWELLING)
@@ -105,18 +105,18 @@ def test_rows_reach_beyond_k1_for_rubber_and_to_the_tip_for_cones():
 
     rubber = row("F", [10.0, 100.0, 500.0, 550.0], Rod(F=0.0, k1=500.0, **ROD, material=SWELLING))
     assert rubber.status == ThresholdStatus.ok
-    assert rubber.rod_class.tolist() == [
-        RodClass.monotone,
-        RodClass.flutter,
-        RodClass.oscillatory,
-        RodClass.oscillatory,
+    assert rubber.stability_class.tolist() == [
+        StabilityClass.monotone,
+        StabilityClass.flutter,
+        StabilityClass.oscillatory,
+        StabilityClass.oscillatory,
     ]
     cone = row("F", [5.0, 20.0, 49.0, 51.0, 60.0], Rod(F=0.0, k1=200.0, **ROD, taper=0.5))
-    assert cone.rod_class.tolist()[3:] == [RodClass.crushed] * 2
-    assert RodClass.crushed not in cone.rod_class.tolist()[:3]
+    assert cone.stability_class.tolist()[3:] == [StabilityClass.crushed] * 2
+    assert StabilityClass.crushed not in cone.stability_class.tolist()[:3]
     assert cone.thresholds.end == pytest.approx(50.0, rel=2e-6)
     along_k1 = row("k1", [20.0, 39.0, 41.0, 200.0], Rod(F=10.0, k1=np.inf, **ROD, taper=0.5))
-    assert (along_k1.rod_class == RodClass.crushed).tolist() == [True, True, False, False]
+    assert (along_k1.stability_class == StabilityClass.crushed).tolist() == [True, True, False, False]
 
 
 @pytest.fixture(scope="module")
@@ -142,7 +142,10 @@ def test_the_criticality_of_a_diagram_of_cones_is_that_of_each_cone(cones):
         (point,) = np.flatnonzero(of_hopf & (cones.curve_taper.values == taper))
         found = rs.Rod(k1=1e4, k2=1e2, gamma3=1e-2, taper=taper).criticality(F_max=60)
         assert cones.curve_F.values[point] == pytest.approx(found.crossing_F[0], rel=1e-9)
-        assert (cones.curve_criticality.values[point], found.criticality[0]) == (-1, "supercritical")
+        assert (cones.curve_criticality.values[point], found.criticality[0]) == (
+            -1,
+            "supercritical",
+        )
 
 
 def test_cones_of_a_diagram_beat_where_they_flutter(cones):
@@ -159,12 +162,14 @@ def test_a_generalised_hopf_point_of_a_uniform_arm_is_that_of_the_closed_form():
     points = []
     for material in (RodMaterial(), ONES):
         plane = ParameterPlane(Rod(F=0.0, k1=200.0, **ROD, material=material), plane_axes)
-        start = tuple(axis.coordinate(value) for axis, value in zip(plane_axes, fold[:2], strict=True))
+        start = tuple(axis.scaled_coordinate(value) for axis, value in zip(plane_axes, fold[:2], strict=True))
         told = curve_criticality(plane, trace_boundary(0.0, plane, start, fold[2]), 1e-10)
-        assert told.unlocated_count == 0
+        assert told.unlocated_sign_change_count == 0
         points.append(told.points[0])
     exact, found = points
-    for value, theirs, error in zip(exact.values, found.values, found.errors, strict=True):
+    for value, theirs, error in zip(
+        exact.parameter_values, found.parameter_values, found.parameter_errors, strict=True
+    ):
         assert abs(value - theirs) <= 2 * error + 1e-10 * value
 
 

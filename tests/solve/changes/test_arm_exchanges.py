@@ -14,8 +14,8 @@ from rodsweep.results.layouts.phase_diagram import STABILITY_CLASSES
 from rodsweep.solve.changes.status import ThresholdStatus
 from rodsweep.solve.changes.threshold_kinds import ThresholdKind
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
+from rodsweep.solve.spectrum.path.eigenvalue_following import are_distinct_roots
 from rodsweep.solve.spectrum.path.followed_arms import FollowedArms
-from rodsweep.solve.spectrum.path.following import are_distinct_roots
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.verdict.relative_load import rod_with_drag
 
@@ -26,7 +26,7 @@ CONE = SlenderArm(
     young="5.975e+04 Pa",
     viscosity="1.706 Pa s",
 )
-NEARLY_TRIPLE = rod_with_drag(CONE, CONE.drags[0])
+NEARLY_TRIPLE = rod_with_drag(CONE, CONE.base_drag_estimates[0])
 TO_30 = ThresholdsRequest(30.0, 1e-6, True, 100)
 
 
@@ -121,7 +121,7 @@ def forces_between(found):
 def test_lists_of_cones_with_crowded_eigenvalues_are_proved_and_right(rod):
     found = solve_thresholds(rod, TO_30)
     assert found.status == ThresholdStatus.ok
-    assert found.search_result.proved
+    assert found.search_result.is_proved
     assert_leaders_are_those_of_spectra(rod, found, forces_between(found))
 
 

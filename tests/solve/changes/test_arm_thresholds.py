@@ -15,7 +15,7 @@ from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
-from rodsweep.solve.changes.diagram.rows import RodClass, RowRequest, solve_row
+from rodsweep.solve.changes.diagram.rows import RowRequest, StabilityClass, solve_row
 from rodsweep.solve.changes.search_range import IntervalQueue
 from rodsweep.solve.changes.status import ThresholdStatus
 from rodsweep.solve.changes.threshold_kinds import ThresholdKind
@@ -118,8 +118,8 @@ def test_a_place_that_cannot_be_proved_ends_the_search_there(no_bound_beyond_som
     assert not isfinite(hull.hull_of(STEPPED.with_values(F=found.end + 60 / 12)).a)
     assert f"ends at F = {found.end:.12g}: " in found.message
     assert "no a-priori bound" in found.message
-    assert found.search_result.proved
-    assert not found.search_result.proved_to_the_end
+    assert found.search_result.is_proved
+    assert not found.search_result.is_proved_to_the_end
     monkeypatch.undo()
     whole = solve_thresholds(STEPPED, ThresholdsRequest(60.0, 1e-10, True, 16))
     assert whole.status == ThresholdStatus.ok
@@ -144,8 +144,8 @@ def test_beyond_a_search_that_ended_early_a_row_is_undecided(no_bound_beyond_som
     row = solve_row(STEPPED, RowRequest("F", np.linspace(0.0, 60.0, 13), 1e-8, True, 16))
     assert row.status == ThresholdStatus.ended_early
     known = np.linspace(0.0, 60.0, 13) <= row.thresholds.end
-    assert (row.rod_class[~known] == RodClass.undecided).all()
-    assert row.rod_class[known].tolist() == [0] * 3 + [1] * 3 + [2] * int(known.sum() - 6)
+    assert (row.stability_class[~known] == StabilityClass.undecided).all()
+    assert row.stability_class[known].tolist() == [0] * 3 + [1] * 3 + [2] * int(known.sum() - 6)
 
 
 def test_stiffnesses_are_searched_from_the_stiff_end(no_bound_beyond_some_force):
@@ -162,7 +162,7 @@ def test_a_crossing_beyond_the_end_of_a_search_is_found_again_but_once():
     intervals, seen = IntervalQueue([0.0, 1.0, 2.0, 3.0]), []
     for a, b in intervals:
         if b > 1.7:
-            intervals.limit_search_below((a, b), "no")
+            intervals.retry_left_half_only((a, b), "no")
         else:
             seen.append((a, b))
     assert seen == [(0.0, 1.0), (1.0, 1.5), (1.5, 1.625), (1.625, 1.6875)]
@@ -235,9 +235,9 @@ def test_a_pair_on_the_axis_at_the_end_of_a_search_is_one_crossing():
     at = find_thresholds(path, 0.0, 20.0).thresholds[-1].value
     for end, number in ((at * (1 - 1e-7), 0), (at, 1), (at * (1 + 1e-7), 1)):
         found = find_thresholds(path, 0.0, end)
-        assert found.proved_to_the_end, found.doubt_text
+        assert found.is_proved_to_the_end, found.doubt_text
         assert len(across_the_axis(found)) == number
         assert found.searched_interval == (0.0, end)
     from_there = find_thresholds(path, at * (1 - 1e-7), 20.0)
     assert len(across_the_axis(from_there)) == 1
-    assert from_there.proved_to_the_end
+    assert from_there.is_proved_to_the_end

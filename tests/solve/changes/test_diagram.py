@@ -15,7 +15,7 @@ from rodsweep.solve.changes.diagram import boundary_curves
 from rodsweep.solve.changes.diagram.boundaries import boundary_curves_through, seed_of
 from rodsweep.solve.changes.diagram.boundary_curves import trace_boundary
 from rodsweep.solve.changes.diagram.boundary_problem import BoundaryEndReason
-from rodsweep.solve.changes.diagram.rows import RodClass, RowRequest, solve_row
+from rodsweep.solve.changes.diagram.rows import RowRequest, StabilityClass, solve_row
 from rodsweep.solve.changes.status import ThresholdStatus
 from rodsweep.solve.changes.threshold_kinds import ThresholdKind
 
@@ -47,7 +47,7 @@ def rows(plane_axes, rod, count):
 def test_the_flutter_window_closes_at_the_fold_to_nine_digits(k2, gamma3, k1, F, frequency):
     plane = ParameterPlane(
         Rod(F=0.0, k1=200.0, k2=k2, gamma3=gamma3),
-        (PlaneAxis("F", 0.0, 119.0), PlaneAxis("k1", 120.0, 1000.0, logarithmic=True)),
+        (PlaneAxis("F", 0.0, 119.0), PlaneAxis("k1", 120.0, 1000.0, is_logarithmic=True)),
     )
     row = solve_row(
         Rod(F=0.0, k1=300.0, k2=k2, gamma3=gamma3), RowRequest("F", np.array([0.0, 119.0]), 1e-9, True, 9)
@@ -56,15 +56,15 @@ def test_the_flutter_window_closes_at_the_fold_to_nine_digits(k2, gamma3, k1, F,
     curve = trace_boundary(
         0.0,
         plane,
-        (plane.axes[0].coordinate(hopf.value), plane.axes[1].coordinate(300.0)),
+        (plane.axes[0].scaled_coordinate(hopf.value), plane.axes[1].scaled_coordinate(300.0)),
         hopf.frequency,
     )
     (fold,) = [f for f in curve.folds if f.axis == 1]
-    assert fold.values[1] == pytest.approx(k1, rel=1e-12)
-    assert fold.values[0] == pytest.approx(F, rel=1e-10)
+    assert fold.parameter_values[1] == pytest.approx(k1, rel=1e-12)
+    assert fold.parameter_values[0] == pytest.approx(F, rel=1e-10)
     assert fold.frequency == pytest.approx(frequency, rel=1e-9)
-    assert abs(fold.values[1] - k1) <= 10 * fold.errors[1]
-    assert abs(fold.values[0] - F) <= fold.errors[0] <= 1e-8
+    assert abs(fold.parameter_values[1] - k1) <= 10 * fold.parameter_errors[1]
+    assert abs(fold.parameter_values[0] - F) <= fold.parameter_errors[0] <= 1e-8
 
 
 def test_the_hopf_curve_of_the_partial_beam_is_the_parabola_of_the_paper():
@@ -75,9 +75,9 @@ def test_the_hopf_curve_of_the_partial_beam_is_the_parabola_of_the_paper():
     )
     start = 200.0 * (0.5 - np.sqrt(0.25 - Fc / 200.0))
     curve = trace_boundary(
-        0.0, plane, (plane.axes[0].coordinate(start), plane.axes[1].coordinate(200.0)), 341.801
+        0.0, plane, (plane.axes[0].scaled_coordinate(start), plane.axes[1].scaled_coordinate(200.0)), 341.801
     )
-    F, k1 = curve.values.T
+    F, k1 = curve.parameter_values.T
     assert len(F) > 30
     assert np.abs(F * (1 - F / k1) - Fc).max() < 1e-11
     assert F.min() < 42.2
@@ -85,12 +85,12 @@ def test_the_hopf_curve_of_the_partial_beam_is_the_parabola_of_the_paper():
 
 
 def test_rows_and_curves_agree_and_every_change_lies_on_a_curve():
-    axes = (PlaneAxis("F", 0.0, 99.0), PlaneAxis("k1", 100.0, 1000.0, logarithmic=True))
+    axes = (PlaneAxis("F", 0.0, 99.0), PlaneAxis("k1", 100.0, 1000.0, is_logarithmic=True))
     rod = Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4)
     _, seeds = rows(axes, rod, 12)
     curves = boundary_curves_through(ParameterPlane(rod, axes), seeds)
     assert curves.untraced_seed_count == 0
-    assert curves.max_seed_distance_in_rows < 1e-11
+    assert curves.max_seed_distance_per_row_length < 1e-11
     assert sum(c.consists_of_hopf_points for c in curves.curves) == 1
     for curve in curves.curves:
         inside = (np.diff(curve.scaled_points[:, :2], axis=0) ** 2).sum(axis=1)
@@ -99,17 +99,20 @@ def test_rows_and_curves_agree_and_every_change_lies_on_a_curve():
 
 def test_a_plane_of_two_material_parameters():
     """k2 against gamma3 at fixed force: rows along k2, curves through both, counts on either side."""
-    axes = (PlaneAxis("k2", 20.0, 1e5, logarithmic=True), PlaneAxis("gamma3", 1e-4, 0.1, logarithmic=True))
+    axes = (
+        PlaneAxis("k2", 20.0, 1e5, is_logarithmic=True),
+        PlaneAxis("gamma3", 1e-4, 0.1, is_logarithmic=True),
+    )
     rod = Rod(F=30.0, k1=1e4, k2=1e3, gamma3=1e-3)
     found, seeds = rows(axes, rod, 6)
     curves = boundary_curves_through(ParameterPlane(rod, axes), seeds)
     assert seeds
-    assert (curves.untraced_seed_count, curves.max_seed_distance_in_rows < 1e-11) == (0, True)
+    assert (curves.untraced_seed_count, curves.max_seed_distance_per_row_length < 1e-11) == (0, True)
     values = np.linspace(20.0, 1e5, 41)
     gamma3 = axes[1].value(0.4)
-    for k2, motion, unstable in zip(values, found[2].rod_class, found[2].unstable_count, strict=True):
+    for k2, motion, unstable in zip(values, found[2].stability_class, found[2].unstable_count, strict=True):
         assert count_right_of(0.0, Rod(F=30.0, k1=1e4, k2=float(k2), gamma3=gamma3)).number == unstable
-        assert (motion == RodClass.flutter) == (unstable > 0)
+        assert (motion == StabilityClass.flutter) == (unstable > 0)
 
 
 ENDS = [
@@ -121,7 +124,7 @@ ENDS = [
     ),
     # Hopf points that come as close to F = k1 as steps can be short
     (
-        (PlaneAxis("F", 0.0, 239.0), PlaneAxis("k1", 183.0, 3e3, logarithmic=True)),
+        (PlaneAxis("F", 0.0, 239.0), PlaneAxis("k1", 183.0, 3e3, is_logarithmic=True)),
         Rod(F=0.0, k1=1e3, k2=33.0, gamma3=2.7e-3),
         {
             (BoundaryEndReason.edge, BoundaryEndReason.edge),
@@ -138,7 +141,7 @@ def test_a_curve_says_where_it_ends(axes, rod, ends, monkeypatch):
     assert {curve.end_reasons for curve in curves} == ends
     for curve in curves:
         for (x, y, _), (F, other), end in zip(
-            curve.scaled_points[[0, -1]], curve.values[[0, -1]], curve.end_reasons, strict=True
+            curve.scaled_points[[0, -1]], curve.parameter_values[[0, -1]], curve.end_reasons, strict=True
         ):
             beside_an_edge = min(x, 1 - x, y, 1 - y) < 1e-9
             assert beside_an_edge if end == BoundaryEndReason.edge else pytest.approx(other, rel=1e-7) == F
@@ -146,7 +149,7 @@ def test_a_curve_says_where_it_ends(axes, rod, ends, monkeypatch):
     monkeypatch.setattr(boundary_curves, "BOUNDARY_STEP_CONTROL", few)
     curve = boundary_curves_through(ParameterPlane(rod, axes), seeds[:1]).curves[0]
     assert BoundaryEndReason.list_full in curve.end_reasons
-    assert len(curve.values) < 10
+    assert len(curve.parameter_values) < 10
 
 
 TOUCHED = [
@@ -154,11 +157,14 @@ TOUCHED = [
     ((PlaneAxis("F", 5.0, 60.0), PlaneAxis("gamma3", 0.0, 1.0)), Rod(F=30.0, k1=1e4, k2=20.0, gamma3=0.01)),
     # double eigenvalues beside a crushed rod
     (
-        (PlaneAxis("F", 0.0, 99.999), PlaneAxis("k1", 100.0, 1e3, logarithmic=True)),
+        (PlaneAxis("F", 0.0, 99.999), PlaneAxis("k1", 100.0, 1e3, is_logarithmic=True)),
         Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4),
     ),
     (
-        (PlaneAxis("k2", 20.0, 1e5, logarithmic=True), PlaneAxis("gamma3", 1e-4, 0.1, logarithmic=True)),
+        (
+            PlaneAxis("k2", 20.0, 1e5, is_logarithmic=True),
+            PlaneAxis("gamma3", 1e-4, 0.1, is_logarithmic=True),
+        ),
         Rod(F=30.0, k1=1e4, k2=1e3, gamma3=1e-3),
     ),
 ]
@@ -170,11 +176,15 @@ def test_the_tangent_of_a_boundary_touches_it(axes, rod):
     plane = ParameterPlane(rod, axes)
     _, seeds = rows(axes, rod, 2)
     for seed in seeds:
-        boundary = StabilityBoundary(plane, seed.eigenvalue_sign)
-        scaled = [axis.coordinate(value) for axis, value in zip(axes, seed.values, strict=True)]
-        start = boundary.point_near(np.array([*scaled, log(abs(seed.eigenvalue))]), np.array([0.0, 1.0, 0.0]))
-        assert boundary.eigenvalue(start.v[2])[int(seed.eigenvalue_sign == 0)] == pytest.approx(
-            seed.eigenvalue, rel=1e-6
+        boundary = StabilityBoundary(plane, seed.double_eigenvalue_sign)
+        scaled = [
+            axis.scaled_coordinate(value) for axis, value in zip(axes, seed.parameter_values, strict=True)
+        ]
+        start = boundary.point_near(
+            np.array([*scaled, log(abs(seed.frequency_or_double_eigenvalue))]), np.array([0.0, 1.0, 0.0])
+        )
+        assert boundary.eigenvalue(start.v[2])[int(seed.double_eigenvalue_sign == 0)] == pytest.approx(
+            seed.frequency_or_double_eigenvalue, rel=1e-6
         )
         tangent = start.tangent
         if (scaled[1] < 0.5) != (tangent[1] > 0):
@@ -192,11 +202,11 @@ def test_a_value_on_a_boundary_is_undecided_and_its_neighbours_are_not():
         Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4),
         RowRequest("F", np.array([10.0, 30.0, hopf, 40.0]), 1e-9, True, 9),
     )
-    assert row.rod_class.tolist() == [
-        RodClass.monotone,
-        RodClass.oscillatory,
-        RodClass.undecided,
-        RodClass.flutter,
+    assert row.stability_class.tolist() == [
+        StabilityClass.monotone,
+        StabilityClass.oscillatory,
+        StabilityClass.undecided,
+        StabilityClass.flutter,
     ]
     assert row.unstable_count.tolist() == [0, 0, -1, 2]
 
@@ -207,7 +217,7 @@ def test_a_row_without_a_bound_fails_with_its_reason():
     )
     assert row.status == ThresholdStatus.failed
     assert "bound" in row.message
-    assert (row.rod_class == RodClass.undecided).all()
+    assert (row.stability_class == StabilityClass.undecided).all()
 
 
 def test_a_diagram_that_begins_at_the_limit_of_the_model_has_its_curves():
@@ -216,8 +226,8 @@ def test_a_diagram_that_begins_at_the_limit_of_the_model_has_its_curves():
     rod = Rod(F=30.0, k1=1e4, k2=20.0, gamma3=0.01)
     _, seeds = rows(axes, rod, 3)
     curves = boundary_curves_through(ParameterPlane(rod, axes), seeds)
-    assert {seed.values[1] for seed in seeds} == {0.0, 0.5, 1.0}
-    assert (curves.untraced_seed_count, curves.max_seed_distance_in_rows < 1e-11) == (0, True)
+    assert {seed.parameter_values[1] for seed in seeds} == {0.0, 0.5, 1.0}
+    assert (curves.untraced_seed_count, curves.max_seed_distance_per_row_length < 1e-11) == (0, True)
 
 
 @pytest.mark.parametrize(
@@ -225,7 +235,7 @@ def test_a_diagram_that_begins_at_the_limit_of_the_model_has_its_curves():
 )
 def test_each_curve_is_followed_once_and_ends_are_no_folds(k1, top, folds):
     """Rows on the border, and rows where the curve of double eigenvalues runs along the crushed rods."""
-    axes = (PlaneAxis("F", 0.0, top), PlaneAxis("k1", k1[0], k1[-1], logarithmic=k1[-1] > 10 * k1[0]))
+    axes = (PlaneAxis("F", 0.0, top), PlaneAxis("k1", k1[0], k1[-1], is_logarithmic=k1[-1] > 10 * k1[0]))
     rod = Rod(F=0.0, k1=k1[-1], k2=1e4, gamma3=1e-4)
     seeds = []
     for value in k1:
@@ -236,7 +246,10 @@ def test_each_curve_is_followed_once_and_ends_are_no_folds(k1, top, folds):
     curves = boundary_curves_through(ParameterPlane(rod, axes), seeds).curves
     found = [fold for curve in curves for fold in curve.folds]
     assert len(found) == folds
-    assert len({(f.axis, round(f.values[0], 3), round(f.values[1], 3)) for f in found}) == folds
+    assert (
+        len({(f.axis, round(f.parameter_values[0], 3), round(f.parameter_values[1], 3)) for f in found})
+        == folds
+    )
 
 
 @pytest.mark.parametrize("off", [-3e-16, 0.0, 3e-16])
@@ -245,7 +258,11 @@ def test_a_force_that_is_k1_but_for_rounding_is_crushed(off):
     k1 = 10**2.5
     values = np.array([0.5 * k1, k1 * (1 + off), 2 * k1])
     row = solve_row(Rod(F=0.0, k1=k1, k2=1e4, gamma3=1e-4), RowRequest("F", values, 1e-9, True, 9))
-    assert [RodClass(motion).name for motion in row.rod_class] == ["flutter", "crushed", "crushed"]
+    assert [StabilityClass(motion).name for motion in row.stability_class] == [
+        "flutter",
+        "crushed",
+        "crushed",
+    ]
 
 
 @pytest.mark.parametrize(
@@ -267,9 +284,11 @@ def test_a_row_from_a_pull_that_cannot_be_searched_begins_at_a_smaller_pull(k, v
     pushed = solve_row(rod, RowRequest("F", np.array([0.0, 40.0]), 1e-8, True, 9)).thresholds.thresholds
     found = [c.value for c in row.thresholds.thresholds]
     assert found == pytest.approx([c.value for c in pushed], rel=1e-8)
-    assert (row.rod_class == RodClass.undecided).tolist() == [n < undecided for n in range(len(values))]
-    assert row.rod_class[undecided] == RodClass.monotone
-    assert row.rod_class[-1] == RodClass.flutter
+    assert (row.stability_class == StabilityClass.undecided).tolist() == [
+        n < undecided for n in range(len(values))
+    ]
+    assert row.stability_class[undecided] == StabilityClass.monotone
+    assert row.stability_class[-1] == StabilityClass.flutter
 
 
 def test_a_row_from_a_strong_pull_is_searched_whole():
@@ -277,7 +296,11 @@ def test_a_row_from_a_strong_pull_is_searched_whole():
     rod = Rod(F=0.0, k1=1e8, k2=1e8, gamma3=1e-3)
     row = solve_row(rod, RowRequest("F", np.array([-5e3, -100.0, 40.0]), 1e-8, True, 9))
     assert row.status == ThresholdStatus.ok
-    assert row.rod_class.tolist() == [RodClass.monotone, RodClass.monotone, RodClass.flutter]
+    assert row.stability_class.tolist() == [
+        StabilityClass.monotone,
+        StabilityClass.monotone,
+        StabilityClass.flutter,
+    ]
     pushed = solve_row(rod, RowRequest("F", np.array([0.0, 40.0]), 1e-8, True, 9)).thresholds.thresholds
     found = [c.value for c in row.thresholds.thresholds]
     assert found == pytest.approx([c.value for c in pushed], rel=1e-8)
@@ -291,4 +314,4 @@ def test_a_pull_whose_bound_almost_underflows_is_no_failure():
     assert row.message.startswith(
         "the search begins at F = 0, because a search from F = -900000 fails: no a-priori bound"
     )
-    assert (row.rod_class[1:] != RodClass.undecided).all()
+    assert (row.stability_class[1:] != StabilityClass.undecided).all()

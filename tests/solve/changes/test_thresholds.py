@@ -15,7 +15,7 @@ from rodsweep.solve.changes.diagram.rows import classes_and_unstable_counts
 from rodsweep.solve.changes.status import ThresholdStatus
 from rodsweep.solve.changes.threshold_kinds import ThresholdKind
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
-from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings, find_thresholds
+from rodsweep.solve.changes.thresholds_along_path import find_imaginary_axis_crossings, find_thresholds
 from rodsweep.solve.changes.unstable_modes import UnstableModeCounter
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
@@ -34,7 +34,7 @@ def thresholds(k1, k2, gamma3, F_max=200.0, accuracy=1e-11):
 def test_every_change_of_the_reference_and_no_other_to_twelve_digits(rod):
     found = thresholds(*(float(rod[name]) for name in ("k1", "k2", "gamma3", "F_end")))
     assert found.status == ThresholdStatus.ok, found.message
-    assert found.search_result.proved
+    assert found.search_result.is_proved
     assert [SAME_KIND.get(c.kind.name, c.kind.name) for c in found.thresholds] == [
         e["kind"] for e in rod["events"]
     ]
@@ -73,32 +73,32 @@ BESIDE_A_HOPF_POINT = [
 def test_a_search_that_starts_beside_a_hopf_point_is_proved(name, rod, ends, counts):
     """At the start a pair is so close to the axis that the unstable modes there cannot be counted."""
     path = ParameterPath(rod, name)
-    (hopf,) = find_axis_crossings(path, *ends).thresholds
+    (hopf,) = find_imaginary_axis_crossings(path, *ends).thresholds
     for distance in (1e-6, 1e-7, 1e-9, 1e-12, 0.0):
         start = hopf.value * (1 - distance)
-        for search in (find_axis_crossings, find_thresholds):
+        for search in (find_imaginary_axis_crossings, find_thresholds):
             found = search(path, start, ends[1])
             crossings = [c for c in found.thresholds if not c.kind.switches_real_and_complex]
             assert [c.value for c in crossings] == pytest.approx([hopf.value], rel=1e-13)
             assert (found.unstable_at_start, found.unstable_at_end) == counts
-            assert found.proved, found.doubt_text
+            assert found.is_proved, found.doubt_text
         if distance > 1e-13:
-            beyond = find_axis_crossings(path, hopf.value * (1 + distance), ends[1])
+            beyond = find_imaginary_axis_crossings(path, hopf.value * (1 + distance), ends[1])
             assert not beyond.thresholds
-            assert beyond.proved
+            assert beyond.is_proved
             assert (beyond.unstable_at_start, beyond.unstable_at_end) == (counts[1], counts[1])
 
 
 def test_a_start_beside_two_hopf_points_is_counted_after_both(monkeypatch):
     """No position before or between the first two crossings gives a count: a later one gives all numbers."""
     path = ParameterPath(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), "F")
-    whole = find_axis_crossings(path, 0.0, 200.0)
+    whole = find_imaginary_axis_crossings(path, 0.0, 200.0)
     second = whole.thresholds[1].value
     counted = UnstableModeCounter.count_at
     monkeypatch.setattr(
         UnstableModeCounter, "count_at", lambda self, value: counted(self, value) if value > second else -1
     )
-    found = find_axis_crossings(path, 1.0, 200.0, certify=False)
+    found = find_imaginary_axis_crossings(path, 1.0, 200.0, certify=False)
     assert found.unstable_at_start == 0
     assert [c.unstable_after for c in found.thresholds] == [c.unstable_after for c in whole.thresholds]
 
@@ -150,7 +150,7 @@ def test_a_window_that_rounding_cannot_decide_is_reported_open(beyond):
     assert found.status == ThresholdStatus.window_open
     assert found.search_result.open_range[0] < 75.3972626336 < found.search_result.open_range[1]
     assert found.search_result.open_range[1] - found.search_result.open_range[0] < 1e-3
-    assert not found.search_result.proved
+    assert not found.search_result.is_proved
     assert found.search_result.unstable_at_end == 0
 
 
@@ -209,7 +209,7 @@ def test_a_lost_crossing_is_noticed_by_the_counts(monkeypatch):
     found = thresholds(1e4, 1e4, 1e-4)
     assert found.status == ThresholdStatus.not_certified
     assert "modes are unstable between" in found.message
-    assert not found.search_result.proved
+    assert not found.search_result.is_proved
 
 
 def test_the_search_ends_below_a_crushed_rod_and_says_where():
@@ -251,7 +251,7 @@ def test_a_rod_pulled_beyond_its_shear_stiffness_buckles_and_every_kind_of_chang
     assert found.unstable_at_start == 2
     assert not found.oscillates_at_start
     assert kinds[:3] == [ThresholdKind.onset, ThresholdKind.restabilization, ThresholdKind.real_leads]
-    assert found.proved
+    assert found.is_proved
     onset, _, overtaken = found.thresholds[:3]
     assert onset.growth_rate > 60
     for change, before, after in ((onset, False, True), (overtaken, True, False)):
@@ -289,7 +289,7 @@ def test_a_pair_about_to_cross_the_axis_leads():
     assert ThresholdKind.real_leads in kinds
     motion, _ = classes_and_unstable_counts(found, np.array([-4.95]))
     assert motion.tolist() == [1]
-    assert found.proved
+    assert found.is_proved
 
 
 def test_no_change_outside_the_path_is_reported():

@@ -13,7 +13,7 @@ from rodsweep.solve.continuation.curve import (
     StopReason,
     first_crossed_margin,
     follow_curve,
-    zero_along_step,
+    step_length_to_zero,
 )
 from rodsweep.solve.unsolvable import Unsolvable
 
@@ -65,14 +65,14 @@ class Ellipse:
             raise Unsolvable("the curve has a gap")
         return StepResult(point, float(np.linalg.norm(point - guess)), float(self.tangent(point) @ tangent))
 
-    def margins(self, point):
+    def margins_to_curve_end(self, point):
         return np.array([point[0] - self.least])
 
-    def located_zero(self, behind, outer, margin):
+    def point_at_zero_margin(self, behind, outer, margin):
         length = float((outer - behind[-1]) @ self.tangent(behind[-1]))
-        ends = self.margins(behind[-1])[0], self.margins(outer)[0]
-        at = zero_along_step(
-            lambda s: self.margins(self.step(behind, s).solution)[0], ends, length, 1e-13, 1e-14
+        ends = self.margins_to_curve_end(behind[-1])[0], self.margins_to_curve_end(outer)[0]
+        at = step_length_to_zero(
+            lambda s: self.margins_to_curve_end(self.step(behind, s).solution)[0], ends, length, 1e-13, 1e-14
         )
         return self.step(behind, at).solution
 
@@ -89,10 +89,10 @@ class LocatedOnShortSteps(Ellipse):
 
     longest: float = 0.0
 
-    def located_zero(self, behind, outer, margin):
+    def point_at_zero_margin(self, behind, outer, margin):
         if np.linalg.norm(outer - behind[-1]) > self.longest:
             raise Unsolvable("the start is too far")
-        return super().located_zero(behind, outer, margin)
+        return super().point_at_zero_margin(behind, outer, margin)
 
 
 def followed(curve, control=STEPS, start=0.0):
@@ -156,7 +156,7 @@ def test_steps_are_as_long_as_turns_and_predictions_allow():
         first_length=0.01,
         max_length=1.0,
         min_length=1e-6,
-        target_error=5e-3,
+        target_prediction_error=5e-3,
         prediction_order=2,
         max_angle=1.0,
         max_length_ratio=2.0,
@@ -209,17 +209,19 @@ def test_a_zero_along_a_step_needs_two_signs_and_no_value_at_the_ends():
         asked.append(x)
         return x**3 - 0.2
 
-    assert zero_along_step(cube, (-0.2, 0.8), 1.0, 1e-14, 1e-14) == pytest.approx(0.2 ** (1 / 3), abs=1e-13)
+    assert step_length_to_zero(cube, (-0.2, 0.8), 1.0, 1e-14, 1e-14) == pytest.approx(
+        0.2 ** (1 / 3), abs=1e-13
+    )
     assert not {0.0, 1.0} & set(asked)
     with pytest.raises(Unsolvable, match="same sign at both ends"):
-        zero_along_step(cube, (0.1, 0.8), 1.0, 1e-14, 1e-14)
+        step_length_to_zero(cube, (0.1, 0.8), 1.0, 1e-14, 1e-14)
 
 
 @given(st.floats(-6.0, 3.0), st.floats(0.01, 0.99), st.floats(-12.0, -2.0))
 def test_a_zero_along_a_step_of_any_length_is_as_accurate_as_asked_for(decades, share, digits):
     length, relative = 10.0**decades, 10.0**digits
     ends = -(share**3), 1 - share**3
-    found = zero_along_step(lambda x: (x / length) ** 3 - share**3, ends, length, 0.0, relative)
+    found = step_length_to_zero(lambda x: (x / length) ** 3 - share**3, ends, length, 0.0, relative)
     assert abs(found - share * length) <= 2 * relative * length
 
 

@@ -21,23 +21,23 @@ from rodsweep.discretization.stresses_at_jumps import interpolate_stress, stress
 from rodsweep.model.material.laws import LAWS
 from rodsweep.model.material.profile import FACTOR_NAMES, Profile
 from rodsweep.model.material.rod_material import DEFAULT_MATERIAL, RodMaterial
-from rodsweep.model.material.stress_strain import LocalSection, stress_beyond_rest
+from rodsweep.model.material.stress_strain import LocalSection, stress_minus_rest_stress
 from rodsweep.model.parameters import PARAMETERS
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.threshold_kinds import ThresholdKind
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
 from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
 from rodsweep.solve.cycle.by_integration import solve_by_integration
+from rodsweep.solve.cycle.cycle_of_neighbouring_rod import CycleStart
 from rodsweep.solve.cycle.cycle_outcome import CycleRequest
-from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
+from rodsweep.solve.cycle.hopf_start import hopf_point_below_force, orbit_from_hopf
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
-from rodsweep.solve.cycle.neighbour import CycleStart
 from rodsweep.solve.cycle.straight_rod import straight_rod_stability
-from rodsweep.solve.cycle.transient.motion_mesh import coarse_mesh_along_branch
+from rodsweep.solve.cycle.transient.motion_mesh import coarse_mesh_for_branch_to_cycle
 from rodsweep.solve.hopf.criticality import solve_criticality
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CycleMotion
-from rodsweep.solve.orbit.newton import newton
+from rodsweep.solve.orbit.newton import solve_by_newton
 from rodsweep.solve.spectrum.path import leader_in_range
 
 STEP = Profile((0.0, 0.4, 0.4, 1.0), ((1.0,) * 6,) * 2 + ((3.0, 0.5, 2.0, 1.0, 1.5, 0.7),) * 2)
@@ -71,7 +71,7 @@ def moving(form, size, seed=0):
     """(state, V, G) of a random state."""
     x = size * np.random.default_rng(seed).standard_normal(form.unknown_count)
     V, G = np.empty((2, 3, form.mesh.node_count + 1))
-    write_balance(x, V, G, form.nodal_rod, form.mesh.matrices)
+    write_balance(x, V, G, form.nodal_rod, form.mesh.node_matrices)
     return x, V, G
 
 
@@ -96,7 +96,7 @@ def test_the_balance_changes_with_every_parameter_as_its_differences_say(name, p
     x, V, _ = moving(form, 1.0)
     change = np.empty((3, *V.shape))
     write_balance_parameter_derivative(
-        x, V, change, form.parameter_derivative(parameter), form.nodal_rod, form.mesh.matrices
+        x, V, change, form.nodal_rod_parameter_derivative(parameter), form.nodal_rod, form.mesh.node_matrices
     )
     at = form.rod.coordinate(parameter)
     h = 1e-6 * max(abs(at), 1e-3)
@@ -112,12 +112,12 @@ def test_the_balance_changes_with_every_parameter_as_its_differences_say(name, p
 def test_the_energy_grows_by_what_the_force_gives_and_the_fluid_takes(name):
     form = on_mesh(name)
     x, V, G = moving(form, 0.3)
-    weighted = form.nodal_rod.compliance * form.mesh.quadrature
+    weighted = form.nodal_rod.compliance * form.mesh.quadrature_weights
     rates = form.layout.state(G / weighted, V)
     h = 1e-4 / np.abs(rates).max()
     steps = [form.elastic_energy(x + k * h * rates) for k in (-2, -1, 1, 2)]
     growth = (steps[0] - 8 * steps[1] + 8 * steps[2] - steps[3]) / (12 * h)
-    lost = np.sum(form.mesh.quadrature * form.nodal_rod.drag * V**2)
+    lost = np.sum(form.mesh.quadrature_weights * form.nodal_rod.drag * V**2)
     power = -form.nodal_rod.tip_stress @ G[:, -1] - lost
     assert growth == pytest.approx(power, abs=1e-7 * lost)
 
@@ -131,7 +131,7 @@ def test_the_mixed_form_has_the_same_motion_to_third_order(name):
     for size in (0.02, 0.01):
         x, V, G = moving(form, size)
         X = mixed.layout.state(form.stresses(x), V)
-        cubic = mixed.trilinear(X, X, X) / 6
+        cubic = mixed.trilinear_form(X, X, X) / 6
         S, _ = mixed.stresses_and_velocities(mixed_rate(mixed, X) + cubic)
         errors.append(np.abs(S[:, :-1] - G[:, :-1]).max() / np.abs(G).max())
         balanced = mixed.stresses_and_velocities(mixed_rate(mixed, X) + cubic)[1]
@@ -178,7 +178,7 @@ def test_cycles_are_those_of_strains_marched_in_time(law, taper, values):
     rod = Rod(**values, taper=taper, material=material)
     found = solve_cycle(rod, request(1e-8), None, "F")
     assert found.status.name == "cycle"
-    orbit = found.neighbour.predictor.orbit
+    orbit = found.start_for_next_rod.predictor.orbit
 
     def radius(u):
         return 1 - (1 - taper) * u
@@ -213,7 +213,7 @@ def test_cycles_of_rubber_segments_are_those_of_displacements_marched_in_time(se
     rod = Rod(**values, material=material)
     found = solve_cycle(rod, request(1e-8), None, "F")
     assert found.status.name == "cycle"
-    orbit = found.neighbour.predictor.orbit
+    orbit = found.start_for_next_rod.predictor.orbit
     stiffness, drag = (rod.k1, rod.k2, 1.0), (rod.gamma1, 1.0, rod.gamma3)
     outer = [np.multiply(own, f) for own, f in ((stiffness, factors[:3]), (drag, factors[3:]))]
     segments = Segments(
@@ -252,12 +252,12 @@ def test_the_largest_y_of_segments_is_within_its_error(accuracy, names, values, 
     profile = Profile((0.0, at, at, 1.0), ((1.0,) * len(FACTOR_NAMES),) * 2 + (factors,) * 2)
     rod = Rod(**values, gamma1=gamma1, material=RodMaterial(*names, profile))
     memory = NewtonWorkspace()
-    form = StressForm(rod, coarse_mesh_along_branch(rod))
-    found = refined_cycle(orbit_from_hopf(form, hopf_point_below(rod), memory), accuracy, memory)
+    form = StressForm(rod, coarse_mesh_for_branch_to_cycle(rod))
+    found = refined_cycle(orbit_from_hopf(form, hopf_point_below_force(rod), memory), accuracy, memory)
     orbit = found.orbit
     finer = mesh_with_edges(orbit.form.mesh.edges, orbit.form.mesh.order + 8)
     start = orbit.on_mesh(finer, 2 * orbit.interval_count, orbit.stage_count + 1)
-    exact = CycleMotion(newton(start, 1e-12, memory).orbit).extrema["tip_y_max"]
+    exact = CycleMotion(solve_by_newton(start, 1e-12, memory).orbit).tip_extrema["tip_y_max"]
     assert abs(found.measures.tip_y_max / exact - 1) <= found.errors.amplitude_error
 
 
@@ -285,7 +285,7 @@ def test_a_jump_of_factor_one_is_none():
     grid = mesh_with_edges((0.0, 0.4, 1.0), 7)
     materials = (RodMaterial("neo_hookean", "swelling", profile) for profile in (None, JUMP_OF_ONE))
     plain, jumping = (StressForm(Rod(**values, material=material), grid) for material in materials)
-    assert (len(plain.nodal_rod.jumps), len(jumping.nodal_rod.jumps)) == (0, 1)
+    assert (len(plain.nodal_rod.jump_nodes), len(jumping.nodal_rod.jump_nodes)) == (0, 1)
     (x, V, G), (_, V_jumping, G_jumping) = (moving(form, 5.0) for form in (plain, jumping))
     assert np.abs(V_jumping - V).max() < 1e-13 * np.abs(V).max()
     assert np.abs(G_jumping - G).max() < 1e-13 * np.abs(G).max()
@@ -297,9 +297,9 @@ def test_stress_at_a_jump_is_that_of_both_sides_and_strain_their_mean():
     x = 20.0 * np.random.default_rng(3).standard_normal(form.unknown_count)
     S = form.stresses(x)
     ((before, behind),) = stresses_at_both_sides(form.nodal_rod, S)
-    (node,), (sides,) = form.nodal_rod.jumps, form.nodal_rod.jump_sides
+    (node,), (sides,) = form.nodal_rod.jump_nodes, form.nodal_rod.jump_side_coefficients
     both = list(zip(sides, (before, behind), strict=True))
-    stresses = [stress_beyond_rest(2, LocalSection(*side[:3]), *q) for side, q in both]
+    stresses = [stress_minus_rest_stress(2, LocalSection(*side[:3]), *q) for side, q in both]
     assert stresses[0] == pytest.approx(stresses[1], rel=1e-12)
     for component, place, own in ((0, 1, 0), (2, 2, 1)):
         mean = sum(side[5] * side[place] * q[own] for side, q in both)
@@ -324,7 +324,11 @@ def test_fields_with_a_jump_are_carried_to_other_meshes():
         before, behind = (lambda u: np.cos(5 * u), lambda u: 2 + np.sin(4 * u))
         fields = []
         for form in (source, target):
-            u, (node,), (sides,) = form.mesh.node_positions, form.nodal_rod.jumps, form.nodal_rod.jump_sides
+            u, (node,), (sides,) = (
+                form.mesh.node_positions,
+                form.nodal_rod.jump_nodes,
+                form.nodal_rod.jump_side_coefficients,
+            )
             S = np.array([np.where(u < u[node], before(u), behind(u)), np.cos(3 * u), 0 * u])
             S[2] = S[0]
             for component, share in ((0, 3), (2, 4)):
@@ -346,12 +350,16 @@ def test_states_with_a_jump_have_the_values_of_both_sides_on_other_meshes():
         )
     )
     mean = np.zeros((3, source.mesh.node_count + 1))
-    (node,) = source.nodal_rod.jumps
+    (node,) = source.nodal_rod.jump_nodes
     mean[:, node] = 5.0, 0.0, 3.0
     ((before, behind),) = stresses_at_both_sides(source.nodal_rod, mean)
     fields = []
     for form in (source, target):
-        u, (jump,), (sides,) = form.mesh.node_positions, form.nodal_rod.jumps, form.nodal_rod.jump_sides
+        u, (jump,), (sides,) = (
+            form.mesh.node_positions,
+            form.nodal_rod.jump_nodes,
+            form.nodal_rod.jump_side_coefficients,
+        )
         S = np.zeros((3, len(u)))
         for component, share, one, other in zip((0, 2), (3, 4), before, behind, strict=True):
             wave = 1 + np.sin(15 * (u - u[jump]))
@@ -364,7 +372,7 @@ def test_states_with_a_jump_have_the_values_of_both_sides_on_other_meshes():
     error, other_error = (np.abs(each - fields[1]).max() for each in (found, extrapolated))
     assert error < other_error / 5 < 0.1
     assert error < 2e-2
-    jump = target.nodal_rod.jumps
+    jump = target.nodal_rod.jump_nodes
     assert found[:, jump] == pytest.approx(fields[1][:, jump], rel=1e-8)
 
 
@@ -427,7 +435,7 @@ def test_a_cone_begins_to_beat_where_its_thresholds_say():
 def test_a_neighbour_is_restored_with_its_build():
     """A chain that was interrupted goes on with the same data."""
     rod = Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, taper=0.9, material=RodMaterial(profile=STEP))
-    neighbour = solve_cycle(rod, request(1e-5), None, "F").neighbour
+    neighbour = solve_cycle(rod, request(1e-5), None, "F").start_for_next_rod
     again = CycleStart.from_arrays(neighbour.arrays())
     assert again.predictor.orbit.form.rod == rod
     assert again.predictor.orbit.form.mesh == neighbour.predictor.orbit.form.mesh
@@ -443,17 +451,17 @@ def test_a_chain_of_arms_goes_on_from_a_checkpoint_with_its_range():
     rods = [Rod(F=14.0, k1=1e4 + 50 * k, k2=1e2, gamma3=1e-2, material=material) for k in range(3)]
     neighbour = None
     for rod in rods[:2]:
-        neighbour = solve_cycle(rod, request(1e-4), neighbour, "k1").neighbour
+        neighbour = solve_cycle(rod, request(1e-4), neighbour, "k1").start_for_next_rod
     again = CycleStart.from_arrays(neighbour.arrays())
     assert again.arm_range == neighbour.arm_range is not None
     first = solve_cycle(rods[2], request(1e-4), neighbour, "k1")
-    leader_in_range.family_and_hulls_of_range.cache_clear()
+    leader_in_range.arm_family_and_hulls_of_range.cache_clear()
     second = solve_cycle(rods[2], request(1e-4), again, "k1")
     assert (first.linear_growth_rate, first.linear_frequency) == (
         second.linear_growth_rate,
         second.linear_frequency,
     )
-    assert first.neighbour.arm_range == neighbour.arm_range
+    assert first.start_for_next_rod.arm_range == neighbour.arm_range
 
 
 def test_a_slow_fast_cycle_far_longer_than_the_time_constant_of_its_mode_is_found():

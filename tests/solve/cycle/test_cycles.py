@@ -24,16 +24,16 @@ from rodsweep.solve.cycle.accuracy.minimal_period import (
 )
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.reference_rod import warm_up
-from rodsweep.solve.cycle.transient import schemes, transient_integration
+from rodsweep.solve.cycle.transient import cycle_search, schemes, transient_integration
 from rodsweep.solve.motion.integrator import destroy_integrators
+from rodsweep.solve.orbit.coefficient_tails import coefficient_tails_of, legendre_analysis_matrix
 from rodsweep.solve.orbit.compiled_measures import write_powers
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CycleMotion, measures_of
-from rodsweep.solve.orbit.newton import newton, newton_step_if_matrix_distant
-from rodsweep.solve.orbit.orbit import Orbit, interval_lengths, node_times
+from rodsweep.solve.orbit.newton import newton_step_if_matrix_distant, solve_by_newton
+from rodsweep.solve.orbit.orbit import Orbit, node_times, time_interval_lengths
 from rodsweep.solve.orbit.symmetry import NO_SYMMETRY, REFLECTION
-from rodsweep.solve.orbit.tails import legendre_analysis_matrix, tails_of
-from rodsweep.solve.orbit.time_grading import UNIFORM_TIME
+from rodsweep.solve.orbit.time_grading import UNIFORM_TIME_GRADING
 from rodsweep.solve.unsolvable import Unsolvable
 
 SOFT = (1e4, 1e2, 1e-2, 1.0)
@@ -178,7 +178,7 @@ def test_a_stable_rod_may_also_beat():
     far = cycle(170.0, STRETCHABLE, 0.1)
     below = cycle(150.0, STRETCHABLE, 0.1)
     near = solve_cycle(
-        rod_of(170.0, *STRETCHABLE), CycleRequest(1e-6, 0.01, 5, 0, 0, 0, 300), below.neighbour, "F"
+        rod_of(170.0, *STRETCHABLE), CycleRequest(1e-6, 0.01, 5, 0, 0, 0, 300), below.start_for_next_rod, "F"
     )
     for c in (far, near):
         assert c.status == CycleStatus.cycle
@@ -190,25 +190,25 @@ def test_a_stable_rod_may_also_beat():
 def test_below_the_hopf_point_a_neighbours_cycle_decays():
     above = cycle(27.43)
     for F in (27.42, 25.0):
-        found = solve_cycle(rod_of(F, *SOFT), REQUEST, above.neighbour, "F")
+        found = solve_cycle(rod_of(F, *SOFT), REQUEST, above.start_for_next_rod, "F")
         assert found.status == CycleStatus.straight
 
 
 def test_what_a_neighbour_hands_on_is_its_cycle():
     c = reference()
-    handed = c.neighbour
+    handed = c.start_for_next_rod
     assert handed.predictor.orbit.period == c.measures.period
     assert handed.predictor.orbit.form.tip_coordinates(handed.predictor.orbit.start_state)[
         1
     ] == pytest.approx(c.measures.tip_y_max)
-    again = solve_cycle(rod_of(50.0, *SOFT), REQUEST, c.neighbour, "F")
+    again = solve_cycle(rod_of(50.0, *SOFT), REQUEST, c.start_for_next_rod, "F")
     assert again.measures.period == pytest.approx(c.measures.period, rel=1e-9)
     assert again.periods == 0
 
 
 def test_what_is_stored_agrees_with_the_numbers():
     c = reference()
-    assert c.tip.shape == c.energy.shape == (3, 100)
+    assert c.tip.shape == c.energy_and_powers.shape == (3, 100)
     assert c.shape.shape == (3, 8, 33)
     x, y, theta = c.tip
     # The path has harmonics beyond the 50 of 100 samples, far below its error.
@@ -218,7 +218,7 @@ def test_what_is_stored_agrees_with_the_numbers():
     assert (y.max(), theta.max()) == pytest.approx((c.measures.tip_y_max, c.measures.tip_theta_max), rel=1e-3)
     assert y[0] == pytest.approx(0.0, abs=1e-8)
     assert y[1] > 0
-    (energy, injection, dissipation), m = c.energy, c.measures
+    (energy, injection, dissipation), m = c.energy_and_powers, c.measures
     assert (injection.mean(), dissipation.mean()) == pytest.approx((m.injection_mean, m.dissipation_mean))
     assert (injection.std(), dissipation.std()) == pytest.approx((m.injection_rms, m.dissipation_rms))
     assert time_derivative(energy) / m.period == pytest.approx(
@@ -236,7 +236,7 @@ def test_a_crushed_rod_has_left_the_model():
     assert not c.status.succeeded
     assert c.message
     assert np.isnan(c.measures.period)
-    assert c.tip is c.neighbour is None
+    assert c.tip is c.start_for_next_rod is None
 
 
 def test_a_rod_that_needs_longer_is_not_settled():
@@ -267,7 +267,7 @@ def test_an_error_inside_is_a_status(monkeypatch):
     def fail(*_):
         raise np.linalg.LinAlgError("Singular matrix")
 
-    monkeypatch.setattr(transient_integration, "refined_cycle", fail)
+    monkeypatch.setattr(cycle_search, "refined_cycle", fail)
     c = solve_cycle(rod_of(50.0, *SOFT), REQUEST)
     assert (c.status, c.message) == (CycleStatus.failed, "Singular matrix")
 
@@ -334,7 +334,7 @@ def test_period_is_the_minimal_one(rod, period, accuracy, amplitude):
 
 
 def orbit_at_fifty():
-    return reference().neighbour.predictor.orbit
+    return reference().start_for_next_rod.predictor.orbit
 
 
 def repeated(half, times):
@@ -349,14 +349,16 @@ def repeated(half, times):
 
 
 def test_three_periods_are_recognised_and_cut_to_one():
-    half = newton(orbit_at_fifty().on_mesh(uniform_mesh(1, 16), 12, 4), 1e-10, NewtonWorkspace()).orbit
+    half = solve_by_newton(
+        orbit_at_fifty().on_mesh(uniform_mesh(1, 16), 12, 4), 1e-10, NewtonWorkspace()
+    ).orbit
     thrice = replace(repeated(half, 3), symmetry=REFLECTION)
     thrice = replace(thrice, values=np.append(thrice.values[:-1], 3 * half.period))
     assert [common_harmonic_divisor(CycleMotion(orbit), 1e-3) for orbit in (half, thrice)] == [1, 3]
     assert [possible_period_divisor(CycleMotion(orbit), 1e-8) for orbit in (half, thrice)] == [1, 3]
     assert restricted_to_minimal_period(half) is half
     once = newton_step_if_matrix_distant(
-        newton(restricted_to_minimal_period(thrice), 1e-10, NewtonWorkspace()), 0.0
+        solve_by_newton(restricted_to_minimal_period(thrice), 1e-10, NewtonWorkspace()), 0.0
     )
     assert once.orbit.period == pytest.approx(half.period, rel=1e-7)  # 34 intervals instead of 12
     assert np.abs(once.matrix.multipliers()[0]) == pytest.approx(1.0, abs=1e-8)
@@ -364,8 +366,8 @@ def test_three_periods_are_recognised_and_cut_to_one():
 
 @cache
 def orbit_on(elements, order):
-    return newton(
-        orbit_at_fifty().on_mesh(uniform_mesh(elements, order), 12, 4, UNIFORM_TIME),
+    return solve_by_newton(
+        orbit_at_fifty().on_mesh(uniform_mesh(elements, order), 12, 4, UNIFORM_TIME_GRADING),
         1e-10,
         NewtonWorkspace(),
     ).orbit
@@ -387,19 +389,19 @@ def test_the_path_is_that_of_the_states_strains_and_shapes(elements, order):
     series = path.strain_coefficients
     waves = np.exp(2j * np.pi * np.outer(np.arange(22) / 22, np.arange(23)))
     assert np.tensordot(waves, series, 1).real.swapaxes(0, 1) == pytest.approx(strains, abs=1e-12)
-    assert path.bending_harmonics == pytest.approx(np.linalg.norm(series[1:, 2], axis=1), abs=1e-13)
+    assert path.curvature_harmonic_sizes == pytest.approx(np.linalg.norm(series[1:, 2], axis=1), abs=1e-13)
     unsymmetric = CycleMotion(repeated(half, 2))
     assert unsymmetric.tip_coefficients == pytest.approx(path.tip_coefficients, abs=1e-13)
-    assert unsymmetric.bending_harmonics == pytest.approx(path.bending_harmonics, abs=1e-12)
-    assert unsymmetric.extrema == pytest.approx(path.extrema, rel=1e-13)
+    assert unsymmetric.curvature_harmonic_sizes == pytest.approx(path.curvature_harmonic_sizes, abs=1e-12)
+    assert unsymmetric.tip_extrema == pytest.approx(path.tip_extrema, rel=1e-13)
 
 
 def test_extrema_are_those_of_a_dense_path():
     path = CycleMotion(orbit_on(1, 15))
     x, y, theta = path.tip_x_y_theta_from_orbit_start(20000).T
     dense = {"tip_x_min": x.min(), "tip_x_max": x.max(), "tip_y_max": y.max(), "tip_theta_max": theta.max()}
-    assert path.extrema == pytest.approx(dense, rel=1e-6)
-    assert path.extrema["tip_x_min"] <= x.min() and path.extrema["tip_x_max"] >= x.max()
+    assert path.tip_extrema == pytest.approx(dense, rel=1e-6)
+    assert path.tip_extrema["tip_x_min"] <= x.min() and path.tip_extrema["tip_x_max"] >= x.max()
 
 
 def test_means_are_integrals_by_the_methods_own_quadrature():
@@ -407,7 +409,7 @@ def test_means_are_integrals_by_the_methods_own_quadrature():
     m, stages = measures_of(CycleMotion(half)), half.stage_states.reshape(-1, half.form.unknown_count)
     power, weights = (
         np.empty((2, len(stages))),
-        np.outer(interval_lengths(12), half.collocation.weights).ravel(),
+        np.outer(time_interval_lengths(12), half.collocation_method.weights).ravel(),
     )
     write_powers(stages, power, half.orbit_equations)
     mean = power @ weights
@@ -427,7 +429,7 @@ def test_the_tail_in_space_is_of_the_last_two_legendre_coefficients(elements, or
     envelope = np.maximum.accumulate((c / c.max(axis=1)[:, None]).max(axis=0)[::-1])[::-1]
     upper = np.arange(order + 1)[(order + 1) // 2 :]
     slope = np.polyfit(upper, np.log(envelope[upper]), 1)[0]
-    assert tails_of(half).space_decay == pytest.approx(-slope, rel=1e-9)
+    assert coefficient_tails_of(half).log_coefficient_decay_per_order == pytest.approx(-slope, rel=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -447,10 +449,10 @@ def test_harmonics_in_common_are_a_shorter_period_for_all_that_is_known(sizes, e
     harmonics = np.zeros(32)
     for k, size in sizes.items():
         harmonics[k - 1] = size
-    path = SimpleNamespace(bending_harmonics=harmonics, tip_angle_harmonics=np.zeros(32))
+    path = SimpleNamespace(curvature_harmonic_sizes=harmonics, tip_angle_harmonic_sizes=np.zeros(32))
     assert possible_period_divisor(path, error) == divisor
     # The tip alone shows that the period is minimal.
-    path = SimpleNamespace(bending_harmonics=np.eye(32)[1], tip_angle_harmonics=harmonics)
+    path = SimpleNamespace(curvature_harmonic_sizes=np.eye(32)[1], tip_angle_harmonic_sizes=harmonics)
     assert possible_period_divisor(path, error) == (1 if divisor == 1 else 2)
 
 
@@ -484,7 +486,9 @@ def test_what_grows_the_faster_the_larger_it_is_need_not_be_waited_for():
 def test_a_motion_that_takes_too_many_steps_is_not_settled_and_says_so(monkeypatch):
     """Motions that return seldom went on for a minute, because only returns were counted."""
     monkeypatch.setattr(
-        schemes, "TIME_SCHEME_SETTINGS", replace(schemes.TIME_SCHEME_SETTINGS, default_max_steps_per_return=1)
+        schemes,
+        "TIME_SCHEME_SETTINGS",
+        replace(schemes.TIME_SCHEME_SETTINGS, default_scheme_max_steps_per_return=1),
     )
     c = solve_cycle(rod_of(240.0, *SOFT), REQUEST)
     assert c.status == CycleStatus.not_settled
@@ -503,7 +507,7 @@ def test_finer_meshes_are_tried_for_short_cycles_only(repeats, meshes, monkeypat
         raise Unsolvable("no orbit")
 
     half = orbit_at_fifty()
-    monkeypatch.setattr(refinement, "newton", fails)
+    monkeypatch.setattr(refinement, "solve_by_newton", fails)
     points = np.concatenate([half.all_states[:1], np.tile(half.all_states[1:], (repeats, 1))])
     orbit = Orbit.from_states(half.form, half.symmetry, repeats * half.period, points, half.stage_count)
     with pytest.raises(Unsolvable):
@@ -517,7 +521,7 @@ def test_a_closed_motion_without_a_cycle_near_ends_and_says_so(monkeypatch):
     def fails(*_):
         raise Unsolvable("no orbit")
 
-    monkeypatch.setattr(transient_integration, "refined_cycle", fails)
+    monkeypatch.setattr(cycle_search, "refined_cycle", fails)
     c = solve_cycle(rod_of(50.0, *SOFT), REQUEST)
     assert c.status == CycleStatus.not_settled
     assert c.periods < REQUEST.most_periods
@@ -542,7 +546,9 @@ def test_a_slow_motion_near_a_fold_reaches_the_cycle_by_its_amplitude_equation()
 @pytest.mark.long
 def test_a_motion_that_is_slow_near_a_fold_is_said_to_be(monkeypatch):
     """Without the amplitude equation the motion above is not settled within 320 returns."""
-    monkeypatch.setattr(transient_integration.AmplitudeEquation, "factor_to_slow_limit", lambda *_: None)
+    monkeypatch.setattr(
+        transient_integration.AmplitudeEquation, "scaling_factor_to_slow_limit", lambda *_: None
+    )
     rod = Rod(F=85.6, k1=150.0, k2=1e4, gamma3=1e-4)
     request = CycleRequest(
         amplitude=0.06, harmonics=8, samples=0, shapes=0, nodes=0, most_periods=320, accuracy=1e-5

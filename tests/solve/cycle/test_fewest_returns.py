@@ -5,11 +5,14 @@ from math import inf, isnan
 
 import pytest
 
-from rodsweep.config.task.limit_cycle import LEAST_PERIODS
+from rodsweep.config.task.limit_cycle import MIN_MOST_PERIODS_BY_METHOD
 from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.by_integration import solve_by_integration
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, solve_cycle
-from rodsweep.solve.cycle.transient.returns import classified_run_length, compared_run_length
+from rodsweep.solve.cycle.transient.poincare_returns import (
+    return_count_of_classified_run,
+    return_count_of_compared_run,
+)
 
 FAST = Rod(F=100.0, k1=1e4, k2=1e4, gamma3=1e-2, gamma1=1.0)
 """A rod whose motion is on its cycle after the first returns."""
@@ -25,9 +28,9 @@ def solved(rod, method, most_periods):
     return solve(rod, replace(REQUEST, most_periods=most_periods))
 
 
-@pytest.mark.parametrize("method", LEAST_PERIODS)
+@pytest.mark.parametrize("method", MIN_MOST_PERIODS_BY_METHOD)
 def test_the_fewest_returns_allowed_are_the_fewest_that_give_a_cycle(method):
-    least = LEAST_PERIODS[method]
+    least = MIN_MOST_PERIODS_BY_METHOD[method]
     enough, too_few = solved(FAST, method, least), solved(FAST, method, least - 1)
     assert (enough.status.name, enough.periods) == ("cycle", least)
     assert enough.errors.period_error < REQUEST.accuracy
@@ -35,10 +38,10 @@ def test_the_fewest_returns_allowed_are_the_fewest_that_give_a_cycle(method):
     assert isnan(too_few.measures.period)
 
 
-@pytest.mark.parametrize("method", LEAST_PERIODS)
+@pytest.mark.parametrize("method", MIN_MOST_PERIODS_BY_METHOD)
 @pytest.mark.parametrize("more", [0, 1, 6])
 def test_a_motion_ends_at_its_maximum_of_returns(method, more):
-    most_periods = LEAST_PERIODS[method] + more
+    most_periods = MIN_MOST_PERIODS_BY_METHOD[method] + more
     found = solved(TORUS, method, most_periods)
     assert (found.status.name, found.periods) == ("not_settled", most_periods)
     assert f"{most_periods} returns" in found.message
@@ -67,13 +70,13 @@ def test_a_limiting_rod_needs_a_third_integration():
 def test_runs_of_a_motion_add_up_to_its_maximum(most):
     total, runs = 0, []
     while total < most:
-        runs.append(classified_run_length(not runs, most - total))
+        runs.append(return_count_of_classified_run(not runs, most - total))
         total += runs[-1]
     assert total == most
     assert all(run >= 3 for run in runs) or most < 3
     compared = 0
     while compared < most:
-        run = compared_run_length(most - compared)
+        run = return_count_of_compared_run(most - compared)
         assert run >= 5 or most < 5
         compared += run
     assert compared == most

@@ -135,7 +135,7 @@ def test_the_energy_changes_by_what_is_injected_and_lost_also_at_low_accuracy():
     found = solve_by_integration(
         Rod(F=45.0, k1=2000.0, k2=1000.0, gamma3=1e-5, gamma1=0.57), request(2e-3, samples=48)
     )
-    U, injection, dissipation = found.energy
+    U, injection, dissipation = found.energy_and_powers
     rate = time_derivative(U) / found.measures.period
     assert rate == pytest.approx(injection - dissipation, abs=1e-3 * np.ptp(rate))
 
@@ -181,7 +181,7 @@ def rates_of(distances):
     seen = ReturnDistances(1e-4)
     rates = []
     for distance in distances:
-        seen.record_test(distance, 0.2)
+        seen.record_distance(distance, 0.2)
         rates.append(seen.contraction_rate)
     return rates
 

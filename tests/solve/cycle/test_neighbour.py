@@ -9,12 +9,12 @@ from rodsweep.bench.limit_cycle.swept_rods import TWO_SEGMENT_PROFILE
 from rodsweep.model.material.rod_material import DEFAULT_MATERIAL, RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.results.run.checkpoints import Checkpoints
-from rodsweep.solve.cycle.accuracy.finer_meshes import measured_calibration
+from rodsweep.solve.cycle.accuracy.finer_meshes import measured_mesh_error_calibration
+from rodsweep.solve.cycle.cycle_of_neighbouring_rod import CycleStart
 from rodsweep.solve.cycle.cycles_along_parameter import CYCLE_PREDICTION_SETTINGS, CyclePredictor
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
-from rodsweep.solve.cycle.neighbour import CycleStart
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
-from rodsweep.solve.orbit.newton import newton, relative_change
+from rodsweep.solve.orbit.newton import relative_change, solve_by_newton
 
 ROD = Rod(F=34.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0)
 HOPF = 27.4271941267593
@@ -30,7 +30,7 @@ def chain():
     while F > 1.09 * HOPF:
         cycle = solve_cycle(replace(ROD, F=F), REQUEST, handed[-1], "F")
         assert cycle.status == CycleStatus.cycle
-        handed.append(cycle.neighbour)
+        handed.append(cycle.start_for_next_rod)
         F *= STEP
     return handed[1:]
 
@@ -52,7 +52,7 @@ def test_polynomials_with_as_many_terms_are_predicted_exactly(places, orders):
     here = CyclePredictor(None, places, orders, np.empty(0))
     data = np.where(orders == 1, p.deriv()(places), p(places) - p(0))
     for step in (size, -0.4 * size):
-        assert here.weights(step) @ data == pytest.approx(p(step) - p(0), rel=1e-10, abs=1e-10)
+        assert here.prediction_weights(step) @ data == pytest.approx(p(step) - p(0), rel=1e-10, abs=1e-10)
 
 
 def test_a_chain_goes_on_by_the_cycles_behind(chain):
@@ -70,7 +70,7 @@ def test_a_chain_goes_on_from_a_checkpoint_with_the_same_bits(chain, tmp_path):
         rod = replace(ROD, F=STEP * chain[place].predictor.orbit.form.rod.F)
         there, other = (solve_cycle(rod, REQUEST, start, "F") for start in (chain[place], again))
         assert there.status == CycleStatus.cycle
-        arrays, others = there.neighbour.arrays(), other.neighbour.arrays()
+        arrays, others = there.start_for_next_rod.arrays(), other.start_for_next_rod.arrays()
         assert {name: (a.shape, a.tobytes()) for name, a in arrays.items()} == {
             name: (a.shape, a.tobytes()) for name, a in others.items()
         }
@@ -82,7 +82,7 @@ def test_next_to_a_hopf_point_cycles_are_predicted_though_they_go_as_a_root(chai
     form = last.orbit.form
     for F, most in ((STEP * form.rod.F, 3e-7), (1.05 * HOPF, 1e-4), (1.01 * HOPF, 1e-2)):
         predicted = last.predicted_orbit(replace(form, rod=replace(form.rod, F=F)), "F")
-        found = newton(predicted, 1e-10, NewtonWorkspace()).orbit
+        found = solve_by_newton(predicted, 1e-10, NewtonWorkspace()).orbit
         assert found.max_energy_norm < last.orbit.max_energy_norm
         assert relative_change(predicted, found.values - predicted.values) < most
 
@@ -97,16 +97,16 @@ def test_errors_in_space_of_several_elements_are_kept_where_errors_in_time_are_m
     )
     handed = None
     for _ in range(2):
-        handed = solve_cycle(rod, REQUEST, handed, "F", memory).neighbour
+        handed = solve_cycle(rod, REQUEST, handed, "F", memory).start_for_next_rod
         rod = replace(rod, F=STEP * rod.F)
     calibration = handed.calibration
     orbit = handed.predictor.orbit
     grown = replace(
-        calibration.scaled_on_chain(orbit, 0.05, calibration.indicators),
+        calibration.with_errors_scaled_on_chain(orbit, 0.05, calibration.error_indicators),
         relative_parameter_change=0.05,
         space_time_error_growth=np.array([1.1, 1.2]),
     )
-    measured = measured_calibration(newton(orbit, 1e-11, memory), REQUEST.accuracy, grown)
+    measured = measured_mesh_error_calibration(solve_by_newton(orbit, 1e-11, memory), REQUEST.accuracy, grown)
     assert not grown.is_measured_at_orbit
     assert measured.is_measured_at_orbit
     assert measured.relative_parameter_change == (0.05 if is_kept else 0.0)

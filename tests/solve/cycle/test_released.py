@@ -10,9 +10,9 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.limit_cycle import CycleOutcome, CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.transient.motion_mesh import motion_mesh
 from rodsweep.solve.cycle.transient.shape_trace import SHAPE_TRACE_SETTINGS
-from rodsweep.solve.motion.fixed_tip import bent_state_with_tip_at
 from rodsweep.solve.motion.integrator import integrator
 from rodsweep.solve.motion.time_scheme import TimeScheme
+from rodsweep.solve.motion.tip_target import bent_state_with_tip_at
 
 FLUTTER = Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2)
 BISTABLE = Rod(F=175.0, k1=200.0, k2=1e4, gamma3=1e-4)
@@ -38,8 +38,8 @@ def test_a_rod_below_flutter_comes_to_rest_and_the_motion_ends_there():
     found = released(replace(FLUTTER, F=20.0), 0.7, 0.5)
     deflection = np.abs(found.motion_shapes.shapes[1])
     assert found.status == CycleStatus.straight
-    assert deflection[-1].max() < 2 * SHAPE_TRACE_SETTINGS.max_rest_deflection
-    assert deflection[-20:].max() > SHAPE_TRACE_SETTINGS.max_rest_deflection
+    assert deflection[-1].max() < 2 * SHAPE_TRACE_SETTINGS.max_tip_y_at_rest
+    assert deflection[-20:].max() > SHAPE_TRACE_SETTINGS.max_tip_y_at_rest
 
 
 def test_of_two_stable_states_the_place_decides():

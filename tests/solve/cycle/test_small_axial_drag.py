@@ -12,13 +12,13 @@ from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.branch_limits import BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
-from rodsweep.solve.branch.special.special_point import SpecialKind
+from rodsweep.solve.branch.special.special_point import SpecialPointKind
 from rodsweep.solve.branch.status import BranchStatus
 from rodsweep.solve.cycle.by_integration import solve_by_integration
 from rodsweep.solve.cycle.cycle_outcome import CycleRequest
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
 from rodsweep.solve.cycle.status import CycleStatus
-from rodsweep.solve.cycle.transient.motion_mesh import MOTION_MESH_SETTINGS, integrable_rod
+from rodsweep.solve.cycle.transient.motion_mesh import MOTION_MESH_SETTINGS, rod_for_time_integration
 
 ROD = Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0)
 STIFF = Rod(F=50.0, k1=1e8, k2=1e4, gamma3=1e-8, gamma1=1e-6)
@@ -51,7 +51,7 @@ def test_the_two_forms_have_the_same_cycle(factor):
     arm = replace(ROD, material=falling_to(factor)) if factor else ROD
     base = LIMIT / (factor or 1)
     with_v1, without = (replace(arm, gamma1=base * (1 + sign * 1e-9)) for sign in (-1, 1))
-    forms = [StressForm(rod, uniform_mesh(1, 8)).unknown_velocities for rod in (with_v1, without)]
+    forms = [StressForm(rod, uniform_mesh(1, 8)).unknown_velocity_components for rod in (with_v1, without)]
     assert forms == [(0,), ()]
     assert period_and_y(with_v1) == pytest.approx(period_and_y(without), rel=2e-8)
 
@@ -78,7 +78,7 @@ def test_an_arm_whose_axial_drag_falls_to_little_beats():
 def test_no_part_of_an_integrated_arm_has_less_axial_drag_than_can_be_integrated(gamma1, factor):
     """The drag of the base alone was raised."""
     arm = replace(ROD, gamma1=gamma1, material=falling_to(factor))
-    integrated = integrable_rod(arm)
+    integrated = rod_for_time_integration(arm)
     least = MOTION_MESH_SETTINGS.min_axial_drag
     u = np.linspace(0.01, 0.99, 50)
     drags = [
@@ -119,7 +119,7 @@ def test_branches_start_at_hopf_points_and_have_their_folds(gamma1):
     )
     found = solve_branches(replace(ROD, F=0.0, gamma1=gamma1), request)
     assert found.status == BranchStatus.ok, found.message
-    (fold,) = (p for p in found.curves[0].special_points if p.kind == SpecialKind.fold)
+    (fold,) = (p for p in found.curves[0].special_points if p.kind == SpecialPointKind.fold)
     assert fold.parameter_value == pytest.approx(FOLD, abs=2e-9 if gamma1 == 1e-6 else 2e-6)
 
 
@@ -148,7 +148,7 @@ def test_no_row_of_an_integrated_arm_has_less_rotational_drag_than_can_be_integr
     for row in rows[2:]:
         row[FACTOR_NAMES.index("gamma3")] = factor
     material = RodMaterial(profile=Profile((0.0, 0.5, 0.5, 1.0), tuple(map(tuple, rows))))
-    integrated = integrable_rod(replace(ROD, gamma3=gamma3, taper=taper, material=material))
+    integrated = rod_for_time_integration(replace(ROD, gamma3=gamma3, taper=taper, material=material))
     column = FACTOR_NAMES.index("gamma3")
     drags, given = (
         [

@@ -11,9 +11,9 @@ from rodsweep.bench.limit_cycle.swept_rods import TWO_SEGMENT_PROFILE
 from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle import limit_cycle
-from rodsweep.solve.cycle.hopf_start import hopf_point_below
+from rodsweep.solve.cycle.hopf_start import hopf_point_below_force
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
-from rodsweep.solve.cycle.second_state import SecondState
+from rodsweep.solve.cycle.second_state import SecondStableState
 from rodsweep.solve.cycle.straight_rod import (
     StraightRodStability,
     eigenvalues_to_follow,
@@ -54,8 +54,8 @@ def ended(point, amplitude=0.1, most_periods=400, **more):
 )
 def test_the_sign_of_a_growth_rate_is_sure_beyond_its_error(w, error, stable, growth, doubt):
     rod = StraightRodStability(w, error, "no mesh")
-    assert (rod.stable, rod.growth_rate(7.0)) == (stable, growth)
-    assert doubt in rod.unproved_stability_text and bool(rod.unproved_stability_text) != bool(rod.stable)
+    assert (rod.is_stable, rod.growth_rate(7.0)) == (stable, growth)
+    assert doubt in rod.unproved_stability_text and bool(rod.unproved_stability_text) != bool(rod.is_stable)
 
 
 @pytest.mark.long
@@ -78,8 +78,8 @@ def test_the_leading_eigenvalue_is_the_spectrums_also_from_a_rod_near_by():
         leading.w, rel=1e-12
     )
     assert (
-        leading.stable is False
-        and straight_rod_stability(Rod(F=27.0, k1=1e4, k2=1e2, gamma3=1e-2)).stable is True
+        leading.is_stable is False
+        and straight_rod_stability(Rod(F=27.0, k1=1e4, k2=1e2, gamma3=1e-2)).is_stable is True
     )
 
 
@@ -165,7 +165,7 @@ def test_an_unstable_rod_beside_its_hopf_point_ends_at_its_small_cycle():
 def test_on_either_side_of_a_hopf_point_the_verdict_agrees_with_the_spectrum(rod, where):
     distance, returns = DISTANCES[where]
     k1, k2, gamma3, gamma1 = rod
-    hopf = hopf_point_below(Rod(F=45.0, k1=k1, k2=k2, gamma3=gamma3)).F
+    hopf = hopf_point_below_force(Rod(F=45.0, k1=k1, k2=k2, gamma3=gamma3)).F
     for F in (hopf * (1 - distance), hopf * (1 + distance)):
         stable = (
             solve_spectrum(
@@ -186,7 +186,7 @@ def test_a_growth_rate_that_is_0_within_its_error_leaves_it_open(start, monkeypa
         limit_cycle, "straight_rod_stability", lambda rod: StraightRodStability(-1e-13 + 60j, 1e-13)
     )
     c = ended(Rod(F=20.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0), start=start)
-    assert (c.status, c.second_state) == (CycleStatus.not_settled, SecondState.not_known)
+    assert (c.status, c.second_state) == (CycleStatus.not_settled, SecondStableState.not_known)
     assert start == "hopf" or "so the stability of the straight rod is undecided" in c.message
 
 

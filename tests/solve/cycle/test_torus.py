@@ -11,8 +11,8 @@ from surveyed import survey_only
 from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.explicit_system import ExplicitSystem
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
-from rodsweep.solve.cycle.transient import transient_integration
-from rodsweep.solve.cycle.transient.returns import tip_angle_row
+from rodsweep.solve.cycle.transient import cycle_search
+from rodsweep.solve.cycle.transient.poincare_returns import tip_angle_row
 from rodsweep.solve.cycle.transient.torus import TORUS_TEST_SETTINGS, torus_frequency_of
 from rodsweep.solve.motion.leading_mode import leading_mode
 from rodsweep.solve.unsolvable import Unsolvable
@@ -46,7 +46,7 @@ def test_a_torus_is_told_with_its_second_frequency_and_the_cycle_that_it_surroun
 def test_nothing_of_a_cycle_is_stored_of_a_torus_but_its_multipliers():
     c = rod(207.0, 400)
     assert np.isnan([c.measures.period, c.measures.tip_y_max, c.errors.period_error]).all()
-    assert c.tip is c.energy is c.shape is c.neighbour is None
+    assert c.tip is c.energy_and_powers is c.shape is c.start_for_next_rod is None
 
 
 def test_a_torus_that_was_watched_too_briefly_is_not_settled():
@@ -63,7 +63,7 @@ def test_a_motion_that_spirals_into_a_stable_cycle_is_no_torus(monkeypatch):
     def none(*_):
         raise Unsolvable("not looked for")
 
-    monkeypatch.setattr(transient_integration, "refined_cycle", none)
+    monkeypatch.setattr(cycle_search, "refined_cycle", none)
     assert rod.__wrapped__(203.0, 120).status == CycleStatus.not_settled
 
 
@@ -88,7 +88,7 @@ def test_another_integrator_on_another_mesh_is_on_the_same_torus():
             returns.append(system.layout.stress_field(state(low), "m3"))
     found = torus_frequency_of(np.array(returns[133:]), abs(np.angle(rod(207.0, 400).multipliers[0])))
     assert found.angle_per_return == pytest.approx(ROTATION, abs=1e-3)
-    assert found.prediction_error < TORUS_TEST_SETTINGS.max_prediction_error_ratio / 5
+    assert found.prediction_error < TORUS_TEST_SETTINGS.max_prediction_error_per_modulation / 5
 
 
 # --- returns that are made up -----------------------------------------------------------------------------
@@ -110,7 +110,8 @@ def test_rotation_on_a_closed_curve_is_found():
 def test_growing_and_decaying_modulations_are_not_predicted(rate):
     returns = 5 + (closed_curve(ANGLE * NUMBERS) - 5) * np.exp(rate * NUMBERS)[:, None]
     assert (
-        torus_frequency_of(returns, ANGLE).prediction_error > TORUS_TEST_SETTINGS.max_prediction_error_ratio
+        torus_frequency_of(returns, ANGLE).prediction_error
+        > TORUS_TEST_SETTINGS.max_prediction_error_per_modulation
     )
 
 
@@ -118,7 +119,8 @@ def test_irregular_returns_are_not_predicted():
     noise = np.random.default_rng(1).normal(size=len(NUMBERS))
     irregular = closed_curve(ANGLE * NUMBERS + np.cumsum(0.3 * noise))
     assert (
-        torus_frequency_of(irregular, ANGLE).prediction_error > TORUS_TEST_SETTINGS.max_prediction_error_ratio
+        torus_frequency_of(irregular, ANGLE).prediction_error
+        > TORUS_TEST_SETTINGS.max_prediction_error_per_modulation
     )
 
 

@@ -20,7 +20,7 @@ from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.results.file.view import read_view
 from rodsweep.solve.changes.thresholds import ThresholdsRequest
-from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings, find_thresholds
+from rodsweep.solve.changes.thresholds_along_path import find_imaginary_axis_crossings, find_thresholds
 from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
 from rodsweep.solve.cycle.hopf_start import orbit_by_normal_form
 from rodsweep.solve.hopf import criticality
@@ -79,7 +79,7 @@ def cycle_near(at, hopf, known, gamma1, part):
     F = at.F * (1 + part * math.copysign(1, known.amplitude_coefficient))
     normal = normal_form_by_mesh_rule(at.with_values(gamma1=gamma1), 1j * hopf.frequency, 1e-6)
     form = StressForm(
-        (replace(at, F=F)).with_values(gamma1=gamma1), uniform_mesh(1, normal.form.mesh.node_count)
+        (replace(at, F=F)).with_values(gamma1=gamma1), uniform_mesh(1, normal.mixed_form.mesh.node_count)
     )
     measures = refined_cycle(orbit_by_normal_form(normal, form), 1e-11, NewtonWorkspace()).measures
     return np.array([measures.tip_y_max**2, measures.frequency - hopf.frequency]) / (F - at.F)
@@ -217,12 +217,12 @@ def test_hopf_points_are_those_of_all_transitions():
     ):
         end = min(200.0, rod.k1 * (1 - 1e-6))
         path = ParameterPath(Rod(F=0.0, k1=rod.k1, k2=rod.k2, gamma3=rod.gamma3), "F")
-        every, pairs = find_thresholds(path, 0.0, end), find_axis_crossings(path, 0.0, end)
+        every, pairs = find_thresholds(path, 0.0, end), find_imaginary_axis_crossings(path, 0.0, end)
         crossings = [c for c in every.thresholds if not c.kind.switches_real_and_complex]
         assert [(c.value, c.kind, c.unstable_after) for c in pairs.thresholds] == [
             (c.value, c.kind, c.unstable_after) for c in crossings
         ]
-        assert pairs.proved
+        assert pairs.is_proved
         assert pairs.unstable_at_end == every.unstable_at_end
 
 

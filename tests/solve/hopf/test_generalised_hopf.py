@@ -13,7 +13,7 @@ import rodsweep as rs
 from rodsweep.determinant.parameter_plane import ParameterPlane, PlaneAxis
 from rodsweep.errors import InputError
 from rodsweep.model.rod import Rod
-from rodsweep.post.figures.stability.diagram_curves import parts_of_equal_criticality
+from rodsweep.post.figures.stability.diagram_curves import hopf_curve_parts_by_criticality
 from rodsweep.post.plane_curves import PlaneParameters
 from rodsweep.results.file.view import read_view
 from rodsweep.solve.changes.diagram.boundary_curves import trace_boundary
@@ -40,13 +40,13 @@ phase_diagram: {criticality: true}
 
 
 def curve_of(plane, F, k1, frequency):
-    start = [axis.coordinate({"F": F, "k1": k1, "gamma3": GAMMA3}[axis.name]) for axis in plane.axes]
+    start = [axis.scaled_coordinate({"F": F, "k1": k1, "gamma3": GAMMA3}[axis.name]) for axis in plane.axes]
     return trace_boundary(0.0, plane, tuple(start), frequency)
 
 
 def over_F_and_k1(F=(60.0, 110.0), k1=(145.0, 160.0), logarithmic=False):
     """A plane of the rod and the Hopf curve through its fold."""
-    axes = PlaneAxis("F", *F), PlaneAxis("k1", *k1, logarithmic=logarithmic)
+    axes = PlaneAxis("F", *F), PlaneAxis("k1", *k1, is_logarithmic=logarithmic)
     plane = ParameterPlane(Rod(F=0.0, k1=200.0, k2=K2, gamma3=GAMMA3), axes)
     return plane, curve_of(plane, *FOLD)
 
@@ -70,29 +70,34 @@ def test_a_generalised_hopf_point_is_that_of_other_equations(found):
         c = coefficients(rod, w, 24)[0]
         return np.array([w.real / abs(w), c.real / abs(c)])
 
-    at = np.array(point.values)
+    at = np.array(point.parameter_values)
     here, steps = growth_and_c(at), np.diag(1e-5 * at)
     slopes = np.column_stack([(growth_and_c(at + step) - here) / step.sum() for step in steps])
     # Of these equations rounding leaves some 1e-11, from nodes to nodes.
     assert at == pytest.approx(at - np.linalg.solve(slopes, here), rel=1e-10)
-    c = coefficients((*point.values, K2, GAMMA3, 1.0), 1j * point.frequency, 24)[0]
+    c = coefficients((*point.parameter_values, K2, GAMMA3, 1.0), 1j * point.frequency, 24)[0]
     assert point.landau_imag == pytest.approx(c.imag, rel=1e-6)
-    assert all(error <= 1e-9 * value for error, value in zip(point.errors, point.values, strict=True))
+    assert all(
+        error <= 1e-9 * value
+        for error, value in zip(point.parameter_errors, point.parameter_values, strict=True)
+    )
 
 
 def test_the_side_changes_once_and_at_the_point(found):
     plane, curve, told = found
     (point,) = told.points
-    assert told.unlocated_count == 0
+    assert told.unlocated_sign_change_count == 0
     assert set(told.criticality) == {-1.0, 1.0}
     (after,) = np.flatnonzero(np.diff(told.criticality))
     assert point.preceding_index == after
-    at = np.array([axis.coordinate(v) for axis, v in zip(plane.axes, point.values, strict=True)])
+    at = np.array(
+        [axis.scaled_coordinate(v) for axis, v in zip(plane.axes, point.parameter_values, strict=True)]
+    )
     a, b = curve.scaled_points[after : after + 2, :2]
     assert np.linalg.norm(at - a) + np.linalg.norm(b - at) < 1.001 * np.linalg.norm(b - a)
     for i, side in ((after, told.criticality[after]), (after + 1, told.criticality[after + 1])):
         w = 1j * curve.frequency[i]
-        c = coefficients((*curve.values[i], K2, GAMMA3, 1.0), w, 24)[0]
+        c = coefficients((*curve.parameter_values[i], K2, GAMMA3, 1.0), w, 24)[0]
         assert np.sign(c.real) == side
 
 
@@ -103,7 +108,11 @@ def test_it_is_the_same_on_finer_meshes_and_from_other_neighbours(found):
     others = curve_criticality(*elsewhere, 1e-10).points
     for (other,) in (finer, others):
         for value, error, theirs, their_error in zip(
-            point.values, point.errors, other.values, other.errors, strict=True
+            point.parameter_values,
+            point.parameter_errors,
+            other.parameter_values,
+            other.parameter_errors,
+            strict=True,
         ):
             assert abs(value - theirs) <= error + their_error
         assert other.frequency == pytest.approx(point.frequency, rel=1e-9)
@@ -111,11 +120,11 @@ def test_it_is_the_same_on_finer_meshes_and_from_other_neighbours(found):
 
 def test_another_plane_through_the_same_rod_has_it_too(found):
     (point,) = found[2].points
-    F, k1 = point.values
-    axes = PlaneAxis("k1", 140.0, 160.0), PlaneAxis("gamma3", 1e-5, 1e-3, logarithmic=True)
+    F, k1 = point.parameter_values
+    axes = PlaneAxis("k1", 140.0, 160.0), PlaneAxis("gamma3", 1e-5, 1e-3, is_logarithmic=True)
     plane = ParameterPlane(Rod(F=F, k1=200.0, k2=K2, gamma3=GAMMA3), axes)
     (other,) = curve_criticality(plane, curve_of(plane, F, k1, point.frequency), 1e-10).points
-    assert other.values == pytest.approx((k1, GAMMA3), rel=1e-8)
+    assert other.parameter_values == pytest.approx((k1, GAMMA3), rel=1e-8)
 
 
 def test_axial_drag_moves_it_along_the_hopf_curve(found):
@@ -124,14 +133,14 @@ def test_axial_drag_moves_it_along_the_hopf_curve(found):
         told.points,
         curve_criticality(replace(plane, rod=plane.rod.with_values(gamma1=0.5)), curve, 1e-10).points,
     )
-    assert abs(other.values[0] - point.values[0]) > 1e-3
-    c = coefficients((*other.values, K2, GAMMA3, 0.5), 1j * other.frequency, 24)[0]
+    assert abs(other.parameter_values[0] - point.parameter_values[0]) > 1e-3
+    c = coefficients((*other.parameter_values, K2, GAMMA3, 0.5), 1j * other.frequency, 24)[0]
     assert abs(c.real) < 1e-7 * abs(c)
 
 
 def test_where_the_normal_form_fails_the_side_is_not_known_and_no_other_is_lost(found, monkeypatch):
     plane, curve, told = found
-    F = curve.values[3, 0]
+    F = curve.parameter_values[3, 0]
     real = bautin_points.hopf_coefficients
 
     def fails_at_one(rod, *more):
@@ -157,7 +166,7 @@ def test_a_change_that_cannot_be_located_is_counted(found, monkeypatch):
 
     monkeypatch.setattr(bautin_points, "hopf_coefficients", jumps)
     again = curve_criticality(plane, curve, 1e-10)
-    assert (again.points, again.unlocated_count) == ((), 1)
+    assert (again.points, again.unlocated_sign_change_count) == ((), 1)
     assert np.array_equal(again.criticality, told.criticality)
 
 
@@ -176,8 +185,8 @@ def test_a_point_is_located_if_rounding_makes_Re_c_exactly_zero(found, monkeypat
 
     monkeypatch.setattr(hopf_coefficients, "normal_form_on", rounded)
     again = curve_criticality(plane, curve, 1e-10)
-    assert again.unlocated_count == 0
-    assert again.points[0].values == pytest.approx(located.points[0].values, rel=1e-10)
+    assert again.unlocated_sign_change_count == 0
+    assert again.points[0].parameter_values == pytest.approx(located.points[0].parameter_values, rel=1e-10)
     assert np.isinf(zeros[0].amplitude_coefficient)
     assert np.isinf(zeros[0].frequency_slope)
 
@@ -186,11 +195,11 @@ def test_a_point_within_the_error_of_the_change_is_undecided_and_brackets_nothin
     """A point of the curve put where Re c vanishes: the bracket reaches over it."""
     plane, curve, told = found
     (point,) = told.points
-    x, y = (axis.coordinate(v) for axis, v in zip(plane.axes, point.values, strict=True))
+    x, y = (axis.scaled_coordinate(v) for axis, v in zip(plane.axes, point.parameter_values, strict=True))
     there = np.insert(curve.scaled_points, point.preceding_index + 1, [x, y, np.log(point.frequency)], axis=0)
     again = curve_criticality(plane, replace(curve, scaled_points=there), 1e-10)
     assert again.criticality[point.preceding_index + 1] == 0
-    assert again.points[0].values == pytest.approx(point.values, rel=1e-10)
+    assert again.points[0].parameter_values == pytest.approx(point.parameter_values, rel=1e-10)
     assert again.points[0].preceding_index in (point.preceding_index, point.preceding_index + 1)
 
 
@@ -213,7 +222,7 @@ def test_a_diagram_tells_shows_and_draws_it(command):
     assert "generalised Hopf point (Re c = 0) on curve 2: k1 = 149.6168916" in told
     assert "supercritical" in told
     view = read_view(command.directory / "generalised_hopf.h5")
-    (one, before), (other, beyond) = parts_of_equal_criticality(view, 2, PlaneParameters("F", "k1"))
+    (one, before), (other, beyond) = hopf_curve_parts_by_criticality(view, 2, PlaneParameters("F", "k1"))
     assert {one, other} == {-1, 1}
     assert before[-1] == pytest.approx((F, k1), rel=1e-8)
     assert before[-1].tolist() == beyond[0].tolist()
@@ -336,7 +345,13 @@ def test_curve_that_turns_back_in_the_third_parameter_is_followed_through_it(mon
                 raise Unsolvable("beyond the turn")
             x = 0.5 + np.copysign(np.sqrt((0.8 - z) / 2), x - 0.5)
         v = np.array([x, 0.5, 0.8 - 2 * (x - 0.5) ** 2, h])
-        return BautinCurvePoint(v=v, values=v[:3], errors=np.zeros(3), frequency=1.0, landau_imag=0.0)
+        return BautinCurvePoint(
+            scaled_point=v,
+            parameter_values=v[:3],
+            parameter_errors=np.zeros(3),
+            frequency=1.0,
+            landau_imag=0.0,
+        )
 
     monkeypatch.setattr(BautinProblem, "solve_point", on_parabola)
     unit = tuple(PlaneAxis(name, 0.0, 1.0) for name in ("F", "k1", "gamma3"))
@@ -347,7 +362,7 @@ def test_curve_that_turns_back_in_the_third_parameter_is_followed_through_it(mon
         curve.end_reasons == (BautinEndReason.plane_edge, BautinEndReason.plane_edge)
         or curve.end_reasons[1] == BautinEndReason.range_end
     )
-    x, _, z = np.array([point.values for point in curve.points]).T
+    x, _, z = np.array([point.parameter_values for point in curve.points]).T
     assert (np.diff(x) > 0).all()
     assert x[-1] > 0.9
     assert z.max() == pytest.approx(0.8, abs=0.02)
@@ -366,14 +381,20 @@ def test_a_closed_curve_over_three_parameters_is_followed_once(monkeypatch):
             raise Unsolvable("beyond the circle")
         x, z = (np.copysign(other, x), z) if held == 2 else (x, np.copysign(other, z))
         v = np.array([0.5 + x, 0.5, 0.5 + z, guess[3]])
-        return BautinCurvePoint(v=v, values=v[:3], errors=np.zeros(3), frequency=1.0, landau_imag=0.0)
+        return BautinCurvePoint(
+            scaled_point=v,
+            parameter_values=v[:3],
+            parameter_errors=np.zeros(3),
+            frequency=1.0,
+            landau_imag=0.0,
+        )
 
     monkeypatch.setattr(BautinProblem, "solve_point", on_circle)
     unit = tuple(PlaneAxis(name, 0.0, 1.0) for name in ("F", "k1", "gamma3"))
     space = BautinProblem(Rod(F=0.0, k1=2.0, k2=1.0, gamma3=1.0), unit, np.array([0.5]), 1e-10)
     curve = bautin_curve(space, on_circle(space, np.array([0.7, 0.5, 0.7, 0.0]), 0))
     assert curve.end_reasons == (BautinEndReason.closed, BautinEndReason.closed)
-    x, _, z = np.array([point.values for point in curve.points]).T - 0.5
+    x, _, z = np.array([point.parameter_values for point in curve.points]).T - 0.5
     turned = np.unwrap(np.arctan2(z, x))
     assert abs(turned[-1] - turned[0]) == pytest.approx(2 * np.pi)
     assert (np.abs(np.diff(turned)) < 0.5).all()

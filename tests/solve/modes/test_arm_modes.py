@@ -23,8 +23,8 @@ from rodsweep.solve.modes.numerical_abscissa import numerical_abscissa
 from rodsweep.solve.spectrum.status import SpectrumStatus
 
 INF = float("inf")
-TIGHT = ModesRequest(modes=4, accuracy=1e-10, node_count=65, computes_growth=True)
-NEAR = ModesRequest(modes=4, accuracy=1e-9, node_count=65, computes_growth=True)
+TIGHT = ModesRequest(mode_count=4, accuracy=1e-10, node_count=65, computes_growth=True)
+NEAR = ModesRequest(mode_count=4, accuracy=1e-9, node_count=65, computes_growth=True)
 """Rounding leaves 2e-10 of the bending strain of the steepest of `ARMS`."""
 ONES = RodMaterial(profile=Profile((0.0, 1.0), ((1.0,) * 6, (1.0,) * 6)))
 STEPS = Profile((0.0, 0.4, 0.4, 1.0), ((1.0,) * 6, (1.0,) * 6, (0.3, 0.5, 0.2, 1.0, 1.5, 0.4), (1.0,) * 6))
@@ -52,7 +52,7 @@ def relative(found, exact):
 
 def numbers(result):
     """All numbers of an outcome but its errors and its meshes, in units of their largest."""
-    vectors, growth = result.vectors, result.growth
+    vectors, growth = result.mode_vectors, result.growth
     return {
         "eigenvalues": result.spectrum.eigenvalues,
         "right": vectors.right_modes,
@@ -95,7 +95,7 @@ def test_modes_and_growth_agree_with_another_discretisation(rod):
     result = solve_modes(rod, NEAR)
     assert result.status == SpectrumStatus.ok
     right, left, condition = reference_modes(rod, result.spectrum.eigenvalues)
-    assert result.vectors.condition == pytest.approx(condition, rel=1e-7)
+    assert result.mode_vectors.condition == pytest.approx(condition, rel=1e-7)
     L, growth = in_energy_norm(rod), result.growth
     assert growth.numerical_abscissa == pytest.approx(np.linalg.eigvalsh(L + L.T)[-1] / 2, rel=1e-6)
     if not rod.is_uniform:
@@ -119,7 +119,7 @@ def test_conditions_and_abscissae_of_random_arms(seed):
     result = solve_modes(rod, ModesRequest(3, 1e-8, 9, computes_growth=True))
     assert result.status == SpectrumStatus.ok
     *_, condition = reference_modes(rod, result.spectrum.eigenvalues)
-    assert result.vectors.condition == pytest.approx(condition, rel=1e-5)
+    assert result.mode_vectors.condition == pytest.approx(condition, rel=1e-5)
     L = in_energy_norm(rod)
     assert result.growth.numerical_abscissa == pytest.approx(np.linalg.eigvalsh(L + L.T)[-1] / 2, rel=1e-4)
 
@@ -134,7 +134,7 @@ def test_strains_and_errors_are_those_of_a_finer_mesh(rod):
         errors = abs(numbers(coarse)[name] - numbers(fine)[name]).max(axis=-1)
         sizes = abs(numbers(fine)[name]).max(axis=-1)
         each = errors.max(axis=0) / sizes.max(axis=0) if errors.ndim == 2 else errors / sizes
-        assert (each <= 10 * coarse.vectors.mode_error + 1e-9).all(), name
+        assert (each <= 10 * coarse.mode_vectors.mode_error + 1e-9).all(), name
     abscissa = fine.growth.numerical_abscissa
     off = abs(coarse.growth.numerical_abscissa - abscissa)
     assert off <= 10 * coarse.growth.abscissa_error + 1e-9 * abs(abscissa)
@@ -161,7 +161,7 @@ def test_modes_of_different_eigenvalues_are_orthogonal(rod):
     _, M = matrices(rod)
     X, Z = (np.concatenate([*field[:, :, 1:]], axis=1) for field in (right, left))
     products = (Z.conj() * M) @ X.T
-    assert np.diag(products) == pytest.approx(result.vectors.pairing, rel=1e-6)
+    assert np.diag(products) == pytest.approx(result.mode_vectors.pairing, rel=1e-6)
     sizes = np.sqrt((abs(Z) ** 2 @ M)[:, None] * (abs(X) ** 2 @ M))
     assert (abs(products - np.diag(np.diag(products))) < 1e-8 * sizes).all()
 
@@ -170,7 +170,7 @@ def test_unshearable_limit_of_an_arm_is_reached_at_first_order():
     arm = {"F": 10.0, "k1": 1e4, "gamma3": 1e-2, "taper": 0.5}
     limit = solve_modes(Rod(k2=INF, **arm), TIGHT)
     assert limit.status == SpectrumStatus.ok
-    assert (limit.vectors.mode_strains[0] == 0).all()
+    assert (limit.mode_vectors.mode_strains[0] == 0).all()
     far, near = (solve_modes(Rod(k2=k2, **arm), TIGHT) for k2 in (1e5, 1e6))
     for name, number in numbers(limit).items():
         ratio = abs(numbers(far)[name] - number).max() / abs(numbers(near)[name] - number).max()
@@ -196,15 +196,15 @@ REFINED = [
 @pytest.mark.parametrize("rod", REFINED, ids=str)
 def test_modes_are_refined_to_the_accuracy(rod):
     """Halved elements of lower order are less accurate than their predecessors; the refinement ended."""
-    found = solve_modes(rod, ModesRequest(modes=4, accuracy=1e-8, node_count=33, computes_growth=False))
+    found = solve_modes(rod, ModesRequest(mode_count=4, accuracy=1e-8, node_count=33, computes_growth=False))
     assert found.status == SpectrumStatus.ok
-    assert 0 < max(found.vectors.errors_by_name().values()) < 1e-8
+    assert 0 < max(found.mode_vectors.errors_by_name().values()) < 1e-8
     mesh = finer_arm_mesh(rod, mesh_for(rod, 60.0, 1e-24))
     finer = mode_vectors(rod, pencil_on(mesh), found.spectrum.eigenvalues, lobatto_points(33))
-    assert mesh.element_count > found.vectors.resolution.element_count
-    assert relative(found.vectors.right_modes, finer.right_modes) < 1e-8
-    assert relative(found.vectors.left_modes, finer.left_modes) < 1e-8
-    assert relative(found.vectors.condition, finer.condition) < 1e-8
+    assert mesh.element_count > found.mode_vectors.resolution.element_count
+    assert relative(found.mode_vectors.right_modes, finer.right_modes) < 1e-8
+    assert relative(found.mode_vectors.left_modes, finer.left_modes) < 1e-8
+    assert relative(found.mode_vectors.condition, finer.condition) < 1e-8
 
 
 @pytest.mark.long

@@ -18,8 +18,8 @@ from rodsweep.discretization.elements.resolution import Resolution
 from rodsweep.discretization.straight.dense_eigenproblem import dense_eigenproblem
 from rodsweep.discretization.straight.pencil import (
     assemble_pencil,
-    factors_to_unit_tip,
-    fields_of_vectors,
+    displacements_of_eigenvectors,
+    factors_to_unit_tip_displacement,
     shear_force,
 )
 from rodsweep.model.rod import Rod
@@ -37,8 +37,8 @@ from rodsweep.solve.spectrum.status import SpectrumStatus
 
 INF = float("inf")
 NODES = 65
-TIGHT = ModesRequest(modes=4, accuracy=1e-10, node_count=NODES, computes_growth=True)
-SHAPES = ModesRequest(modes=4, accuracy=1e-10, node_count=NODES, computes_growth=False)
+TIGHT = ModesRequest(mode_count=4, accuracy=1e-10, node_count=NODES, computes_growth=True)
+SHAPES = ModesRequest(mode_count=4, accuracy=1e-10, node_count=NODES, computes_growth=False)
 POINTS = lobatto_points(NODES)
 WEIGHTS = gauss_lobatto_rule(NODES - 1)[1] / 2
 SLOPE = 2 * differentiation_matrix(gauss_lobatto_rule(NODES - 1)[0])
@@ -191,12 +191,12 @@ class ReferenceGrowth:
 
 def gamma_products(result, gamma3):
     """(psi_m, xi_n) over the norms of both."""
-    y, theta = result.vectors.right_modes
-    left_y, left_theta = result.vectors.left_modes
+    y, theta = result.mode_vectors.right_modes
+    left_y, left_theta = result.mode_vectors.left_modes
     products = (left_y.conj() * WEIGHTS) @ y.T + gamma3 * (left_theta.conj() * WEIGHTS) @ theta.T
     norms = [
         np.sqrt((WEIGHTS * (abs(a) ** 2 + gamma3 * abs(b) ** 2)).sum(1))
-        for a, b in ((y, theta), result.vectors.left_modes)
+        for a, b in ((y, theta), result.mode_vectors.left_modes)
     ]
     return products, norms[1][:, None] * norms[0]
 
@@ -213,8 +213,8 @@ def test_at_rest_left_and_right_modes_are_equal(k1, k2, gamma3):
     assert result.status == SpectrumStatus.ok
     assert (result.spectrum.eigenvalues.imag == 0).all()
     assert (result.spectrum.eigenvalues.real < 0).all()
-    assert relative(result.vectors.left_modes, result.vectors.right_modes) < 1e-11
-    assert abs(result.vectors.condition - 1).max() < 1e-12
+    assert relative(result.mode_vectors.left_modes, result.mode_vectors.right_modes) < 1e-11
+    assert abs(result.mode_vectors.condition - 1).max() < 1e-12
     assert result.growth.numerical_abscissa == pytest.approx(result.spectrum.eigenvalues[0].real, rel=1e-11)
     assert (result.growth.transient_growth, result.growth.transient_time) == (1.0, 0.0)
 
@@ -229,15 +229,15 @@ def test_modes_are_those_of_appendix_c(parameters):
     assert result.status == SpectrumStatus.ok
     for n, w in enumerate(result.spectrum.eigenvalues):
         y, theta, s, m = ClosedForm(rod, w).fields(POINTS)
-        assert relative(result.vectors.right_modes[0, n], y) < 1e-11
-        assert relative(result.vectors.right_modes[1, n], theta) < 1e-11
-        assert relative(result.vectors.mode_strains[1, n], m) < 1e-11
+        assert relative(result.mode_vectors.right_modes[0, n], y) < 1e-11
+        assert relative(result.mode_vectors.right_modes[1, n], theta) < 1e-11
+        assert relative(result.mode_vectors.mode_strains[1, n], m) < 1e-11
         if rod.c2:
-            assert relative(result.vectors.mode_strains[0, n], rod.c2 * s) < 1e-11
+            assert relative(result.mode_vectors.mode_strains[0, n], rod.c2 * s) < 1e-11
         y, theta, *_ = ClosedForm(rod, w, 1).fields(POINTS)
-        assert relative(result.vectors.left_modes[0, n], y) < 1e-11
-        assert relative(result.vectors.left_modes[1, n], theta) < 1e-11
-        assert result.vectors.condition[n] == pytest.approx(reference_condition(rod, w), rel=1e-11)
+        assert relative(result.mode_vectors.left_modes[0, n], y) < 1e-11
+        assert relative(result.mode_vectors.left_modes[1, n], theta) < 1e-11
+        assert result.mode_vectors.condition[n] == pytest.approx(reference_condition(rod, w), rel=1e-11)
 
 
 @pytest.mark.kernel
@@ -250,7 +250,7 @@ def test_errors_of_modes_include_rounding(parameters):
     rod = rod_of(*parameters)
     result = solve_modes(rod, ModesRequest(6, 1e-10, 9, computes_growth=False))
     assert result.status == SpectrumStatus.ok
-    vectors, points = result.vectors, lobatto_points(9)
+    vectors, points = result.mode_vectors, lobatto_points(9)
     for n, w in enumerate(result.spectrum.eigenvalues):
         y, theta, s, m = ClosedForm(rod, w).exact_fields(points)
         left_y, left_theta, *_ = ClosedForm(rod, w, 1).exact_fields(points)
@@ -282,8 +282,8 @@ def test_printed_form_of_appendix_c():
     a, c = x1 * POINTS, x2 * POINTS
     Y = np.cosh(a) - np.cos(c) - G * (np.sinh(a) / g1 - np.sin(c) / g2)
     Theta = g1 * np.sinh(a) + g2 * np.sin(c) - G * (np.cosh(a) - np.cos(c))
-    assert relative(result.vectors.right_modes[0, 1], Y / Y[-1]) < 1e-9
-    assert relative(result.vectors.right_modes[1, 1], Theta / Y[-1]) < 1e-9
+    assert relative(result.mode_vectors.right_modes[0, 1], Y / Y[-1]) < 1e-9
+    assert relative(result.mode_vectors.right_modes[1, 1], Theta / Y[-1]) < 1e-9
 
 
 @pytest.mark.kernel
@@ -294,10 +294,13 @@ def test_left_and_right_modes_are_biorthogonal(parameters):
     products, norms = gamma_products(result, rod.gamma3)
     off = products - np.diag(np.diag(products))
     assert (abs(off) / norms).max() < 1e-10
-    assert abs(np.diag(products) - result.vectors.pairing).max() < 1e-10 * abs(result.vectors.pairing).max()
-    assert abs(np.diag(norms) / abs(np.diag(products)) / result.vectors.condition - 1).max() < 1e-10
-    assert abs(result.vectors.right_modes[0, :, -1] - 1).max() < 1e-12
-    assert abs(result.vectors.left_modes[0, :, -1] - 1).max() < 1e-12
+    assert (
+        abs(np.diag(products) - result.mode_vectors.pairing).max()
+        < 1e-10 * abs(result.mode_vectors.pairing).max()
+    )
+    assert abs(np.diag(norms) / abs(np.diag(products)) / result.mode_vectors.condition - 1).max() < 1e-10
+    assert abs(result.mode_vectors.right_modes[0, :, -1] - 1).max() < 1e-12
+    assert abs(result.mode_vectors.left_modes[0, :, -1] - 1).max() < 1e-12
 
 
 @pytest.mark.parametrize("parameters", RODS)
@@ -305,11 +308,11 @@ def test_left_modes_have_the_ends_of_appendix_b(parameters):
     """psi(0) = 0, (K D psi + ad*_psi Sigma0)(1) = 0: Theta+' = -F Y+, Y+' - nu Theta+ = c2 F Theta+."""
     rod = rod_of(*parameters)
     result = solve_modes(rod, SHAPES)
-    slope = result.vectors.left_modes @ SLOPE.T
+    slope = result.mode_vectors.left_modes @ SLOPE.T
     size = abs(slope).max(axis=2)
-    assert (result.vectors.left_modes[:, :, 0] == 0).all()
-    assert (abs(slope[1, :, -1] + rod.F * result.vectors.left_modes[0, :, -1]) / size[1]).max() < 1e-9
-    assert (abs(slope[0, :, -1] - rod.g * result.vectors.left_modes[1, :, -1]) / size[0]).max() < 1e-9
+    assert (result.mode_vectors.left_modes[:, :, 0] == 0).all()
+    assert (abs(slope[1, :, -1] + rod.F * result.mode_vectors.left_modes[0, :, -1]) / size[1]).max() < 1e-9
+    assert (abs(slope[0, :, -1] - rod.g * result.mode_vectors.left_modes[1, :, -1]) / size[0]).max() < 1e-9
 
 
 def test_left_null_vector_of_the_pencil_has_the_adjoint_ends():
@@ -339,7 +342,7 @@ def test_condition_diverges_at_the_onset_like_a_square_root():
         rod = Rod(F=ONSET * (1 - distance), k1=1e4, k2=1e4, gamma3=1e-4)
         result = solve_modes(rod, ModesRequest(2, 1e-8, 9, computes_growth=False))
         assert result.status == SpectrumStatus.ok
-        condition.append(result.vectors.condition)
+        condition.append(result.mode_vectors.condition)
     order = np.log(condition[1] / condition[0]) / np.log(distances[0] / distances[1])
     assert abs(order - 0.5).max() < 0.01
     assert condition[1].min() > 50
@@ -349,15 +352,15 @@ def test_condition_diverges_at_the_onset_like_a_square_root():
 def test_a_rod_at_the_onset_says_that_its_modes_are_inaccurate():
     result = solve_modes(Rod(F=ONSET, k1=1e4, k2=1e4, gamma3=1e-4), TIGHT)
     assert result.status == SpectrumStatus.accuracy_not_reached
-    assert result.vectors.condition[:2].min() > 1e5
-    assert result.vectors.condition_error[:2].max() > 1e-3
-    assert result.vectors.condition_error[2:].max() < 1e-11
+    assert result.mode_vectors.condition[:2].min() > 1e5
+    assert result.mode_vectors.condition_error[:2].max() > 1e-3
+    assert result.mode_vectors.condition_error[2:].max() < 1e-11
 
 
 @pytest.mark.kernel
 def test_modes_next_to_the_onset_are_not_called_accurate():
     """The eigenvalues are right to 1e-10 there, their condition numbers are not."""
-    request = ModesRequest(modes=4, accuracy=1e-10, node_count=9, computes_growth=False)
+    request = ModesRequest(mode_count=4, accuracy=1e-10, node_count=9, computes_growth=False)
     rod = Rod(F=20.008, k1=1e4, k2=1e4, gamma3=1e-4)
     assert solve_spectrum(rod, SpectrumRequest(4, 1e-10, True)).status == SpectrumStatus.ok
     result = solve_modes(rod, request)
@@ -467,7 +470,7 @@ def test_abscissa_is_the_supremum_over_the_domain(parameters):
 def test_unshearable_limit_is_reached_at_first_order():
     """k2 -> inf at gamma3 = 1e-2, every number; h2 = c2 s is exactly 0 there."""
     limit = solve_modes(Rod(F=15.0, k1=1e4, k2=INF, gamma3=1e-2), TIGHT)
-    assert (limit.vectors.mode_strains[0] == 0).all()
+    assert (limit.mode_vectors.mode_strains[0] == 0).all()
     differences = []
     for k2 in (1e5, 1e6):
         near = solve_modes(Rod(F=15.0, k1=1e4, k2=k2, gamma3=1e-2), TIGHT)
@@ -475,10 +478,10 @@ def test_unshearable_limit_is_reached_at_first_order():
             [
                 abs(near.growth.numerical_abscissa - limit.growth.numerical_abscissa),
                 abs(near.growth.transient_growth - limit.growth.transient_growth),
-                abs(near.vectors.condition - limit.vectors.condition).max(),
-                abs(near.vectors.left_modes - limit.vectors.left_modes).max(),
-                abs(near.vectors.right_modes - limit.vectors.right_modes).max(),
-                abs(near.vectors.mode_strains[0]).max(),
+                abs(near.mode_vectors.condition - limit.mode_vectors.condition).max(),
+                abs(near.mode_vectors.left_modes - limit.mode_vectors.left_modes).max(),
+                abs(near.mode_vectors.right_modes - limit.mode_vectors.right_modes).max(),
+                abs(near.mode_vectors.mode_strains[0]).max(),
             ]
         )
     assert np.array(differences[0]) / np.array(differences[1]) == pytest.approx(10, rel=0.01)
@@ -490,7 +493,12 @@ def test_without_rotational_drag_only_the_abscissa_jumps():
     near, nearer = (
         solve_modes(Rod(F=15.0, k1=1e4, k2=200.0, gamma3=gamma3), TIGHT) for gamma3 in (1e-6, 1e-8)
     )
-    vectors = ("vectors.condition", "vectors.left_modes", "vectors.right_modes", "vectors.mode_strains")
+    vectors = (
+        "mode_vectors.condition",
+        "mode_vectors.left_modes",
+        "mode_vectors.right_modes",
+        "mode_vectors.mode_strains",
+    )
     for name in ("spectrum.eigenvalues", *vectors, "growth.transient_growth"):
         value = attrgetter(name)
         far, close = (np.max(abs(value(x) - value(limit))) for x in (near, nearer))
@@ -813,7 +821,7 @@ def test_growth_under_a_strong_pull_is_the_condition_of_the_leading_mode(paramet
     leading mode once all other modes have decayed. Without a shift rounding hides all other modes."""
     result = solve_modes(rod_of(*parameters), ModesRequest(1, 1e-7, 9, computes_growth=True))
     assert result.status == SpectrumStatus.ok
-    growth, condition = result.growth, result.vectors.condition[0]
+    growth, condition = result.growth, result.mode_vectors.condition[0]
     assert growth.transient_growth == pytest.approx(exact or condition, rel=growth.growth_error)
 
 
@@ -829,11 +837,11 @@ def test_a_point_that_fails_is_a_status():
     result = solve_modes(Rod(F=1e200, k1=INF, k2=1e-5, gamma3=1e-4), TIGHT)
     assert result.status == SpectrumStatus.failed
     assert result.message
-    assert np.isnan(result.vectors.right_modes).all()
+    assert np.isnan(result.mode_vectors.right_modes).all()
     assert (
-        result.vectors.right_modes.shape
-        == result.vectors.left_modes.shape
-        == result.vectors.mode_strains.shape
+        result.mode_vectors.right_modes.shape
+        == result.mode_vectors.left_modes.shape
+        == result.mode_vectors.mode_strains.shape
         == (2, 4, NODES)
     )
 
@@ -852,9 +860,9 @@ def test_coarse_meshes_are_refined_until_they_agree(monkeypatch):
     monkeypatch.setattr(convergence_module, "mesh_accuracy_for_modes", lambda _: 1.0)
     result = solve_modes(rod_of(*FIG_2A), SHAPES)
     assert result.status == SpectrumStatus.ok
-    assert result.vectors.resolution.order > 16
+    assert result.mode_vectors.resolution.order > 16
     y, *_ = ClosedForm(rod_of(*FIG_2A), result.spectrum.eigenvalues[3]).fields(POINTS)
-    assert relative(result.vectors.right_modes[0, 3], y) < 1e-10
+    assert relative(result.mode_vectors.right_modes[0, 3], y) < 1e-10
 
 
 def test_a_tip_that_does_not_move_leaves_a_mode_without_scale():
@@ -863,11 +871,13 @@ def test_a_tip_that_does_not_move_leaves_a_mode_without_scale():
     vectors = np.ones((pencil.unknown_count, 3), complex)
     vectors[pencil.node_count - 1] = [0.0, 1e-15, 2.0]
     with np.errstate(all="ignore"):
-        scale = factors_to_unit_tip(*fields_of_vectors(vectors, pencil.displacement_factors(rod)))
+        scale = factors_to_unit_tip_displacement(
+            *displacements_of_eigenvectors(vectors, pencil.displacement_factors(rod))
+        )
     assert np.isnan(scale[:2]).all()
-    assert scale[2] * fields_of_vectors(vectors, pencil.displacement_factors(rod))[0][-1, 2] == pytest.approx(
-        1
-    )
+    assert scale[2] * displacements_of_eigenvectors(vectors, pencil.displacement_factors(rod))[0][
+        -1, 2
+    ] == pytest.approx(1)
 
 
 def test_a_mode_whose_tip_does_not_move_is_nan_and_not_called_accurate(monkeypatch):
@@ -880,8 +890,8 @@ def test_a_mode_whose_tip_does_not_move_is_nan_and_not_called_accurate(monkeypat
     monkeypatch.setattr(inverse_module, "null_vectors", still)
     result = solve_modes(rod_of(*FIG_2A), SHAPES)
     still_tips = result.spectrum.eigenvalues.real < -100
-    assert (np.isnan(result.vectors.right_modes).all(axis=(0, 2)) == still_tips).all()
-    assert np.isfinite(result.vectors.left_modes).all()
+    assert (np.isnan(result.mode_vectors.right_modes).all(axis=(0, 2)) == still_tips).all()
+    assert np.isfinite(result.mode_vectors.left_modes).all()
     assert result.status == SpectrumStatus.accuracy_not_reached
     assert result.message == "no digit of the modes is known"
 

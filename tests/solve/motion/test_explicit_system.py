@@ -12,7 +12,7 @@ from rodsweep.discretization.straight.longitudinal_modes import longitudinal_eig
 from rodsweep.model.balance import ad
 from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.petsc import PETSc
-from rodsweep.solve.motion.context import MAX_STAGE_POINTS
+from rodsweep.solve.motion.callback_context import MAX_EXTRAPOLATION_POINTS
 from rodsweep.solve.motion.integrator import (
     RELAXATION_SCHEME,
     EndReason,
@@ -22,7 +22,7 @@ from rodsweep.solve.motion.integrator import (
     integrator,
 )
 from rodsweep.solve.motion.leading_mode import leading_mode
-from rodsweep.solve.motion.predictor import extrapolate
+from rodsweep.solve.motion.stage_predictor import extrapolate
 from rodsweep.solve.motion.step_record import STEP_RECORD_SETTINGS
 from rodsweep.solve.motion.time_scheme import EXTRAPOLATION_POINTS, TimeScheme
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
@@ -51,14 +51,16 @@ def rough(system):
 
 def injected_and_dissipated(system, z):
     """-F v1(1), by the reaction v1(1) of the tip's stress, and <Gamma V, V>."""
-    coefficients, matrices = system.rod.balance_coefficients, system.mesh.matrices
+    coefficients, matrices = system.rod.balance_coefficients, system.mesh.node_matrices
     stress = np.zeros((3, system.mesh.node_count + 1))
     stress[:, :-1] = z.reshape(3, -1) / system.sqrt_compliance[:, :-1]
     stress += coefficients.tip_stress[:, None]
-    V = velocity(coefficients, stress, stress @ matrices.D.T)
-    dissipated = dissipated_power_per_length(coefficients, V) @ matrices.weights
+    V = velocity(coefficients, stress, stress @ matrices.differentiation_matrix.T)
+    dissipated = dissipated_power_per_length(coefficients, V) @ matrices.quadrature_weights
     straining = ad(strain(coefficients, stress), V)[0, -1]  # ad_E V of the tip
-    reaction = matrices.weights[-1] * straining - matrices.D[:, -1] @ (matrices.weights * V[0])
+    reaction = matrices.quadrature_weights[-1] * straining - matrices.differentiation_matrix[:, -1] @ (
+        matrices.quadrature_weights * V[0]
+    )
     return system.rod.F * reaction, dissipated
 
 
@@ -83,7 +85,7 @@ def test_energy_law_holds_on_the_mesh_to_rounding(elements, order):
     rate, n = system.state_derivative(z), system.mesh.node_count
     stress = z.copy()
     stress[:n] -= ROD.F / ROD.k1**0.5  # Sigma = K^1/2 z + (-F, 0, 0)
-    change = stress @ (np.tile(system.mesh.quadrature[:-1], 3) * rate)
+    change = stress @ (np.tile(system.mesh.quadrature_weights[:-1], 3) * rate)
     injected, dissipated = injected_and_dissipated(system, z)
     assert change == pytest.approx(injected - dissipated, abs=1e-14 * (abs(injected) + dissipated))
     step = 1e-9
@@ -111,7 +113,7 @@ def test_strains_do_not_depend_on_where_the_clamp_is(elements, order):
 @MESHES
 def test_uniformly_bent_rod_is_an_arc(elements, order):
     grid = uniform_mesh(elements, order)
-    E = np.zeros((3, grid.element_nodes.size))
+    E = np.zeros((3, grid.element_node_indices.size))
     E[0], E[2] = 0.9, 2.0
     x, y, theta = shape_from_strains(grid, E, np.zeros(3))
     angle = 2.0 * grid.node_positions
@@ -171,7 +173,7 @@ def test_small_start_grows_like_the_leading_eigenvalue():
     values, left = np.linalg.eig(system.jacobian(np.zeros(60)).T)
     row = left[:, np.argmin(np.abs(values - mode.w))]
     run = evolve(system, start, duration, TimeScheme(tolerance=1e-11, newton_tolerance_ratio=0.01))
-    assert run.ending == EndReason.reached
+    assert run.end_reason == EndReason.reached
     grown = np.log((row @ run.states[-1]) / (row @ run.states[0]) * np.exp(-1j * mode.w.imag * duration))
     assert grown.real / duration == pytest.approx(mode.w.real, rel=1e-6)
     assert abs(grown.imag) / duration < 1e-6 * mode.w.imag
@@ -182,7 +184,7 @@ def test_equal_steps_have_the_order_of_the_method(variant, order):
     """On a rod whose stiffness the steps resolve; order reduction is a stiff rod's."""
     system = ExplicitSystem(Rod(F=5.0, k1=10.0, k2=10.0, gamma3=1.0), uniform_mesh(1, 3))
     start, duration = bent(system), 0.02
-    method = TimeScheme("arkimex", variant, tolerance=1e-8, newton_tolerance_ratio=1e-6, equal_steps=True)
+    method = TimeScheme("arkimex", variant, tolerance=1e-8, newton_tolerance_ratio=1e-6, has_equal_steps=True)
 
     def end(steps):
         run = integrator(system.mesh, method).run(system, start, duration, duration / steps)
@@ -197,7 +199,7 @@ def test_equal_steps_have_the_order_of_the_method(variant, order):
 def test_all_steps_of_a_long_run_are_kept():
     system = ExplicitSystem(ROD, uniform_mesh(1, 6))
     start, steps = leading_mode(system).state(0.1), 3 * STEP_RECORD_SETTINGS.first_capacity
-    method = TimeScheme("arkimex", "3", equal_steps=True)
+    method = TimeScheme("arkimex", "3", has_equal_steps=True)
     run = integrator(system.mesh, method).run(system, start, 0.03, 0.03 / steps)
     assert run.times == pytest.approx(np.linspace(0.0, 0.03, steps + 1))
     assert np.array_equal(run.states[0], start)
@@ -222,13 +224,13 @@ if PETSc.Sys.getVersion() >= (3, 20):  # its first slopes come from a solve whos
     METHODS += [TimeScheme("dirk", "es325sal", 1e-7), TimeScheme("dirk", "es648sa", 1e-7)]
 
 
-@pytest.mark.parametrize("method", METHODS, ids=lambda method: f"{method.ts_type} {method.scheme_name}")
+@pytest.mark.parametrize("method", METHODS, ids=lambda method: f"{method.ts_type} {method.ts_sub_type}")
 def test_every_method_follows_the_same_motion(method):
     system = ExplicitSystem(ROD, uniform_mesh(1, 14))
     start = leading_mode(system).state(0.3)
     exact = evolve(system, start, 0.03, TimeScheme(tolerance=1e-10, newton_tolerance_ratio=0.01)).states[-1]
     run = evolve(system, start, 0.03, method)
-    assert run.ending == EndReason.reached
+    assert run.end_reason == EndReason.reached
     assert run.times[-1] == pytest.approx(0.03)
     assert np.abs(run.states[-1] - exact).max() < 2e-4 * np.abs(exact).max()
 
@@ -247,7 +249,7 @@ def test_predicted_stages_are_known_by_then(variant):
     for stage, (this, last) in EXTRAPOLATION_POINTS[variant].items():
         assert all(k < stage for k in this)
         assert all(k < stages for k in last)
-        assert 0 < len(this) + len(last) <= MAX_STAGE_POINTS
+        assert 0 < len(this) + len(last) <= MAX_EXTRAPOLATION_POINTS
 
 
 @pytest.mark.parametrize("variant", EXTRAPOLATION_POINTS)
@@ -337,7 +339,7 @@ def test_a_failed_integration_is_an_ending(petsc_options):
     petsc_options("cycle_ts_max_snes_failures", "1")
     system = ExplicitSystem(ROD, uniform_mesh(1, 14))
     run = evolve(system, bent(system), 1.0)
-    assert run.ending == EndReason.failed
+    assert run.end_reason == EndReason.failed
     assert len(run.times) == len(run.states)
 
 
@@ -345,12 +347,12 @@ def test_an_error_inside_petsc_is_an_ending(petsc_options):
     petsc_options("cycle_pc_factor_mat_solver_type", "nosuch")
     system = ExplicitSystem(ROD, uniform_mesh(1, 14))
     run = evolve(system, bent(system), 1.0)
-    assert run.ending == EndReason.failed
+    assert run.end_reason == EndReason.failed
     assert run.message
 
 
 def test_a_crushed_rod_has_left_the_model():
     system = ExplicitSystem(Rod(F=195.0, k1=200.0, k2=1e4, gamma3=1e-4), uniform_mesh(1, 14))
     run = evolve(system, leading_mode(system).state(0.5), 1e-3)
-    assert run.ending == EndReason.left_the_model
+    assert run.end_reason == EndReason.left_the_model
     assert system.least_stretch(run.states[-1]) <= 0 < system.least_stretch(run.states[0])

@@ -37,7 +37,7 @@ def test_run_recovers_from_a_step_whose_newton_iterates_overflow(scheme):
     failures = integrator.ts.getSNESFailures()
     integrator.destroy()
     assert failures > 0
-    assert run.ending == EndReason.reached
+    assert run.end_reason == EndReason.reached
     assert run.times[-1] == pytest.approx(DURATION, rel=1e-12)
 
 

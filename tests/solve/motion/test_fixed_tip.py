@@ -7,7 +7,7 @@ from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.explicit_system import ExplicitSystem
 from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
-from rodsweep.solve.motion.fixed_tip import FIXED_TIP_SETTINGS, bent_state_with_tip_at
+from rodsweep.solve.motion.tip_target import TIP_TARGET_SETTINGS, bent_state_with_tip_at
 
 RODS = {
     "flutter": Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2),
@@ -66,8 +66,8 @@ def test_a_place_out_of_reach_is_drawn_towards_the_clamp(rod):
     x, y = system.tip_coordinates(bent_state_with_tip_at(system, 3.0, 4.0))[:2]
     assert (x, y) == pytest.approx(
         (
-            0.6 * FIXED_TIP_SETTINGS.max_tip_distance_ratio * length,
-            0.8 * FIXED_TIP_SETTINGS.max_tip_distance_ratio * length,
+            0.6 * TIP_TARGET_SETTINGS.max_tip_distance_over_length * length,
+            0.8 * TIP_TARGET_SETTINGS.max_tip_distance_over_length * length,
         ),
         abs=1e-8,
     )

@@ -16,7 +16,7 @@ from rodsweep.errors import InputError
 from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.post.figures import draw
-from rodsweep.post.figures.cycle.portrait import draw_portrait
+from rodsweep.post.figures.cycle.shapes_and_tip_motion import draw_shapes_and_tip_motion
 from rodsweep.post.figures.cycle.transient import draw_transients
 from rodsweep.post.figures.limit_cycle import chosen_figure_kind
 from rodsweep.post.figures.request import FigureRequest
@@ -40,8 +40,8 @@ def followed(F, rod=SOFT, amplitude=0.01, count=COUNT):
 
 def test_transient_begins_at_the_start_and_ends_at_the_cycle_at_equal_times():
     c = followed(50.0)
-    time, x, y, theta = c.transient
-    assert c.transient.shape == (4, COUNT)
+    time, x, y, theta = c.transient_tip_path
+    assert c.transient_tip_path.shape == (4, COUNT)
     assert np.diff(time) == pytest.approx(time[-1] / (COUNT - 1), rel=1e-9)
     assert (time[0], x[0], y[0]) == pytest.approx((0.0, 1 - 50 / 1e4, 0.01), abs=1e-3)
     last = time > time[-1] - c.measures.period
@@ -53,9 +53,9 @@ def test_transient_begins_at_the_start_and_ends_at_the_cycle_at_equal_times():
 def test_transient_is_the_motion_that_another_integrator_finds():
     """SciPy's LSODA on the same compiled equations, over the first two periods."""
     c = followed(60.0, STRETCHABLE, 0.1)
-    time, *tip = c.transient[:, c.transient[0] < 2 * c.measures.period]
+    time, *tip = c.transient_tip_path[:, c.transient_tip_path[0] < 2 * c.measures.period]
     rod = rod_of(60.0, *STRETCHABLE[:3])
-    system = ExplicitSystem(rod, motion_mesh(rod, MOTION_MESH_SETTINGS.stored_accuracy))
+    system = ExplicitSystem(rod, motion_mesh(rod, MOTION_MESH_SETTINGS.accuracy_of_stored_motion))
     z = leading_mode(system).state(0.1)
     atol = 1e-7 * np.abs(z).max()
     found = solve_ivp(
@@ -85,7 +85,7 @@ def test_transient_is_the_motion_that_another_integrator_finds():
 def test_a_stored_motion_has_the_relaxation_of_its_start(rod, amplitude, error, exact):
     """y of the tip by another code, Radau IIA of order 9 on Legendre polynomials, to 1e-11."""
     outcome = solve_cycle(rod, CycleRequest(1e-6, amplitude, 3, 0, 0, 0, 400, transient=2000))
-    time, _, y, _ = outcome.transient
+    time, _, y, _ = outcome.transient_tip_path
     found = CubicSpline(time, y)(np.array([place for place, _ in exact]))
     assert np.abs(found - [value for _, value in exact]).max() < error
 
@@ -106,12 +106,12 @@ def test_a_stored_motion_has_the_relaxation_of_its_start(rod, amplitude, error, 
 def test_a_stored_motion_is_that_on_a_finer_mesh(rod, amplitude, error, monkeypatch):
     """The motion grows by a factor of ten to a thousand, and the error of its rate shifts its later phase."""
     request = CycleRequest(1e-6, amplitude, 3, 0, 0, 0, 400, transient=2000)
-    stored = solve_cycle(rod, request).transient
+    stored = solve_cycle(rod, request).transient_tip_path
     monkeypatch.setattr(
         "rodsweep.solve.cycle.transient.motion_mesh.MOTION_MESH_SETTINGS",
-        replace(MOTION_MESH_SETTINGS, stored_accuracy=1e-13),
+        replace(MOTION_MESH_SETTINGS, accuracy_of_stored_motion=1e-13),
     )
-    finer = solve_cycle(rod, request).transient
+    finer = solve_cycle(rod, request).transient_tip_path
     time = stored[0][stored[0] <= finer[0][-1]]
     assert np.abs(stored[2][: len(time)] - CubicSpline(finer[0], finer[2])(time)).max() < error
 
@@ -120,7 +120,7 @@ def test_a_stored_decay_has_the_rate_of_the_leading_mode_between_time_steps_too(
     """Cubic interpolation between the growing steps of the decay is wrong by 1e-3."""
     c = followed(10.0)
     assert c.linear_frequency == 0
-    time, _, y, _ = c.transient
+    time, _, y, _ = c.transient_tip_path
     late = (time > 2 / abs(c.linear_growth_rate)) & (np.abs(y) > 1e-8)
     assert late.sum() > 100
     amplitude = y[late] * np.exp(-c.linear_growth_rate * time[late])
@@ -158,9 +158,11 @@ def test_a_tiny_first_or_last_step_spoils_no_interpolation_of_the_steps_beside_i
 def test_a_stored_motion_has_no_jumps():
     """It grows so slowly, by a few percent a period, that without being stored it would be scaled."""
     c = followed(27.6, amplitude=0.03, count=20_000)
-    assert c.linear_growth_rate * c.measures.period < AMPLITUDE_EQUATION_SETTINGS.max_slow_growth / 2
+    assert (
+        c.linear_growth_rate * c.measures.period < AMPLITUDE_EQUATION_SETTINGS.max_slow_growth_per_return / 2
+    )
     period = 2 * np.pi / c.linear_frequency
-    time, _, y, _ = c.transient
+    time, _, y, _ = c.transient_tip_path
     inner = (np.abs(y[1:-1]) > np.abs(y[:-2])) & (np.abs(y[1:-1]) >= np.abs(y[2:]))
     peaks = np.abs(y[1:-1])[inner][1:]
     assert len(peaks) > 10
@@ -176,7 +178,7 @@ def test_storing_the_transient_does_not_change_the_fate(F, rod, amplitude):
     without = solve_cycle(rod_of(F, *rod), CycleRequest(1e-6, amplitude, 3, 0, 0, 0, 400))
     assert with_it.status == without.status
     assert with_it.measures.period == pytest.approx(without.measures.period, rel=1e-6, nan_ok=True)
-    assert without.transient is None
+    assert without.transient_tip_path is None
 
 
 def test_a_rod_that_is_known_to_straighten_is_followed_all_the_same():
@@ -185,7 +187,7 @@ def test_a_rod_that_is_known_to_straighten_is_followed_all_the_same():
     assert quick.periods == 0 < c.periods
     assert (c.status, c.message) == (quick.status, quick.message)
     assert c.status.name == "straight"
-    time, _, y, _ = c.transient
+    time, _, y, _ = c.transient_tip_path
     period = 2 * np.pi / c.linear_frequency
     later = np.interp(time[time + period <= time[-1]] + period, time, y)
     factor = np.linalg.norm(later) / np.linalg.norm(y[: len(later)])
@@ -196,23 +198,23 @@ def test_a_rod_that_leaves_the_model_has_its_transient():
     """To where it is crushed, at 4.8e-7 by another code (Radau IIA on Legendre polynomials, two sizes)."""
     c = followed(195.0, STRETCHABLE, 0.2)
     assert c.status.name == "left_the_model"
-    assert np.isfinite(c.transient).all()
-    assert c.transient[0, -1] == pytest.approx(4.8e-7, rel=0.05)
+    assert np.isfinite(c.transient_tip_path).all()
+    assert c.transient_tip_path[0, -1] == pytest.approx(4.8e-7, rel=0.05)
 
 
 def test_a_rod_that_does_not_settle_in_time_has_its_transient():
     c = solve_cycle(rod_of(30.0, *SOFT), CycleRequest(1e-6, 1e-7, 3, 0, 0, 0, 3, transient=50))
     assert c.status.name == "not_settled"
-    assert c.transient[2, 0] == pytest.approx(1e-7, rel=1e-3)
-    assert np.isfinite(c.transient).all()
+    assert c.transient_tip_path[2, 0] == pytest.approx(1e-7, rel=1e-3)
+    assert np.isfinite(c.transient_tip_path).all()
 
 
 def test_a_cycle_predicted_from_its_neighbour_has_no_transient():
     request = CycleRequest(1e-6, 0.1, 3, 0, 0, 0, 400, start="neighbour", transient=50)
     first = solve_cycle(rod_of(50.0, *SOFT), request, None, "F")
-    second = solve_cycle(rod_of(51.0, *SOFT), request, first.neighbour, "F")
-    assert first.transient is not None
-    assert (second.status.name, second.transient) == ("cycle", None)
+    second = solve_cycle(rod_of(51.0, *SOFT), request, first.start_for_next_rod, "F")
+    assert first.transient_tip_path is not None
+    assert (second.status.name, second.transient_tip_path) == ("cycle", None)
 
 
 # --- the figure -------------------------------------------------------------------------------------------
@@ -249,7 +251,7 @@ def test_transients_are_drawn_of_points_with_and_without_a_cycle():
 def test_portrait_shows_how_the_beating_emerges_where_all_its_cycles_have_a_transient():
     for there, emerges in (((True, True), True), ((True, False), False)):
         view = view_with_transients((0, 0), there)
-        figure, shown = draw_portrait(view, ())
+        figure, shown = draw_shapes_and_tip_motion(view, ())
         assert ("from the start on" in shown) == emerges
         points = len(figure.axes[2].lines[0].get_xdata())
         assert points == (200 if emerges else 801)

@@ -12,18 +12,18 @@ from rodsweep.model.material.profile import FACTOR_NAMES, Profile
 from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
-from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
-from rodsweep.solve.cycle.transient.motion_mesh import coarse_mesh_along_branch
+from rodsweep.solve.cycle.hopf_start import hopf_point_below_force, orbit_from_hopf
+from rodsweep.solve.cycle.transient.motion_mesh import coarse_mesh_for_branch_to_cycle
+from rodsweep.solve.orbit.coefficient_tails import coefficients_of_elements
 from rodsweep.solve.orbit.element_order_ratios import (
-    ORDER_RATIO_SETTINGS,
+    ROD_ELEMENT_ORDER_RATIO_SETTINGS,
     element_order_ratios,
     without_excess_orders,
 )
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CycleMotion
-from rodsweep.solve.orbit.newton import newton
-from rodsweep.solve.orbit.orbit_mesh import OrbitMesh, mesh_of
-from rodsweep.solve.orbit.tails import coefficients_of_elements
+from rodsweep.solve.orbit.newton import solve_by_newton
+from rodsweep.solve.orbit.orbit_mesh import OrbitMesh, mesh_of_orbit
 
 ACCURACY = 1e-7
 RODS = {
@@ -40,8 +40,8 @@ def refined(name):
     profile = Profile((0.0, at, at, 1.0), ((1.0,) * len(FACTOR_NAMES),) * 2 + ((*stiffness, 1, 1, 1),) * 2)
     rod = Rod(**values, k1=1e4, k2=1e4, gamma3=1e-3, gamma1=0.7, material=RodMaterial(*names, profile))
     memory = NewtonWorkspace()
-    form = StressForm(rod, coarse_mesh_along_branch(rod))
-    return refined_cycle(orbit_from_hopf(form, hopf_point_below(rod), memory), ACCURACY, memory), memory
+    form = StressForm(rod, coarse_mesh_for_branch_to_cycle(rod))
+    return refined_cycle(orbit_from_hopf(form, hopf_point_below_force(rod), memory), ACCURACY, memory), memory
 
 
 @pytest.mark.parametrize("name", RODS)
@@ -51,9 +51,11 @@ def test_a_cycle_on_elements_of_unequal_orders_is_within_its_error(name):
     grid = orbit.form.mesh
     assert min(grid.orders) <= 0.75 * grid.order
     equal = mesh_with_edges(grid.edges, grid.order + 8)
-    exact = newton(orbit.on_mesh(equal, 2 * orbit.interval_count, orbit.stage_count + 1), 1e-12, memory).orbit
+    exact = solve_by_newton(
+        orbit.on_mesh(equal, 2 * orbit.interval_count, orbit.stage_count + 1), 1e-12, memory
+    ).orbit
     assert abs(found.measures.period / exact.period - 1) <= found.errors.period_error <= 3 * ACCURACY
-    y = CycleMotion(exact).extrema["tip_y_max"]
+    y = CycleMotion(exact).tip_extrema["tip_y_max"]
     assert abs(found.measures.tip_y_max / y - 1) <= found.errors.amplitude_error
 
 
@@ -63,7 +65,7 @@ def test_coefficients_beyond_the_order_of_an_element_are_small():
     fine = orbit.on_mesh(mesh_with_edges(grid.edges, grid.order), orbit.interval_count, orbit.stage_count)
     aim = 1e-4
     ratios = element_order_ratios(fine, grid.order, aim)
-    assert ORDER_RATIO_SETTINGS.min_ratio <= min(ratios) <= 0.5
+    assert ROD_ELEMENT_ORDER_RATIO_SETTINGS.min_element_order_ratio <= min(ratios) <= 0.5
     assert max(ratios) == 1
     each = coefficients_of_elements(fine)
     largest = np.max([c.max(axis=1) for c in each], axis=0)
@@ -100,13 +102,13 @@ def test_a_mesh_with_unequal_orders_is_stored_and_refined():
     assert not spaced.has_same_edges_and_order_ratios(mesh)
     assert (mesh.unknown_count, plain.unknown_count) == (3 * (9 + 17), 3 * (17 + 17))
     assert mesh.space_mesh.orders == (9, 17)
-    assert (np.array(mesh.finer_in_space.space_mesh.orders) > mesh.space_mesh.orders).all()
-    halved = OrbitMesh((0.0, 0.25, 1.0), 40, 9, 3, (0.5, 1.0)).finer_in_space
+    assert (np.array(mesh.mesh_finer_in_space.space_mesh.orders) > mesh.space_mesh.orders).all()
+    halved = OrbitMesh((0.0, 0.25, 1.0), 40, 9, 3, (0.5, 1.0)).mesh_finer_in_space
     assert halved.space_mesh.orders == (12, 12, 24, 24)
     orbit = refined("soft base")[0].orbit
     sent = pickle.loads(pickle.dumps(orbit))
-    assert mesh_of(sent) == mesh_of(orbit)
-    assert mesh_of(sent).order_ratios
+    assert mesh_of_orbit(sent) == mesh_of_orbit(orbit)
+    assert mesh_of_orbit(sent).order_ratios
 
 
 @pytest.mark.parametrize("name", RODS)
@@ -116,14 +118,14 @@ def test_an_element_loses_the_orders_that_do_not_reduce_the_error(name):
     high = max(orders) - 5
 
     def mesh_with_orders(low):
-        return mesh_of(found.orbit).with_orders([high if p == max(orders) else low for p in orders])
+        return mesh_of_orbit(found.orbit).with_orders([high if p == max(orders) else low for p in orders])
 
     def solved(mesh):
-        return newton(mesh.interpolated_orbit(found.orbit), 1e-12, memory).orbit
+        return solve_by_newton(mesh.interpolated_orbit(found.orbit), 1e-12, memory).orbit
 
     def measures(mesh):
         orbit = solved(mesh)
-        return np.array([orbit.period, *CycleMotion(orbit).extrema.values()])
+        return np.array([orbit.period, *CycleMotion(orbit).tip_extrema.values()])
 
     start = mesh_with_orders(high - 2)
     finer = replace(start, order=high + 3)

@@ -8,14 +8,14 @@ import pytest
 from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.plane_equations import write_jacobian
 from rodsweep.discretization.stress.form import StressForm
-from rodsweep.model.parameters import NONLINEAR_PARAMETERS
+from rodsweep.model.parameters import NONLINEAR_ROD_PARAMETER_NAMES
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
 from rodsweep.solve.branch.bordered.scale import ArcLengthScale
 from rodsweep.solve.orbit.matrix.elimination import eliminate_newton_matrix
 from rodsweep.solve.orbit.matrix.inversion import INVERSION_SETTINGS, invert_matrix
 from rodsweep.solve.orbit.matrix.linearisation import closing_residual, parameter_derivatives
-from rodsweep.solve.orbit.matrix.phase import phase_residual, phase_right_side, write_phase_row
+from rodsweep.solve.orbit.matrix.phase_condition import phase_residual, phase_right_side, write_phase_row
 from rodsweep.solve.orbit.matrix.right_sides import (
     write_rates_of_state,
     write_right_sides,
@@ -53,12 +53,12 @@ def dense_matrix(orbit, k):
     """Of all stages of an interval, (s n, s n)."""
     p, (s, n) = orbit.orbit_equations, orbit.stage_states.shape[1:]
     V, G, tip = np.empty((3, 9)), np.empty((3, 9)), np.empty((3, n))
-    A = np.kron(p.stage_differentiation[:, 1:], np.diag(p.mass))
+    A = np.kron(p.stage_differentiation_matrix[:, 1:], np.diag(p.mass_diagonal))
     for i in range(s):
         F, J = np.empty(n), np.zeros((n, n))
         write_rates_of_state(orbit.stage_states[k, i], F, V, G, p)
         write_jacobian(orbit.stage_states[k, i], V, J, tip, p.rod, p.node_matrices)
-        A[i * n : (i + 1) * n, i * n : (i + 1) * n] -= orbit.solved_duration * p.interval_lengths[k] * J
+        A[i * n : (i + 1) * n, i * n : (i + 1) * n] -= orbit.solved_duration * p.time_interval_lengths[k] * J
     return A
 
 
@@ -70,7 +70,7 @@ def test_elimination_is_the_solution_of_the_dense_systems(rod, stages):
     p, n = orbit.orbit_equations, orbit.form.unknown_count
     factors = FactorStorage(NewtonWorkspace(), INTERVALS, stages, n).factors
     random = np.random.default_rng(0)
-    columns = random.normal(size=(INTERVALS, stages, COLUMNS, n)) * (p.mass + 1e-3)
+    columns = random.normal(size=(INTERVALS, stages, COLUMNS, n)) * (p.mass_diagonal + 1e-3)
     start = random.normal(size=(COLUMNS, n))
     reduced, out = columns.copy(), np.empty_like(columns)
     ends = eliminate_newton_matrix(
@@ -81,7 +81,7 @@ def test_elimination_is_the_solution_of_the_dense_systems(rod, stages):
     flow, first, still = np.eye(n), start, np.zeros_like(start)
     for k in range(INTERVALS):
         A = dense_matrix(orbit, k)
-        by_start = np.kron(p.stage_differentiation[:, :1], np.diag(p.mass))
+        by_start = np.kron(p.stage_differentiation_matrix[:, :1], np.diag(p.mass_diagonal))
         sides = columns[k].transpose(0, 2, 1).reshape(stages * n, COLUMNS)
         changes = np.linalg.solve(A, sides - by_start @ first.T)
         expected = changes.reshape(stages, n, COLUMNS).transpose(0, 2, 1)
@@ -114,7 +114,7 @@ def balances(orbit, name, change):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("name", NONLINEAR_PARAMETERS)
+@pytest.mark.parametrize("name", NONLINEAR_ROD_PARAMETER_NAMES)
 @pytest.mark.parametrize("rod", RODS.values(), ids=RODS.keys())
 def test_derivative_by_a_parameter_is_the_limit_of_differences(rod, name):
     orbit = orbit_with(rod, 4)
@@ -125,7 +125,7 @@ def test_derivative_by_a_parameter_is_the_limit_of_differences(rod, name):
     p, V = orbit.orbit_equations, np.empty((INTERVALS, 4, 3, 9))
     write_right_sides(orbit.all_states, orbit.solved_duration, p, along, V, columns)
     right = columns[:, :, 2]
-    shift = phase_right_side(orbit.start_state, along.change, p.rod, p.node_matrices)
+    shift = phase_right_side(orbit.start_state, along.rod_derivative, p.rod, p.node_matrices)
     step = 1e-4 * orbit.form.rod.coordinate(name) or 1e-6  # to one side: a limit has no other
     there = np.array([balances(orbit, name, k * step) for k in range(3)])
     limit, rounding = [-1.5, 2, -0.5] @ there / step, 4e-15 * np.abs(there).max() / step
@@ -141,15 +141,15 @@ def whole_matrix(matrix):
     along, columns = parameter_derivatives(orbit.form, matrix.scale.parameter_name), np.empty((K, s, 3, n))
     write_right_sides(orbit.all_states, orbit.solved_duration, p, along, np.empty((K, s, 3, 9)), columns)
     A = np.zeros((len(orbit.values), len(orbit.values) + 1))
-    A[:n, :n] -= p.symmetry
+    A[:n, :n] -= p.symmetry_matrix
     A[:n, -2 - n : -2] += np.eye(n)
     for k in range(K):
         rows, start = slice(n + k * s * n, n + (k + 1) * s * n), slice(k * s * n, k * s * n + n)
         A[rows, rows] = dense_matrix(orbit, k)
-        A[rows, start] += np.kron(p.stage_differentiation[:, :1], np.diag(p.mass))
+        A[rows, start] += np.kron(p.stage_differentiation_matrix[:, :1], np.diag(p.mass_diagonal))
         A[rows, -2:] = -columns[k][:, [0, 2]].transpose(0, 2, 1).reshape(s * n, 2)
     write_phase_row(orbit.start_state, p.rod, p.node_matrices, A[-1, :n])
-    A[-1, -1] = -phase_right_side(orbit.start_state, along.change, p.rod, p.node_matrices)
+    A[-1, -1] = -phase_right_side(orbit.start_state, along.rod_derivative, p.rod, p.node_matrices)
     jump, shift = (
         closing_residual(orbit.all_states, p),
         phase_residual(orbit.start_state, p.rod, p.node_matrices),
@@ -170,15 +170,15 @@ def test_steps_keep_their_digits_however_much_perturbations_grow(period, growth)
     A, right = whole_matrix(matrix)
     tangent = matrix.branch_tangent(border)
     for change, sides in (
-        (matrix.step(border, 0.1), right),
-        (matrix.correction(orbit, border, 0.1), right),
+        (matrix.newton_step(border, 0.1), right),
+        (matrix.newton_step_at_nearby_orbit(orbit, border, 0.1), right),
         (tangent, 0 * right),
     ):
         assert np.abs(A @ change - sides).max() < 1e-9 * (np.abs(A) @ np.abs(change)).max()
-    assert border @ matrix.scale.directional_derivative(orbit, matrix.step(border, 0.1)) == pytest.approx(
-        0.1, rel=1e-9
-    )
+    assert border @ matrix.scale.directional_derivative(
+        orbit, matrix.newton_step(border, 0.1)
+    ) == pytest.approx(0.1, rel=1e-9)
     expected = np.linalg.solve(np.vstack([A, tangent]), np.append(right, 0.0))
-    found = matrix.step(border, 0.1)
+    found = matrix.newton_step(border, 0.1)
     found = found - tangent * (tangent @ found) / (tangent @ tangent)
     assert np.abs(found - expected).max() < 1e-8 * np.abs(expected).max()

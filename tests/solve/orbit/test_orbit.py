@@ -9,7 +9,7 @@ from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.solve.orbit.orbit import Orbit
-from rodsweep.solve.orbit.orbit_mesh import mesh_of
+from rodsweep.solve.orbit.orbit_mesh import mesh_of_orbit
 from rodsweep.solve.orbit.symmetry import NO_SYMMETRY, REFLECTION
 
 
@@ -20,7 +20,7 @@ def test_an_orbit_from_another_rank_is_the_same_to_the_last_bit(symmetry):
     states = np.random.default_rng(0).normal(size=(1 + 4 * 3, form.unknown_count))
     orbit = Orbit.from_states(form, symmetry, 0.02, states, 3)
     sent = pickle.loads(pickle.dumps(orbit))
-    own, finer = mesh_of(orbit), mesh_of(orbit).finer
-    assert mesh_of(sent) == own
+    own, finer = mesh_of_orbit(orbit), mesh_of_orbit(orbit).finer_mesh
+    assert mesh_of_orbit(sent) == own
     assert own.interpolated_orbit(sent).values.tobytes() == orbit.values.tobytes()
     assert finer.interpolated_orbit(sent).values.tobytes() == finer.interpolated_orbit(orbit).values.tobytes()

@@ -39,13 +39,13 @@ def orbit_with(stages):
 def matrix_of_a_cycle(orbit, workspace):
     """Newton's matrix with its multipliers and what corrects another orbit."""
     matrix = Linearisation(orbit, workspace)
-    return matrix, lambda: matrix.correction(orbit)
+    return matrix, lambda: matrix.newton_step_at_nearby_orbit(orbit)
 
 
 def matrix_of_a_branch(orbit, workspace):
     """The same with the force as a further unknown."""
     matrix = BorderedMatrix(orbit, ArcLengthScale.at_orbit(orbit, "F", 1.0), workspace)
-    return matrix, lambda: matrix.correction(orbit, MOMENT, 0.0)
+    return matrix, lambda: matrix.newton_step_at_nearby_orbit(orbit, MOMENT, 0.0)
 
 
 KINDS = [matrix_of_a_cycle, matrix_of_a_branch]
@@ -68,7 +68,7 @@ def test_a_matrix_whose_workspace_another_one_used_raises_and_keeps_its_multipli
 @pytest.mark.parametrize(
     "used",
     [
-        lambda matrix: matrix.step(MOMENT, 0.1),
+        lambda matrix: matrix.newton_step(MOMENT, 0.1),
         lambda matrix: matrix.branch_tangent(MOMENT),
         lambda matrix: matrix.approximate_null_vector(),
         lambda matrix: matrix.residual_variations(matrix.orbit, np.ones((1, len(matrix.orbit.values) + 1))),
@@ -170,9 +170,12 @@ def test_a_matrix_of_more_memory_than_allowed_is_refused_before_it_is_allocated(
     """Five stages with the most intervals and unknowns allowed by themselves would need 4.6 GB."""
     with pytest.raises(Unsolvable, match=r"needs 4\.6 GB, more than the 2\.1 GB allowed"):
         FactorStorage(
-            NewtonWorkspace(), ORBIT_MESH_SETTINGS.max_intervals, 5, ORBIT_MESH_SETTINGS.max_unknowns
+            NewtonWorkspace(),
+            ORBIT_MESH_SETTINGS.max_time_interval_count,
+            5,
+            ORBIT_MESH_SETTINGS.max_unknown_count,
         )
-    mesh = OrbitMesh((0.0, 0.2, 0.4, 0.6, 0.8, 1.0), 26, ORBIT_MESH_SETTINGS.max_intervals, 3)
+    mesh = OrbitMesh((0.0, 0.2, 0.4, 0.6, 0.8, 1.0), 26, ORBIT_MESH_SETTINGS.max_time_interval_count, 3)
     assert mesh.is_allowed
     assert not replace(mesh, stage_count=5).is_allowed
     assert replace(mesh, stage_count=5, interval_count=100).is_allowed

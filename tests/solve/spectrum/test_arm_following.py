@@ -54,7 +54,7 @@ def test_uniform_rubber_has_the_spectra_of_its_linear_equivalent():
     found = solve_stretch(stretch, REQUEST)
     assert found.certified.all()
     for i in (0, 9):
-        linear, rate = stretch.rod_at(i).equivalent_linear_rod_and_rate
+        linear, rate = stretch.rod_at(i).equivalent_linear_rod_and_rate_factor
         w = rate * solve_spectrum(linear, REQUEST).eigenvalues
         np.testing.assert_array_equal(found.eigenvalues[i], w)
 

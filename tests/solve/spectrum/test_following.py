@@ -19,7 +19,7 @@ from rodsweep.determinant.moving_line import (
 from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.model.rod import Coefficients, Rod
 from rodsweep.solve.spectrum.path import neighbouring_rods
-from rodsweep.solve.spectrum.path.prediction import extrapolate_hermite
+from rodsweep.solve.spectrum.path.eigenvalue_prediction import extrapolate_hermite
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
 
@@ -118,7 +118,7 @@ def no_width_in_p(at, y, direction, half, tilt):
 
 @pytest.mark.parametrize(
     ("name", "broken"),
-    [("is_remainder_below", holds_always), ("rectangle_proof_and_costs", no_width_in_p)],
+    [("is_taylor_remainder_below", holds_always), ("rectangle_proof_and_costs", no_width_in_p)],
     ids=["bound", "width"],
 )
 def test_a_broken_proof_is_noticed(monkeypatch, name, broken):

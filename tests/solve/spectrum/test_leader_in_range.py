@@ -18,7 +18,7 @@ from rodsweep.solve.cycle.straight_rod import (
 from rodsweep.solve.spectrum.path.leader_in_range import (
     ARM_RANGE_SETTINGS,
     ArmRange,
-    family_and_hulls_of_range,
+    arm_family_and_hulls_of_range,
     leader_in_range,
     next_range,
 )
@@ -40,13 +40,13 @@ def chain_of(rod, name, ratio, points):
 
 
 def is_from_range(found, arm_range):
-    return arm_range is not None and arm_range.is_usable and found.arm_range.failures == 0
+    return arm_range is not None and arm_range.is_usable and found.arm_range.successive_failure_count == 0
 
 
 def agrees_with_single_arm(rod, found):
     w = solve_spectrum(rod, SpectrumRequest(1, 1e-9, True)).eigenvalues[0]
     assert found.w == pytest.approx(complex(w.real, abs(w.imag)), rel=1e-11)
-    assert abs(found.w - complex(w.real, abs(w.imag))) <= 20 * found.error + 1e-13 * abs(w)
+    assert abs(found.w - complex(w.real, abs(w.imag))) <= 20 * found.eigenvalue_error + 1e-13 * abs(w)
 
 
 @pytest.mark.parametrize(
@@ -82,15 +82,17 @@ def test_a_range_proves_no_eigenvalue_that_does_not_lead():
     assert leader_in_range(rod, "k1", arm_range, w)[0] == pytest.approx(w, rel=1e-11)
     assert leader_in_range(rod, "k1", arm_range, w[1:]) is None
     # After a failure the propagators of the range are used again.
-    misses = family_and_hulls_of_range.cache_info().misses
-    assert leader_in_range(rod, "k1", arm_range._replace(failures=1.0), w)[0] == pytest.approx(w, rel=1e-11)
-    assert family_and_hulls_of_range.cache_info().misses == misses
+    misses = arm_family_and_hulls_of_range.cache_info().misses
+    assert leader_in_range(rod, "k1", arm_range._replace(successive_failure_count=1.0), w)[
+        0
+    ] == pytest.approx(w, rel=1e-11)
+    assert arm_family_and_hulls_of_range.cache_info().misses == misses
 
 
 def test_a_chain_without_use_for_a_range_has_none():
     """Uniform rods, steps that are too long, repeated rods; a range without proofs is given up."""
     near = np.array([-1.0 + 20j])
-    step = ARM_RANGE_SETTINGS.max_relative_length / ARM_RANGE_SETTINGS.min_steps
+    step = ARM_RANGE_SETTINGS.max_relative_length / ARM_RANGE_SETTINGS.min_chain_steps
     beside = ARM.with_values(F=ARM.F * (1 + 0.5 * step))
     assert next_range(ARM, beside, "F", None, near) is not None
     uniform = [Rod(F=rod.F, k1=1e4, k2=1e2, gamma3=1e-2) for rod in (ARM, beside)]
@@ -101,9 +103,9 @@ def test_a_chain_without_use_for_a_range_has_none():
     # No w beyond 1e-3 is resolved, so that nothing is proved.
     coarse = ArmRange(0.5 * ARM.F, 2 * ARM.F, 1e-3, 0.0)
     eigenvalues = eigenvalues_to_follow(ARM, straight_rod_stability(ARM))
-    for failures in range(1, ARM_RANGE_SETTINGS.max_failures + 1):
+    for failures in range(1, ARM_RANGE_SETTINGS.max_successive_failures + 1):
         found = straight_rod_stability_in_chain(ARM, eigenvalues, "F", coarse)
         agrees_with_single_arm(ARM, found)
         coarse = found.arm_range
-        assert coarse.failures == failures
+        assert coarse.successive_failure_count == failures
     assert not coarse.is_usable

@@ -22,7 +22,7 @@ from rodsweep.solve.spectrum.shift_invert import KRYLOV_SETTINGS
 from rodsweep.solve.spectrum.status import SpectrumStatus
 from rodsweep.solve.spectrum.two_meshes import solve_on_two_meshes
 
-TIGHT = SpectrumRequest(modes=4, accuracy=1e-12, certify=True)
+TIGHT = SpectrumRequest(mode_count=4, accuracy=1e-12, certify=True)
 
 pytestmark = pytest.mark.kernel
 
@@ -466,7 +466,7 @@ def test_a_solver_that_is_no_longer_kept_gives_its_memory_back():
 
 def test_krylov_schur_on_two_meshes_has_the_reference_spectra_within_its_errors(reference_spectra):
     """D takes no part: the difference of two meshes is the error, and nothing is certified."""
-    request = SpectrumRequest(modes=4, accuracy=1e-8, certify=False)
+    request = SpectrumRequest(mode_count=4, accuracy=1e-8, certify=False)
     for point in reference_spectra:
         rod = rod_of(point)
         result, exact = solve_on_two_meshes(rod, request), leading(point, 4)
@@ -485,7 +485,7 @@ def test_krylov_schur_on_two_meshes_has_the_reference_spectra_within_its_errors(
 
 def test_krylov_schur_on_two_meshes_says_which_mode_misses_the_accuracy_and_why():
     rod = Rod(F=-100.0, k1=1e8, k2=1e6, gamma3=1e-4)
-    result = solve_on_two_meshes(rod, SpectrumRequest(modes=4, accuracy=1e-12, certify=False))
+    result = solve_on_two_meshes(rod, SpectrumRequest(mode_count=4, accuracy=1e-12, certify=False))
     assert result.status == SpectrumStatus.accuracy_not_reached
     said = re.fullmatch(
         r"mode (\d) has a relative error of (\S+), limited by rounding errors, but the requested accuracy is "
@@ -495,7 +495,7 @@ def test_krylov_schur_on_two_meshes_says_which_mode_misses_the_accuracy_and_why(
     relative = result.error_estimate / np.abs(result.eigenvalues)
     assert int(said[1]) == 1 + np.argmax(relative)
     assert float(said[2]) == pytest.approx(relative.max(), rel=0.01)
-    better = SpectrumRequest(modes=4, accuracy=1.01 * float(said[3]), certify=False)
+    better = SpectrumRequest(mode_count=4, accuracy=1.01 * float(said[3]), certify=False)
     assert solve_on_two_meshes(rod, better).status == SpectrumStatus.ok
     assert solve_on_two_meshes(rod, better).message == ""
 
@@ -504,7 +504,7 @@ def test_krylov_schur_on_two_meshes_gives_all_but_the_leading_eigenvalue_of_a_pu
     """The leading eigenvalue, -1e-35, is less than rounding errors; all others are accurate, and are said to
     be."""
     rod = Rod(F=-1353.0, k1=153.0, k2=np.inf, gamma3=0.62)
-    request = SpectrumRequest(modes=4, accuracy=1e-8, certify=False)
+    request = SpectrumRequest(mode_count=4, accuracy=1e-8, certify=False)
     found, exact = solve_on_two_meshes(rod, request), solve_spectrum(rod, TIGHT)
     assert (found.status, exact.status) == (SpectrumStatus.accuracy_not_reached, SpectrumStatus.ok)
     error = np.abs(found.eigenvalues - exact.eigenvalues)
@@ -516,7 +516,7 @@ def test_krylov_schur_on_two_meshes_gives_no_number_where_no_mesh_resolves_bound
     """A pull beyond the shear stiffness makes layers of the thickness 1/2000: two meshes that are too coarse
     agree to 3e-7 on an eigenvalue with an error of 4e-5."""
     rod = Rod(F=-1600.0, k1=1e6, k2=2.3, gamma3=2.6e-7)
-    result = solve_on_two_meshes(rod, SpectrumRequest(modes=1, accuracy=1e-8, certify=False))
+    result = solve_on_two_meshes(rod, SpectrumRequest(mode_count=1, accuracy=1e-8, certify=False))
     assert result.status == SpectrumStatus.failed
     assert re.fullmatch(r"none of 9 meshes .* resolves the requested modes", result.message)
 
@@ -530,8 +530,8 @@ def test_krylov_schur_on_two_meshes_states_how_rounding_parts_a_double_eigenvalu
     """At the onset, to the last digit of F, two eigenvalues are within 1e-5 of each other, and rounding moves
     each by 1e-7 or more."""
     rod = Rod(F=onset, k1=k1, k2=k2, gamma3=0.0)
-    found = solve_on_two_meshes(rod, SpectrumRequest(modes=2, accuracy=accuracy, certify=False))
-    exact = solve_spectrum(rod, SpectrumRequest(modes=2, accuracy=1e-4, certify=True)).eigenvalues
+    found = solve_on_two_meshes(rod, SpectrumRequest(mode_count=2, accuracy=accuracy, certify=False))
+    exact = solve_spectrum(rod, SpectrumRequest(mode_count=2, accuracy=1e-4, certify=True)).eigenvalues
     error = np.abs(found.eigenvalues[:, None] - exact).min(axis=1)
     assert (error <= found.error_estimate).all()
     assert (found.error_estimate < 1e-5 * np.abs(exact)).all()
@@ -540,7 +540,7 @@ def test_krylov_schur_on_two_meshes_states_how_rounding_parts_a_double_eigenvalu
 def test_krylov_schur_on_two_meshes_is_sparse_where_elements_are_many():
     rod, request = (
         Rod(F=390.0, k1=1e4, k2=15.0, gamma3=1e-3),
-        SpectrumRequest(modes=30, accuracy=1e-8, certify=False),
+        SpectrumRequest(mode_count=30, accuracy=1e-8, certify=False),
     )
     result, reference = solve_on_two_meshes(rod, request), solve_spectrum(rod, TIGHT)
     assert result.status == SpectrumStatus.ok

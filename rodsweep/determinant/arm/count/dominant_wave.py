@@ -9,11 +9,11 @@ not require that Phi is close to log D: D is divided by exp(Phi), and Phi, a qua
 
 import cmath
 
-from ....model.compiled.compilation import compiled, compiled_for_vectors
+from ....model.compiled.compilation import compiled, compiled_with_reordered_sums
 from ..local_waves import ExponentSamples, sqrt_in_upper_half_plane
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def dominant_wave_exponent(w: complex, samples: ExponentSamples) -> complex:
     """Phi(w) = int sqrt(z+) du of an arm, by quadrature over its samples; Im w > 0."""
     # Each factor has its own root: w (rate + bend w) can leave the sheet of the principal root.
@@ -22,14 +22,14 @@ def dominant_wave_exponent(w: complex, samples: ExponentSamples) -> complex:
     b = root.imag
     real = 0.0
     imag = 0.0
-    for i in range(len(samples.weights)):
-        drag, load, rate, bend = samples.squares[:, i]
+    for i in range(len(samples.quadrature_weights)):
+        drag, load, rate, bend = samples.squared_exponent_coefficients[:, i]
         x, y = sqrt_in_upper_half_plane(rate + bend * w.real, bend * w.imag)
         x, y = sqrt_in_upper_half_plane(
             drag * w.real - load + 2 * (a * x - b * y), drag * w.imag + 2 * (a * y + b * x)
         )
-        real += samples.weights[i] * x
-        imag += samples.weights[i] * y
+        real += samples.quadrature_weights[i] * x
+        imag += samples.quadrature_weights[i] * y
     return complex(real, imag)
 
 
@@ -38,9 +38,9 @@ def dominant_exponent_slope(w: complex, samples: ExponentSamples) -> complex:
     """dPhi/dw of the dominant wave at w, Im w > 0."""
     root = cmath.sqrt(w)
     slope = 0j
-    for i in range(len(samples.weights)):
-        drag, load, rate, bend = samples.squares[:, i]
+    for i in range(len(samples.quadrature_weights)):
+        drag, load, rate, bend = samples.squared_exponent_coefficients[:, i]
         P = root * cmath.sqrt(rate + bend * w)
         fastest = cmath.sqrt(drag * w - load + 2 * P)
-        slope += samples.weights[i] * (drag + (rate + 2 * bend * w) / P) / (2 * fastest)
+        slope += samples.quadrature_weights[i] * (drag + (rate + 2 * bend * w) / P) / (2 * fastest)
     return slope

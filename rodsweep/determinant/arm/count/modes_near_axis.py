@@ -25,20 +25,24 @@ from .settings import CONTOUR_SETTINGS
 class NearAxisSettings(KernelConstants):
     """Settings for the starting points on the imaginary axis, and for Newton's method from them."""
 
-    first_height: float = 0.01
+    first_start_frequency: float = 0.01
     """Im w of the first starting point, in 1/tau2; crossings of all arms of the surveys lie above 1."""
-    height_ratio: float = 1.25
+    start_frequency_ratio: float = 1.25
     """Ratio of Im w of a starting point to Im w of the previous starting point."""
-    max_distance_from_start_ratio: float = 0.5
+    max_distance_from_start_over_frequency: float = 0.5
     """Newton's method stops if a step, or the distance of w from the starting point, exceeds this number
     times Im w of the starting point."""
     max_steps: int = 12
     """Maximum number of Newton steps from one starting point."""
-    converged_step_ratio: float = 1e-9
+    converged_step_over_w: float = 1e-9
     """Newton's method has converged if |step| <= this number times |w|; eigenvalues are refined later."""
     max_modes: int = 64
     """Maximum number of eigenvalues, including the known eigenvalues."""
-    field_ranges: ClassVar = {"height_ratio": (1.0, math.inf), "max_distance_from_start_ratio": (0.0, 1.0)}
+    field_ranges: ClassVar = {
+        "start_frequency_ratio": (1.0, math.inf),
+        "max_distance_from_start_over_frequency": (0.0, 1.0),
+    }
+    """Exclusive bounds (lower, upper) of fields, by name, that the proofs require; see `KernelConstants`."""
 
 
 NEAR_AXIS_SETTINGS = NearAxisSettings()
@@ -49,19 +53,22 @@ def modes_near_axis(determinant: ArmDeterminant, max_frequency: float, known_w: 
     `max_frequency`, one of each conjugate pair, (n,); at most `NEAR_AXIS_SETTINGS.max_modes`. known_w:
     eigenvalues found before, (m,). Raises FloatingPointError if no elements resolve the arm."""
     eigenvalues = known_w[: NEAR_AXIS_SETTINGS.max_modes]
-    height = NEAR_AXIS_SETTINGS.first_height
+    height = NEAR_AXIS_SETTINGS.first_start_frequency
     while height < max_frequency:
         # Newton's iterates move up by at most this ratio, so all of them stay within the propagators' W.
         W, propagators = determinant.propagators_for(
-            (1 + NEAR_AXIS_SETTINGS.max_distance_from_start_ratio) * height, CONTOUR_SETTINGS.max_W_ratio
+            (1 + NEAR_AXIS_SETTINGS.max_distance_from_start_over_frequency) * height,
+            CONTOUR_SETTINGS.max_reused_W_over_w,
         )
         heights = [height]
-        while heights[-1] * NEAR_AXIS_SETTINGS.height_ratio < min(
-            max_frequency, W / (1 + NEAR_AXIS_SETTINGS.max_distance_from_start_ratio)
+        while heights[-1] * NEAR_AXIS_SETTINGS.start_frequency_ratio < min(
+            max_frequency, W / (1 + NEAR_AXIS_SETTINGS.max_distance_from_start_over_frequency)
         ):
-            heights.append(heights[-1] * NEAR_AXIS_SETTINGS.height_ratio)
-        eigenvalues = _modes_from(np.array(heights), eigenvalues, (W, propagators), determinant.gauss_samples)
-        height = heights[-1] * NEAR_AXIS_SETTINGS.height_ratio
+            heights.append(heights[-1] * NEAR_AXIS_SETTINGS.start_frequency_ratio)
+        eigenvalues = _modes_from(
+            np.array(heights), eigenvalues, (W, propagators), determinant.exponent_samples_at_gauss_points
+        )
+        height = heights[-1] * NEAR_AXIS_SETTINGS.start_frequency_ratio
     return eigenvalues
 
 
@@ -98,14 +105,15 @@ def _mode_near(
         for k in range(len(known_w)):
             slope -= 1 / (w - known_w[k]) if w != known_w[k] else 0j
         # The step, 1/slope, would leave the neighbourhood of the starting point. Negated, to end at nan too.
-        if not abs(slope) * NEAR_AXIS_SETTINGS.max_distance_from_start_ratio * guess.imag > 1:
+        if not abs(slope) * NEAR_AXIS_SETTINGS.max_distance_from_start_over_frequency * guess.imag > 1:
             break
         step = 1 / slope
         w -= step
         if not (
-            w.imag > 0 and abs(w - guess) < NEAR_AXIS_SETTINGS.max_distance_from_start_ratio * guess.imag
+            w.imag > 0
+            and abs(w - guess) < NEAR_AXIS_SETTINGS.max_distance_from_start_over_frequency * guess.imag
         ):
             break
-        if abs(step) <= NEAR_AXIS_SETTINGS.converged_step_ratio * abs(w):
+        if abs(step) <= NEAR_AXIS_SETTINGS.converged_step_over_w * abs(w):
             return w
     return complex(math.nan, math.nan)

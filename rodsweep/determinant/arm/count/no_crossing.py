@@ -26,7 +26,7 @@ from ....arrays import Array, Complex, list_of
 from ....model.compiled.compilation import compiled
 from ....model.rod import Rod
 from ..arm_family import ArmFamily
-from ..completeness import has_conjugate
+from ..completeness import is_real_or_conjugate_known
 from ..determinant import ArmDeterminant, coefficient_samples, elements_for
 from ..elements.propagators import element_propagators
 from ..family_values import propagators_at
@@ -41,29 +41,31 @@ class ArmsOfInterval(NamedTuple):
     """Some arms of an interval: the middle arm, then the arms at both ends, then further arms.
 
     known_eigenvalues, known_errors: eigenvalues followed from arm to arm, and their errors, (n, m) each.
-    squares, weights: as in `ExponentSamples`, (n, 4, points) and (points,). largest_w, propagators: W, and
-    the propagators of the arms for |w| <= W, (n, elements, terms, PADDED).
+    squared_exponent_coefficients, quadrature_weights: as in `ExponentSamples`, (n, 4, points) and (points,).
+    largest_w, propagators: W, and the propagators of the arms for |w| <= W, (n, elements, terms,
+    PADDED_LENGTH).
     """
 
     known_eigenvalues: Complex
     known_errors: Array
-    squares: Array
-    weights: Array
+    squared_exponent_coefficients: Array
+    quadrature_weights: Array
     largest_w: float
     propagators: Array
 
 
 class LineNode(NamedTuple):
     """The node w0 of a disc, with values of the middle arm. w: w0. D: D(w0) exp(-S), S = `log_scale`. L:
-    D'/D, with the eigenvalues divided out. divided_indices: indices of the known eigenvalues that are divided
-    out, (k,). exponent_and_slope: (Phi, dPhi/dw) if h contains the dominant wave, else (0, 0)."""
+    D'/D, with the eigenvalues divided out. divided_out_indices: indices of the known eigenvalues that are
+    divided out, (k,). dominant_exponent_and_slope: (Phi, dPhi/dw) if h contains the dominant wave, else (0,
+    0)."""
 
     w: complex
     D: complex
     log_scale: float
-    L: complex
-    divided_indices: NDArray[np.int64]
-    exponent_and_slope: tuple[complex, complex]
+    log_derivative: complex
+    divided_out_indices: NDArray[np.int64]
+    dominant_exponent_and_slope: tuple[complex, complex]
 
 
 def sampled_point_indices(first_index: int, last_index: int) -> list[int]:
@@ -98,30 +100,28 @@ def proves_no_crossing_of_arms(
     # Largest |Im w| right of the line in the hulls of all arms.
     top = max(EigenvalueHull(a, c).box(max(-line, 0.0))[1] for a, c in intervals)
     # The upper half of the line suffices only if D stays real after the division by known eigenvalues.
-    if not math.isfinite(top) or not all(has_conjugate(w_of_arm).all() for w_of_arm in w):
+    if not math.isfinite(top) or not all(is_real_or_conjugate_known(w_of_arm).all() for w_of_arm in w):
         return False
-    samples = [ArmDeterminant(rod).gauss_samples for rod in rods]
-    squares = np.array([exponent_samples.squares for exponent_samples in samples])
+    samples = [ArmDeterminant(rod).exponent_samples_at_gauss_points for rod in rods]
+    squares = np.array([exponent_samples.squared_exponent_coefficients for exponent_samples in samples])
     propagators = [propagators_at(family, p_of_arm)[1] for p_of_arm in list_of(p)]
-    arms = ArmsOfInterval(w, error, squares, samples[0].weights, family.largest_w, np.array(propagators))
+    weights = samples[0].quadrature_weights
+    arms = ArmsOfInterval(w, error, squares, weights, family.largest_w, np.array(propagators))
     scale = mean_wave_number_and_w_scale(complex(line, 0.0), samples[0])[1]
-    height, radius = covered_height(
-        line,
-        0.0,
-        top,
-        (CONTOUR_SETTINGS.first_radius_in_lengths * scale, NO_CROSSING_SETTINGS.min_radius * scale),
-        arms,
-    )
+    first_radius = CONTOUR_SETTINGS.first_circle_radius_over_w_scale * scale
+    min_radius = NO_CROSSING_SETTINGS.min_radius_over_w_scale * scale
+    height, radius = covered_height(line, 0.0, top, (first_radius, min_radius), arms)
     # The family's propagators cost nothing here, but end at its W; arms with a higher line need others.
     if height < top and radius > 0:
         try:
-            W = NO_CROSSING_SETTINGS.w_bound_ratio * abs(complex(line, top))
+            W = NO_CROSSING_SETTINGS.W_over_largest_w * abs(complex(line, top))
             elements = elements_for(rods, coefficient_samples(rods), W)
-            larger = element_propagators([rod.F for rod in rods], elements.local, elements.lengths, W)
+            forces = [rod.F for rod in rods]
+            larger = element_propagators(forces, elements.local_coefficients, elements.lengths, W)
         except FloatingPointError:
             return False
         arms = arms._replace(largest_w=W, propagators=larger)
-        height, _ = covered_height(line, height, top, (radius, NO_CROSSING_SETTINGS.min_radius * scale), arms)
+        height, _ = covered_height(line, height, top, (radius, min_radius), arms)
     return height >= top
 
 
@@ -137,7 +137,7 @@ def covered_height(
     while height < top:
         max_valid_radius = (arms.largest_w - abs(complex(line, height))) / 2
         # Without the second limit, ever smaller discs would approach the largest |w| and never reach it.
-        if max_valid_radius < max(NO_CROSSING_SETTINGS.min_allowed_radius_fraction * radius, smallest):
+        if max_valid_radius < max(NO_CROSSING_SETTINGS.min_radius_fraction_inside_W * radius, smallest):
             return height, radius
         radius = min(radius, max_valid_radius)
         w0 = complex(
@@ -145,9 +145,9 @@ def covered_height(
         )
         if _is_zero_free(w0, radius, arms):
             height = w0.imag + NO_CROSSING_SETTINGS.covered_length_over_radius * radius
-            radius *= NO_CROSSING_SETTINGS.radius_growth
+            radius *= NO_CROSSING_SETTINGS.radius_growth_factor
         else:
-            radius /= NO_CROSSING_SETTINGS.radius_divisor
+            radius /= NO_CROSSING_SETTINGS.radius_divisor_after_failure
             if not radius > smallest:
                 return height, 0.0
     return height, radius
@@ -160,23 +160,24 @@ def _is_zero_free(w0: complex, radius: float, arms: ArmsOfInterval) -> bool:
     value = determinant_from_propagators(w0, arms.largest_w, arms.propagators[0])
     if not abs(value.D) > CONTOUR_SETTINGS.rounding_safety_factor * value.rounding_error:
         return False
-    divided_indices = np.flatnonzero(
-        np.abs(arms.known_eigenvalues[0] - w0) < NO_CROSSING_SETTINGS.divided_distance_ratio * radius
+    divided_out_indices = np.flatnonzero(
+        np.abs(arms.known_eigenvalues[0] - w0)
+        < NO_CROSSING_SETTINGS.max_divided_out_distance_over_radius * radius
     )
     L = value.D_w / value.D
-    for n in divided_indices:
+    for n in divided_out_indices:
         if _is_too_close_to_divide(w0, arms.known_eigenvalues[0, n], arms.known_errors[0, n]):
             return False
         L -= 1 / (w0 - arms.known_eigenvalues[0, n])
     wave = (0j, 0j)
-    if radius <= CONTOUR_SETTINGS.max_wave_radius * w0.imag:
-        samples = ExponentSamples(arms.squares[0], arms.weights)
+    if radius <= CONTOUR_SETTINGS.max_dominant_wave_radius_over_im_w * w0.imag:
+        samples = ExponentSamples(arms.squared_exponent_coefficients[0], arms.quadrature_weights)
         wave = (dominant_wave_exponent(w0, samples), dominant_exponent_slope(w0, samples))
-    node = LineNode(w0, value.D, value.log_scale, L, divided_indices, wave)
+    node = LineNode(w0, value.D, value.log_scale, L, divided_out_indices, wave)
     number = len(arms.known_eigenvalues)
     is_free = True
     for k in range(1, number + 1):  # the ends before the middle arm, because f changes most at the ends
-        is_free = is_free and _has_small_change(node, radius, k % number, arms)
+        is_free = is_free and _has_small_D_change(node, radius, k % number, arms)
     return is_free
 
 
@@ -184,31 +185,33 @@ def _is_zero_free(w0: complex, radius: float, arms: ArmsOfInterval) -> bool:
 def _is_too_close_to_divide(v: complex, w: complex, error: float) -> bool:
     """Whether v is too close to the known eigenvalue w, with `error`, for D(v)/(v - w)."""
     return not abs(v - w) > max(
-        NO_CROSSING_SETTINGS.min_relative_known_distance * abs(v),
-        NO_CROSSING_SETTINGS.min_distance_in_errors * error,
+        NO_CROSSING_SETTINGS.min_known_distance_over_w * abs(v),
+        NO_CROSSING_SETTINGS.min_known_distance_over_error * error,
     )
 
 
 @compiled
-def _has_small_change(node: LineNode, radius: float, arm: int, arms: ArmsOfInterval) -> bool:
+def _has_small_D_change(node: LineNode, radius: float, arm: int, arms: ArmsOfInterval) -> bool:
     """Whether |f(v, p)/f(w0, q) - 1| <= `NO_CROSSING_SETTINGS.max_D_change_ratio` at the points v of the
     circle, for the arm number `arm`; False if a point is too close to a known eigenvalue."""
-    samples = ExponentSamples(arms.squares[arm], arms.weights)
+    samples = ExponentSamples(arms.squared_exponent_coefficients[arm], arms.quadrature_weights)
     growth = 0.0
-    if node.exponent_and_slope[0] == 0:
+    if node.dominant_exponent_and_slope[0] == 0:
         # Phi has branch points on the real axis. Here only its change from arm to arm is used, off the axis.
-        point_above = complex(node.w.real, radius / CONTOUR_SETTINGS.max_wave_radius)
-        middle_exponent = dominant_wave_exponent(point_above, ExponentSamples(arms.squares[0], arms.weights))
+        point_above = complex(node.w.real, radius / CONTOUR_SETTINGS.max_dominant_wave_radius_over_im_w)
+        middle_exponent = dominant_wave_exponent(
+            point_above, ExponentSamples(arms.squared_exponent_coefficients[0], arms.quadrature_weights)
+        )
         growth = (dominant_wave_exponent(point_above, samples) - middle_exponent).real
-    for direction in CONTOUR_SETTINGS.directions:
+    for direction in CONTOUR_SETTINGS.circle_directions:
         v = node.w + radius * direction
         D, S = scaled_determinant_from_propagators(v, arms.largest_w, arms.propagators[arm])
-        h = (node.L - node.exponent_and_slope[1]) * (v - node.w) + growth
-        if node.exponent_and_slope[0] != 0:
-            h += dominant_wave_exponent(v, samples) - node.exponent_and_slope[0]
+        h = (node.log_derivative - node.dominant_exponent_and_slope[1]) * (v - node.w) + growth
+        if node.dominant_exponent_and_slope[0] != 0:
+            h += dominant_wave_exponent(v, samples) - node.dominant_exponent_and_slope[0]
         # The logarithms are added before exp: each exponential alone may overflow.
         ratio = D / node.D * cmath.exp(S - node.log_scale - h)
-        for n in node.divided_indices:
+        for n in node.divided_out_indices:
             if _is_too_close_to_divide(v, arms.known_eigenvalues[arm, n], arms.known_errors[arm, n]):
                 return False
             ratio *= (node.w - arms.known_eigenvalues[0, n]) / (v - arms.known_eigenvalues[arm, n])

@@ -26,7 +26,7 @@ from ....model.compiled.compilation import compiled
 from ...exponents import EXPONENT_SETTINGS
 from ...value import DeterminantValue
 from ..determinant import PropagatorsUpToW
-from ..hull.region import EigenvalueHull, distance_and_normal
+from ..hull.region import EigenvalueHull, hull_distance_and_normal
 from ..local_waves import ExponentSamples
 from ..value import determinant_from_propagators, log_modulus_from_propagators
 from .dominant_wave import dominant_exponent_slope, dominant_wave_exponent
@@ -36,24 +36,24 @@ from .settings import CONTOUR_SETTINGS
 class PhaseNode(NamedTuple):
     """A point w on the contour with a tangent h of log D.
 
-    direction, L: D/|D| and D'/D, with the known eigenvalues divided out of D. exponent_and_slope: (Phi,
-    dPhi/dw) if h contains the dominant wave, else (0, 0). valid_radius: distance from w within which the
-    error of h is below pi/2. radius: radius of the circle from which `valid_radius` follows; 0 if it follows
-    from the hull."""
+    phase_factor, log_derivative: D/|D| and D'/D, with the known eigenvalues divided out of D.
+    dominant_exponent_and_slope: (Phi, dPhi/dw) if h contains the dominant wave, else (0, 0). valid_radius:
+    distance from w within which the error of h is below pi/2. circle_radius: radius of the circle from which
+    `valid_radius` follows; 0 if it follows from the hull."""
 
     w: complex
-    direction: complex
-    L: complex
-    exponent_and_slope: tuple[complex, complex]
+    phase_factor: complex
+    log_derivative: complex
+    dominant_exponent_and_slope: tuple[complex, complex]
     valid_radius: float
-    radius: float
+    circle_radius: float
 
 
 @compiled
 def linearised_log_determinant(node: PhaseNode, v: complex, samples: ExponentSamples) -> complex:
     """The tangent h(v) of log D at a node, without the constant log D(w) (see the module docstring)."""
-    Phi, slope = node.exponent_and_slope
-    linear_change = (node.L - slope) * (v - node.w)
+    Phi, slope = node.dominant_exponent_and_slope
+    linear_change = (node.log_derivative - slope) * (v - node.w)
     return linear_change + dominant_wave_exponent(v, samples) - Phi if Phi != 0 else linear_change
 
 
@@ -79,20 +79,22 @@ def phase_node(
         # Multiplication by the conjugate of a unit vector divides by it.
         direction *= difference.conjugate() / abs(difference)
         L -= 1 / difference
-    distance, normal = distance_and_normal(complex(w.real, abs(w.imag)), hull.a, hull.c)
+    distance, normal = hull_distance_and_normal(complex(w.real, abs(w.imag)), hull.a, hull.c)
     reach = 0.0
     if distance > 0:
         # S is positive in exact arithmetic, but rounding of L can exceed it far away from all eigenvalues.
         S = max((normal * L).real, 0.0) / distance
         # The r at which the bound S r^2/2/(1 - r/d)^2 of the module docstring equals the allowed error.
-        reach = 1 / (1 / distance + math.sqrt(S / (2 * CONTOUR_SETTINGS.max_tangent_error)))
+        reach = 1 / (1 / distance + math.sqrt(S / (2 * CONTOUR_SETTINGS.max_tangent_phase_error)))
     node = PhaseNode(w, direction, L, (0j, 0j), reach, 0.0)
     # The radius from the hull is proved and needs no further value of D, so it is used if it is long enough.
-    return node if reach > trial_radii[0] else _node_inside(node, value, known_w, trial_radii, arm)
+    return (
+        node if reach > trial_radii[0] else _node_inside_spectrum_hull(node, value, known_w, trial_radii, arm)
+    )
 
 
 @compiled
-def _node_inside(
+def _node_inside_spectrum_hull(
     node: PhaseNode,
     value: DeterminantValue,
     known_w: Complex,
@@ -104,21 +106,20 @@ def _node_inside(
     largest radius of a circle). arm: (samples of the arm's coefficients, propagators for |w| <= W)."""
     w = node.w
     samples, (W, propagators) = arm
-    unit = min(trial[0], CONTOUR_SETTINGS.max_log_slope / max(abs(node.L), EXPONENT_SETTINGS.min_divisor))
-    min_rho = CONTOUR_SETTINGS.min_circle_radius_in_lengths * unit
+    slope = max(abs(node.log_derivative), EXPONENT_SETTINGS.min_divisor)
+    unit = min(trial[0], CONTOUR_SETTINGS.max_log_D_change_over_radius / slope)
+    min_rho = CONTOUR_SETTINGS.min_circle_radius_over_w_scale * unit
     rounding = CONTOUR_SETTINGS.rounding_safety_factor * value.rounding_error
     excess = CONTOUR_SETTINGS.max_D_change_ratio - rounding / abs(value.D)
     log_D = math.log(abs(value.D)) + value.log_scale - _log_of_distance_product(w, known_w)
     best, rho = node, max(trial[1], min_rho)
     while rho >= min_rho:
-        wave = (0j, 0j)
-        if rho <= CONTOUR_SETTINGS.max_wave_radius * w.imag:
-            wave = (dominant_wave_exponent(w, samples), dominant_exponent_slope(w, samples))
-        tried = PhaseNode(w, node.direction, node.L, wave, 0.0, rho)
+        wave = _dominant_exponent_and_slope(w, rho, samples)
+        tried = PhaseNode(w, node.phase_factor, node.log_derivative, wave, 0.0, rho)
         # Smaller circles give at most this valid radius.
         target = max(best.valid_radius, _valid_radius(rho / 2, CONTOUR_SETTINGS.circle_safety_factor, excess))
         reach, log_max = math.inf, -math.inf  # log_max: log of the largest |f| at points of the circle
-        for direction in CONTOUR_SETTINGS.directions:
+        for direction in CONTOUR_SETTINGS.circle_directions:
             v = w + rho * direction
             log_f = log_modulus_from_propagators(v, W, propagators) - _log_of_distance_product(v, known_w)
             log_max = max(log_max, log_f - linearised_log_determinant(tried, v, samples).real)
@@ -129,14 +130,23 @@ def _node_inside(
                 reach = 0.0
                 break
         if reach > best.valid_radius:
-            best = PhaseNode(w, node.direction, node.L, wave, reach, rho)
-        elif best.radius > 0:
+            best = PhaseNode(w, node.phase_factor, node.log_derivative, wave, reach, rho)
+        elif best.circle_radius > 0:
             # The valid radius has passed its maximum: smaller circles only make it smaller.
             break
-        if best.radius > 0 and best.valid_radius >= target:
+        if best.circle_radius > 0 and best.valid_radius >= target:
             break
         rho /= 2
     return best
+
+
+@compiled
+def _dominant_exponent_and_slope(w: complex, rho: float, samples: ExponentSamples) -> tuple[complex, complex]:
+    """(Phi, dPhi/dw) of the dominant wave at w if the radius rho of the circle is small enough, else (0,
+    0)."""
+    if rho <= CONTOUR_SETTINGS.max_dominant_wave_radius_over_im_w * w.imag:
+        return dominant_wave_exponent(w, samples), dominant_exponent_slope(w, samples)
+    return 0j, 0j
 
 
 @compiled

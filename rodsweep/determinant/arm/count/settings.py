@@ -13,7 +13,7 @@ from ....model.compiled.kernel_constants import KernelConstants
 class ContourSettings(KernelConstants):
     """Settings for the nodes on the contour of a count, and for the circles about nodes inside the hull."""
 
-    max_tangent_error: float = 1.5
+    max_tangent_phase_error: float = 1.5
     """Largest allowed error of a tangent's phase, in radians; errors of two tangents sum to less than pi."""
     circle_point_count: int = 8
     """Number of points of a circle at which |f| is evaluated; a multiple of 4."""
@@ -24,53 +24,54 @@ class ContourSettings(KernelConstants):
     rounding_safety_factor: float = 100.0
     """|rounding error of D| <= this number times `rounding_error` of the value. Where |D| is below this
     bound, the valid radius of a node is 0."""
-    max_log_slope: float = 1.0
-    """Radii of circles are in units of max_log_slope/|L| if this is below the length over which
-    D changes, so that circles get smaller close to a zero of D."""
-    max_known_error_ratio: float = 1e-3
+    max_log_D_change_over_radius: float = 1.0
+    """Radii of circles are in units of max_log_D_change_over_radius/|L| if this is below the length over
+    which D changes, so that circles get smaller close to a zero of D."""
+    max_divided_out_error_over_distance: float = 1e-3
     """A known eigenvalue is divided out of D only if its error is below this fraction of the distance."""
-    max_known_line_distance_ratio: float = 1.0
+    max_divided_out_line_distance_over_w: float = 1.0
     """Distance of a known eigenvalue w from the line, divided by max(|Im w|, |line|), below which the
     eigenvalue is divided out of D. D without farther eigenvalues would not follow the dominant wave."""
     min_valid_radius_over_w: float = 1e-12
     """The count fails if the valid radius of a node w, the distance within which the phase of D is known, is
     below this number times |w|: a zero of D is too close."""
-    max_W_ratio: float = 16.0
+    max_reused_W_over_w: float = 16.0
     """Existing propagators for |w| <= W serve a node if W <= this number times the |w| needed. Otherwise
     propagators on fewer elements are made, because a count evaluates D many times."""
     max_nodes: int = 5000
     """Maximum number of nodes on all sides of the box; cones with tapers from 0.1 to 1 need 15 to 210."""
-    radius_overlap: float = 0.95
+    distance_over_sum_of_valid_radii: float = 0.95
     """Distance to the next node divided by the sum of the expected valid radii of both nodes."""
-    max_radius_growth: float = 0.5
+    max_valid_radius_growth: float = 0.5
     """Largest expected growth of the valid radius per distance; the next node is at most 3.6 radii away."""
     min_valid_over_circle_radius: float = 0.2
     """If the valid radius is below this fraction of a circle's radius, a smaller circle is tried at once."""
-    first_radius_in_lengths: float = 12.0
+    first_circle_radius_over_w_scale: float = 12.0
     """Radius of the first circle at a first node, in units of the length over which D changes."""
-    min_circle_radius_in_lengths: float = 0.75
+    min_circle_radius_over_w_scale: float = 0.75
     """Radius of the smallest circle at any node, in units of the length over which D changes. Every trial
     halves the radius."""
-    max_circle_radius: float = 48.0
+    max_circle_radius_over_w_scale: float = 48.0
     """Radius of the largest circle at any node, in units of the length over which D changes."""
-    max_wave_radius: float = 0.8
+    max_dominant_wave_radius_over_im_w: float = 0.8
     """Circles up to this radius, in units of Im w, use `dominant_wave`, branched on the real axis."""
     max_shortened_step_ratio: float = 0.9
     """If the valid discs of two nodes do not overlap, the step is shortened at least by this factor."""
     safe_step_over_radius: float = 0.99
     """A step within the valid radius of a node is at most this times that radius, because of rounding."""
     field_ranges: ClassVar = {
-        "max_tangent_error": (0.0, math.pi / 2),
+        "max_tangent_phase_error": (0.0, math.pi / 2),
         "max_D_change_ratio": (0.0, 1.0),
-        "max_wave_radius": (0.0, 1.0),
-        "radius_overlap": (0.0, 1.0),
-        "max_radius_growth": (0.0, 1.0),
+        "max_dominant_wave_radius_over_im_w": (0.0, 1.0),
+        "distance_over_sum_of_valid_radii": (0.0, 1.0),
+        "max_valid_radius_growth": (0.0, 1.0),
         "max_shortened_step_ratio": (0.0, 1.0),
         "safe_step_over_radius": (0.0, 1.0),
     }
+    """Exclusive bounds (lower, upper) of fields, by name, that the proofs require; see `KernelConstants`."""
 
     @property
-    def directions(self) -> tuple[complex, ...]:
+    def circle_directions(self) -> tuple[complex, ...]:
         """Unit vectors to the points of a circle, in the order of evaluation. Successive points differ much
         in (v - w)^2, so that circles with too large |f| are mostly rejected after one or two points."""
         order = np.arange(self.circle_point_count).reshape(-1, 2, 2).swapaxes(1, 2).ravel()
@@ -88,43 +89,44 @@ class NoCrossingSettings(KernelConstants):
     """Number of arms of an interval at which D is evaluated, including the middle arm and both ends."""
     line_distance_over_last_w: float = 0.05
     """Distance of the line left of the last requested eigenvalue w, or of the axis if w grows, over |w|."""
-    arms_safety_factor: float = 1.5
+    between_arms_safety_factor: float = 1.5
     """Safety factor on the largest change of f at these arms, for arms between them."""
-    divided_distance_ratio: float = 3.0
+    max_divided_out_distance_over_radius: float = 3.0
     """Distance of a known eigenvalue from a node, divided by the radius of the node's disc, below which the
     eigenvalue is divided out of D."""
-    min_relative_known_distance: float = 1e-6
+    min_known_distance_over_w: float = 1e-6
     """Distance of a point v of a circle from a known eigenvalue, divided by |v|, below which the circle is
     not used: D and the divisor are then both inaccurate."""
-    min_distance_in_errors: float = 1e3
+    min_known_distance_over_error: float = 1e3
     """Distance of a point of a circle from a known eigenvalue, divided by the error of this eigenvalue, below
     which the circle is not used."""
     covered_length_over_radius: float = 0.98
     """Length of the line that a disc covers on each side of its node, divided by the radius."""
-    min_allowed_radius_fraction: float = 0.25
+    min_radius_fraction_inside_W: float = 0.25
     """If the largest |w| of the propagators allows only a disc below this fraction of the radius, propagators
     for larger |w| are made."""
-    w_bound_ratio: float = 2.0
+    W_over_largest_w: float = 2.0
     """Propagators are made valid up to W, this number times the largest |w| on the line inside the hull."""
-    radius_growth: float = 2.0
+    radius_growth_factor: float = 2.0
     """Radius of the first disc tried at a node, divided by the radius of the previous disc."""
-    radius_divisor: float = 1.5
+    radius_divisor_after_failure: float = 1.5
     """After a disc on whose circle f changes too much, the radius is divided by this number."""
-    min_radius: float = 0.05
+    min_radius_over_w_scale: float = 0.05
     """Radius below which no disc is tried, in units of the length over which D changes near the real axis."""
 
     field_ranges: ClassVar = {
         "arm_count": (2, math.inf),
-        "arms_safety_factor": (1.0, math.inf),
+        "between_arms_safety_factor": (1.0, math.inf),
         "covered_length_over_radius": (0.0, 1.0),
-        "radius_divisor": (1.0, math.inf),
+        "radius_divisor_after_failure": (1.0, math.inf),
     }
+    """Exclusive bounds (lower, upper) of fields, by name, that the proofs require; see `KernelConstants`."""
 
     @property
     def max_D_change_ratio(self) -> float:
         """Largest change of f, relative to |f(w0, q)|, at the points and arms where f is evaluated."""
         return CONTOUR_SETTINGS.max_D_change_ratio / (
-            CONTOUR_SETTINGS.circle_safety_factor * self.arms_safety_factor
+            CONTOUR_SETTINGS.circle_safety_factor * self.between_arms_safety_factor
         )
 
 

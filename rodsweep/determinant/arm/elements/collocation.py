@@ -20,20 +20,21 @@ would lose the second solution in the rounding errors of the growing exponential
 
 Elements are solved by collocation at their Gauss points, for one power of w after another: the terms of the
 propagator satisfy C_n' = A_0 C_n + A_1 C_(n-1). `ARM_ELEMENT_SETTINGS.lane_count` elements are solved
-together. The last axis of arrays, WIDTH, combines the initial value, one of `MINORS`, and the element; loops
-over it are vector instructions. STAGES, LANES, MAX_TERMS: settings `stages`, `lane_count`, `max_terms`."""
+together. The last axis of arrays, WIDTH, combines the initial value, one of `MINOR_COUNT`, and the element;
+loops over it are vector instructions. STAGES, LANES, MAX_TERMS: settings `stage_count`, `lane_count`,
+`max_terms`."""
 
 from typing import NamedTuple
 
 import numpy as np
 
 from ....arrays import Array
-from ....model.compiled.compilation import compiled, compiled_for_vectors
-from .different_elements import numbers_of_different_elements
-from .elimination import fill_eliminations
+from ....model.compiled.compilation import compiled, compiled_with_reordered_sums
+from .distinct_elements import distinct_element_indices
+from .elimination import fill_elimination_matrices
 from .minor_rates import (
     C3,
-    PADDED,
+    PADDED_LENGTH,
     G,
     fill_drag_rates,
     integrate_s_m,
@@ -42,26 +43,30 @@ from .minor_rates import (
     integrate_y_m,
     integrate_y_theta,
 )
-from .settings import ARM_ELEMENT_SETTINGS, MINORS
+from .settings import ARM_ELEMENT_SETTINGS, MINOR_COUNT
 
 
 class IntegrationMatrices(NamedTuple):
     """Matrix of integrals from 0 to each Gauss point on [0, 1], (STAGES, STAGES), and weights, (STAGES,)."""
 
-    integrals: Array
-    weights: Array
+    integration_matrix: Array
+    integration_weights: Array
 
 
 @compiled
-def propagator_terms(F: Array, W: float, local: Array, lengths: Array, method: IntegrationMatrices) -> Array:
-    """Coefficients of the propagators in powers of w/W, (n, elements, terms, PADDED); the array is empty,
-    terms = 0, if MAX_TERMS powers do not suffice. F: forces, (n,). W: bound of |w|. local:
+def propagator_polynomials(
+    F: Array, W: float, local: Array, lengths: Array, method: IntegrationMatrices
+) -> Array:
+    """Coefficients of the propagators in powers of w/W, (n, elements, terms, PADDED_LENGTH); the array is
+    empty, terms = 0, if MAX_TERMS powers do not suffice. F: forces, (n,). W: bound of |w|. local:
     `LocalCoefficients`, (6, n, elements, STAGES). lengths: lengths of the elements, in L, (elements,)."""
     n, elements = local.shape[1:3]
-    numbers = numbers_of_different_elements(local, lengths)
+    numbers = distinct_element_indices(local, lengths)
     different = numbers[-1] + 1
     batches = -(-different // ARM_ELEMENT_SETTINGS.lane_count)
-    coefficients = np.empty((n, batches, 6, ARM_ELEMENT_SETTINGS.stages, ARM_ELEMENT_SETTINGS.lane_count))
+    coefficients = np.empty(
+        (n, batches, 6, ARM_ELEMENT_SETTINGS.stage_count, ARM_ELEMENT_SETTINGS.lane_count)
+    )
     for b in range(batches):
         for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
             # The last batch is filled up with the last element.
@@ -71,15 +76,17 @@ def propagator_terms(F: Array, W: float, local: Array, lengths: Array, method: I
             length = lengths[equal_elements].mean()
             for arm in range(n):
                 coefficients[arm, b, :, :, lane] = local[:, arm, equal_elements[0]] * length
-    terms = np.zeros((n, batches * ARM_ELEMENT_SETTINGS.lane_count, ARM_ELEMENT_SETTINGS.max_terms, PADDED))
-    term_count = fill_propagator_terms(F, W, coefficients, method, terms)
+    terms = np.zeros(
+        (n, batches * ARM_ELEMENT_SETTINGS.lane_count, ARM_ELEMENT_SETTINGS.max_terms, PADDED_LENGTH)
+    )
+    term_count = fill_propagator_polynomials(F, W, coefficients, method, terms)
     if term_count > ARM_ELEMENT_SETTINGS.max_terms:
         return terms[:, :, :0].copy()
     return terms[:, numbers, :term_count]
 
 
 @compiled
-def fill_propagator_terms(
+def fill_propagator_polynomials(
     F: Array, W: float, coefficients: Array, method: IntegrationMatrices, terms: Array
 ) -> int:
     """Fills `terms`, the coefficients of propagators; returns the number of terms needed, or MAX_TERMS + 1 if
@@ -87,35 +94,35 @@ def fill_propagator_terms(
 
     F: forces of n arms, (n,). coefficients: `LocalCoefficients` times the lengths of the elements, (n,
     batches, 6, STAGES, LANES). terms: coefficients of the powers of w/W, (n, batches * LANES, MAX_TERMS,
-    PADDED), all 0 at first.
+    PADDED_LENGTH), all 0 at first.
     """
     count = 1
-    stages, width = ARM_ELEMENT_SETTINGS.stages, ARM_ELEMENT_SETTINGS.width
+    stages, width = ARM_ELEMENT_SETTINGS.stage_count, ARM_ELEMENT_SETTINGS.lane_axis_length
     repeated = np.empty((6, stages, width))
     eliminations = np.empty((stages, 1 + stages, width))
     for arm in range(len(F)):
         for b in range(coefficients.shape[1]):
             _repeat_per_initial_value(coefficients[arm, b], repeated)
             c3, g = coefficients[arm, b, C3], coefficients[arm, b, G]
-            fill_eliminations(F[arm], c3, g, method.integrals, eliminations)
+            fill_elimination_matrices(F[arm], c3, g, method.integration_matrix, eliminations)
             start = b * ARM_ELEMENT_SETTINGS.lane_count
             batch = terms[arm, start : start + ARM_ELEMENT_SETTINGS.lane_count]
-            count = max(count, _fill_batch_terms((F[arm], W), repeated, method, eliminations, batch))
+            count = max(count, _fill_polynomials_of_batch((F[arm], W), repeated, method, eliminations, batch))
     return count
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def _repeat_per_initial_value(coefficients: Array, repeated: Array) -> None:
     """Writes coefficients, (6, STAGES, LANES), for each initial value into repeated, (6, STAGES, WIDTH)."""
     for q in range(6):
-        for i in range(ARM_ELEMENT_SETTINGS.stages):
-            for k in range(MINORS):
+        for i in range(ARM_ELEMENT_SETTINGS.stage_count):
+            for k in range(MINOR_COUNT):
                 for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
                     repeated[q, i, k * ARM_ELEMENT_SETTINGS.lane_count + lane] = coefficients[q, i, lane]
 
 
 @compiled
-def _fill_batch_terms(
+def _fill_polynomials_of_batch(
     load: tuple[float, float],
     coefficients: Array,
     method: IntegrationMatrices,
@@ -125,18 +132,18 @@ def _fill_batch_terms(
     """Fills `terms`, the coefficients of propagators, for one batch of elements; returns the number of terms
     needed.
 
-    terms: (LANES, MAX_TERMS, PADDED). load: (F, W). coefficients: (6, STAGES, WIDTH). eliminations:
-    matrices of `fill_eliminations`, (STAGES, 1 + STAGES, WIDTH).
+    terms: (LANES, MAX_TERMS, PADDED_LENGTH). load: (F, W). coefficients: (6, STAGES, WIDTH). eliminations:
+    matrices of `fill_elimination_matrices`, (STAGES, 1 + STAGES, WIDTH).
     """
     F, W = load
     Q, weights = method
     # Shapes known to the compiler give vector instructions without tests of overlapping arrays.
-    values = np.zeros((MINORS, ARM_ELEMENT_SETTINGS.stages, ARM_ELEMENT_SETTINGS.width))
-    rates = np.zeros((MINORS, ARM_ELEMENT_SETTINGS.stages, ARM_ELEMENT_SETTINGS.width))
-    starts = np.zeros((MINORS, ARM_ELEMENT_SETTINGS.width))
-    end_terms = np.zeros((MINORS, ARM_ELEMENT_SETTINGS.width))
-    largest_terms = np.zeros((MINORS, ARM_ELEMENT_SETTINGS.width))
-    for k in range(MINORS):
+    values = np.zeros((MINOR_COUNT, ARM_ELEMENT_SETTINGS.stage_count, ARM_ELEMENT_SETTINGS.lane_axis_length))
+    rates = np.zeros((MINOR_COUNT, ARM_ELEMENT_SETTINGS.stage_count, ARM_ELEMENT_SETTINGS.lane_axis_length))
+    starts = np.zeros((MINOR_COUNT, ARM_ELEMENT_SETTINGS.lane_axis_length))
+    end_terms = np.zeros((MINOR_COUNT, ARM_ELEMENT_SETTINGS.lane_axis_length))
+    largest_terms = np.zeros((MINOR_COUNT, ARM_ELEMENT_SETTINGS.lane_axis_length))
+    for k in range(MINOR_COUNT):
         for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
             starts[k, k * ARM_ELEMENT_SETTINGS.lane_count + lane] = 1.0
     for n in range(terms.shape[1]):
@@ -148,41 +155,43 @@ def _fill_batch_terms(
         integrate_y_m(Q, starts, coefficients, values, rates)  # without the part by y^theta
         integrate_y_theta(F, eliminations, starts, coefficients, values, rates)
         integrate_y_m(Q, starts, coefficients, values, rates)
-        _integrate_to_end(weights, starts, rates, end_terms)
+        _integrate_over_element(weights, starts, rates, end_terms)
         for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
-            for row in range(MINORS):
-                for k in range(MINORS):
+            for row in range(MINOR_COUNT):
+                for k in range(MINOR_COUNT):
                     column = k * ARM_ELEMENT_SETTINGS.lane_count + lane
-                    terms[lane, n, MINORS * k + row] = end_terms[row, column]
-        if _count_larger_terms(end_terms, largest_terms) == 0:
+                    terms[lane, n, MINOR_COUNT * k + row] = end_terms[row, column]
+        if _count_non_negligible_entries(end_terms, largest_terms) == 0:
             return n + 1
         starts[:] = 0.0  # the initial values belong to the term of w^0
     return terms.shape[1] + 1
 
 
-@compiled_for_vectors
-def _integrate_to_end(weights: Array, starts: Array, rates: Array, end_terms: Array) -> None:
-    """Writes the propagators' coefficients of a power of w into `end_terms`, (MINORS, WIDTH): integrals of
-    rates, (MINORS, STAGES, WIDTH), plus the initial values `starts`, (MINORS, WIDTH). weights: (STAGES,)."""
-    for row in range(MINORS):
-        for c in range(ARM_ELEMENT_SETTINGS.width):
+@compiled_with_reordered_sums
+def _integrate_over_element(weights: Array, starts: Array, rates: Array, end_terms: Array) -> None:
+    """Writes the propagators' coefficients of a power of w into `end_terms`, (MINOR_COUNT, WIDTH): integrals
+    of rates, (MINOR_COUNT, STAGES, WIDTH), plus the initial values `starts`, (MINOR_COUNT, WIDTH). weights:
+    (STAGES,)."""
+    for row in range(MINOR_COUNT):
+        for c in range(ARM_ELEMENT_SETTINGS.lane_axis_length):
             total = starts[row, c]
-            for i in range(ARM_ELEMENT_SETTINGS.stages):
+            for i in range(ARM_ELEMENT_SETTINGS.stage_count):
                 total += weights[i] * rates[row, i, c]
             end_terms[row, c] = total
 
 
-@compiled_for_vectors
-def _count_larger_terms(end_terms: Array, largest_terms: Array) -> float:
+@compiled_with_reordered_sums
+def _count_non_negligible_entries(end_terms: Array, largest_terms: Array) -> float:
     """Number of entries of `end_terms`, the coefficients of one power of w, that are not negligible, each
     compared with the largest coefficient of the same entry of the propagator: entries have different units,
-    and at a strong pull their sizes differ by many powers of ten. end_terms: (MINORS, WIDTH). largest_terms:
-    largest modulus of the coefficients of lower powers of w, (MINORS, WIDTH), updated here."""
+    and at a strong pull their sizes differ by many powers of ten. end_terms: (MINOR_COUNT, WIDTH).
+    largest_terms: largest modulus of the coefficients of lower powers of w, (MINOR_COUNT, WIDTH), updated
+    here."""
     count = 0.0
-    for row in range(MINORS):
-        for c in range(ARM_ELEMENT_SETTINGS.width):
+    for row in range(MINOR_COUNT):
+        for c in range(ARM_ELEMENT_SETTINGS.lane_axis_length):
             size = abs(end_terms[row, c])
-            is_negligible = size <= ARM_ELEMENT_SETTINGS.negligible_term_ratio * largest_terms[row, c]
+            is_negligible = size <= ARM_ELEMENT_SETTINGS.negligible_term_over_largest * largest_terms[row, c]
             count += 0.0 if is_negligible else 1.0  # nan is not negligible
             largest_terms[row, c] = max(largest_terms[row, c], size)
     return count

@@ -74,7 +74,7 @@ def _elements_per_length(W: float, squares: Array, tapers: Array, points: Array)
 
 
 @compiled
-def sum_and_remainder(a: Array, b: Array) -> tuple[Array, Array]:
+def two_sum(a: Array, b: Array) -> tuple[Array, Array]:
     """Returns (a + b rounded to doubles, rounding error of this sum), whose sum is a + b exactly (Knuth's
     two-sum). a, b: of any shapes that broadcast. Near a thin tip the rounding of u alone would change the
     radius, and with it D, by more than all products."""
@@ -83,13 +83,17 @@ def sum_and_remainder(a: Array, b: Array) -> tuple[Array, Array]:
     return total, (a - (total - rounded_b)) + (b - rounded_b)
 
 
-def halved_where_coarse(edges: Array, W: float, forces: Array, coefficients: Array) -> Array:
+def edges_with_coarse_elements_halved(edges: Array, W: float, forces: Array, coefficients: Array) -> Array:
     """Boundaries after halving every element that does not resolve the coefficients or, for |w| <= W, the
     exponentials of an arm; `edges` itself if none is halved. forces: F of n arms, (n,). coefficients:
     `LocalCoefficients` of the arms at the Gauss points, (6, n, elements, stages)."""
-    stages = ARM_ELEMENT_SETTINGS.stages
-    is_coarse = _is_coarse_or_long(
-        edges, W, forces, coefficients, (_last_legendre_matrix(stages), _weights_of_mean(stages))
+    stages = ARM_ELEMENT_SETTINGS.stage_count
+    is_coarse = _is_coarse_or_exceeds_max_exponent(
+        edges,
+        W,
+        forces,
+        coefficients,
+        (_highest_legendre_coefficients_matrix(stages), _weights_of_mean(stages)),
     )
     if not is_coarse.any():
         return edges
@@ -98,14 +102,14 @@ def halved_where_coarse(edges: Array, W: float, forces: Array, coefficients: Arr
 
 
 @compiled
-def _is_coarse_or_long(
+def _is_coarse_or_exceeds_max_exponent(
     edges: Array, W: float, forces: Array, coefficients: Array, weights: tuple[Array, Array]
 ) -> NDArray[np.bool_]:
-    """Mask of the elements, (elements,), that `_is_coarse` or `_is_long` selects. edges: boundaries of the
-    elements, (elements + 1,). weights: last arguments of `_is_coarse` and of `_is_long`. Other arguments: as
-    in `halved_where_coarse`."""
+    """Mask of the elements, (elements,), that `_is_coarse` or `_exceeds_max_exponent` selects. edges:
+    boundaries of the elements, (elements + 1,). weights: last arguments of `_is_coarse` and of
+    `_exceeds_max_exponent`. Other arguments: as in `edges_with_coarse_elements_halved`."""
     is_coarse = _is_coarse(coefficients, weights[0])
-    return is_coarse | _is_long(edges[1:] - edges[:-1], W, forces, coefficients, weights[1])
+    return is_coarse | _exceeds_max_exponent(edges[1:] - edges[:-1], W, forces, coefficients, weights[1])
 
 
 @cache
@@ -115,13 +119,13 @@ def _weights_of_mean(stage_count: int) -> Array:
 
 
 @compiled
-def _is_long(
+def _exceeds_max_exponent(
     lengths: Array, W: float, forces: Array, coefficients: Array, weights: Array
 ) -> NDArray[np.bool_]:
     """Mask of the elements, (elements,), over which an exponent of an arm exceeds `max_exponent` by more than
     the factor `max_exponent_excess`: between the points of `element_edges` it may be much larger, as at a
     thin tip. lengths: of the elements, (elements,). weights: of the mean over an element, (stages,). Other
-    arguments: as in `halved_where_coarse`."""
+    arguments: as in `edges_with_coarse_elements_halved`."""
     arms, elements, stages = coefficients.shape[1:]
     limit = ARM_ELEMENT_SETTINGS.max_exponent_excess * ARM_ELEMENT_SETTINGS.max_exponent
     is_long = np.zeros(elements, np.bool_)
@@ -139,7 +143,7 @@ def _is_long(
 
 
 @cache
-def _last_legendre_matrix(stage_count: int) -> Array:
+def _highest_legendre_coefficients_matrix(stage_count: int) -> Array:
     """Matrix from values at the Gauss points to the two highest Legendre coefficients, (2, stages)."""
     x, weights = np.polynomial.legendre.leggauss(stage_count)
     last_coefficients = np.polynomial.legendre.legvander(x, stage_count - 1)[:, -2:] * (
@@ -154,7 +158,7 @@ def _is_coarse(coefficients: Array, last_terms: Array) -> NDArray[np.bool_]:
     coefficients of nu, c2, c3, gamma2 or gamma3 exceeds `max_coefficient_tail` times the largest value.
 
     coefficients: coefficients of n arms, (6, n, elements, stages). last_terms: result of
-    `_last_legendre_matrix`.
+    `_highest_legendre_coefficients_matrix`.
     """
     quantities, arms, elements, stages = coefficients.shape
     is_coarse = np.zeros(elements, np.bool_)

@@ -3,48 +3,49 @@
 The shapes are those of `rodsweep.determinant.arm.elements.evaluation`."""
 
 from ....arrays import Array
-from ....model.compiled.compilation import compiled, compiled_for_vectors
+from ....model.compiled.compilation import compiled, compiled_with_reordered_sums
 from .evaluation import IM, RE
 from .minor_rates import SM
-from .settings import MINORS
+from .settings import MINOR_COUNT
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def modulus_sum_of_form_at_real_w(a: Array, C: Array, x: Array) -> float:
-    """The sum of |a_i| |C_ij| |x_j| for a real propagator C, (PADDED,), and real vectors a and x,
-    (MINORS,)."""
+    """The sum of |a_i| |C_ij| |x_j| for a real propagator C, (PADDED_LENGTH,), and real vectors a and x,
+    (MINOR_COUNT,)."""
     total = 0.0
-    for j in range(MINORS):
+    for j in range(MINOR_COUNT):
         column = 0.0
-        for i in range(MINORS):
-            column += abs(C[MINORS * j + i]) * abs(a[i])
+        for i in range(MINOR_COUNT):
+            column += abs(C[MINOR_COUNT * j + i]) * abs(a[i])
         total += column * abs(x[j])
     return total
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def modulus_sum_of_form(a: Array, C: Array, x: Array) -> float:
-    """The sum of |a_i| |C_ij| |x_j| for a propagator C, (2 or more, PADDED), and vectors a and x, (2,
-    MINORS). |real| + |imaginary part| replaces each modulus: up to 2 sqrt(2) times too large."""
+    """The sum of |a_i| |C_ij| |x_j| for a propagator C, (2 or more, PADDED_LENGTH), and vectors a and x, (2,
+    MINOR_COUNT). |real| + |imaginary part| replaces each modulus: up to 2 sqrt(2) times too large."""
     total = 0.0
-    for j in range(MINORS):
+    for j in range(MINOR_COUNT):
         column = 0.0
-        for i in range(MINORS):
-            k = MINORS * j + i
+        for i in range(MINOR_COUNT):
+            k = MINOR_COUNT * j + i
             column += (abs(C[RE, k]) + abs(C[IM, k])) * (abs(a[0, i]) + abs(a[1, i]))
         total += column * (abs(x[0, j]) + abs(x[1, j]))
     return total
 
 
-@compiled_for_vectors
-def modulus_sum_of_real_form(a: Array, sizes: Array, t: float, x: Array) -> float:
-    """The sum of |a_i| (sizes_0 + t sizes_1)_ij |x_j| for sizes of propagator entries, (2, PADDED), and
-    vectors a and x, (2, MINORS). |real part| + |imaginary part| replaces the moduli of a_i and x_j."""
+@compiled_with_reordered_sums
+def modulus_sum_of_form_from_sizes(a: Array, sizes: Array, t: float, x: Array) -> float:
+    """The sum of |a_i| (sizes_0 + t sizes_1)_ij |x_j| for sizes of propagator entries, (2, PADDED_LENGTH),
+    and vectors a and x, (2, MINOR_COUNT). |real part| + |imaginary part| replaces the moduli of a_i and
+    x_j."""
     total = 0.0
-    for j in range(MINORS):
+    for j in range(MINOR_COUNT):
         column = 0.0
-        for i in range(MINORS):
-            k = MINORS * j + i
+        for i in range(MINOR_COUNT):
+            k = MINOR_COUNT * j + i
             column += (sizes[0, k] + t * sizes[1, k]) * (abs(a[0, i]) + abs(a[1, i]))
         total += column * (abs(x[0, j]) + abs(x[1, j]))
     return total
@@ -53,19 +54,19 @@ def modulus_sum_of_real_form(a: Array, sizes: Array, t: float, x: Array) -> floa
 @compiled
 def minor_sm_modulus_sum(C: Array, x: Array) -> float:
     """Sum of the moduli of all terms of C x that add up to the minor s^m at the end of an element. C:
-    propagator, (2 or more, PADDED). x: minors, (2, MINORS). Near a root of D the terms cancel, and the
-    rounding error of D is relative to their moduli, not to s^m."""
+    propagator, (2 or more, PADDED_LENGTH). x: minors, (2, MINOR_COUNT). Near a root of D the terms cancel,
+    and the rounding error of D is relative to their moduli, not to s^m."""
     total = 0.0
-    for j in range(MINORS):
-        entry = complex(C[RE, MINORS * j + SM], C[IM, MINORS * j + SM])
+    for j in range(MINOR_COUNT):
+        entry = complex(C[RE, MINOR_COUNT * j + SM], C[IM, MINOR_COUNT * j + SM])
         total += abs(entry * complex(x[RE, j], x[IM, j]))
     return total
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def real_minor_sm_modulus_sum(C: Array, x: Array) -> float:
-    """`minor_sm_modulus_sum` for a real propagator C, (PADDED,), and real minors x, (MINORS,)."""
+    """`minor_sm_modulus_sum` for a real propagator C, (PADDED_LENGTH,), and real minors x, (MINOR_COUNT,)."""
     total = 0.0
-    for j in range(MINORS):
-        total += abs(C[MINORS * j + SM] * x[j])
+    for j in range(MINOR_COUNT):
+        total += abs(C[MINOR_COUNT * j + SM] * x[j])
     return total

@@ -11,7 +11,7 @@ from functools import cache
 import numpy as np
 
 from ....arrays import Array
-from .collocation import IntegrationMatrices, propagator_terms
+from .collocation import IntegrationMatrices, propagator_polynomials
 from .settings import ARM_ELEMENT_SETTINGS
 
 
@@ -33,18 +33,18 @@ def gauss_method(stage_count: int) -> tuple[Array, Array, Array]:
 @cache
 def _collocation_method() -> IntegrationMatrices:
     """The collocation method of `ARM_ELEMENT_SETTINGS.stages` Gauss points, as arrays for compiled code."""
-    _, integrals, weights = gauss_method(ARM_ELEMENT_SETTINGS.stages)
+    _, integrals, weights = gauss_method(ARM_ELEMENT_SETTINGS.stage_count)
     return IntegrationMatrices(np.ascontiguousarray(integrals), np.ascontiguousarray(weights))
 
 
 def element_propagators(F: Sequence[float], coefficients: Array, lengths: Array, W: float) -> Array:
-    """The propagators C of the elements of n arms in powers of w/W, (n, elements, terms, PADDED), C column
-    by column.
+    """The propagators C of the elements of n arms in powers of w/W, (n, elements, terms, PADDED_LENGTH), C
+    column by column.
 
     F: forces, (n,). coefficients: `LocalCoefficients` at the Gauss points, (6, n, elements, stages).
     lengths: of elements, in L, (elements,). Raises FloatingPointError if `max_terms` powers do not resolve C.
     """
-    terms = propagator_terms(np.array(F, float), W, coefficients, lengths, _collocation_method())
+    terms = propagator_polynomials(np.array(F, float), W, coefficients, lengths, _collocation_method())
     if not terms.size:
         raise FloatingPointError(
             f"the determinant of this arm at |w| = {W:g} needs more than the maximum of "

@@ -6,7 +6,7 @@ from typing import ClassVar
 
 from ....model.compiled.kernel_constants import KernelConstants
 
-MINORS = 5
+MINOR_COUNT = 5
 """Number of independent minors of two solutions of the transverse problem."""
 
 
@@ -31,34 +31,36 @@ class ArmElementSettings(KernelConstants):
     min_W: float = 16.0
     """Smallest W, the bound of |w| up to which elements are valid; for smaller |w| the load and the taper,
     not w, determine the length of elements. A mean of c2 gamma2 + c3 gamma3 above 1 divides it."""
-    w_bound_ratio: float = 1.1
+    W_over_w: float = 1.1
     """New elements are valid up to W = w_bound_ratio |w|: the reserve is for slightly larger |w|."""
-    max_reuse_ratio: float = 1e3
+    max_reused_W_over_w: float = 1e3
     """Existing elements are reused at w if their W is at most this number times |w|. Making new elements
     costs as much as thirty evaluations of D on twice as many elements."""
-    max_reuse_ratio_if_compared: float = 1.5
-    """Value of `max_reuse_ratio` for comparisons of D on different elements; near 1: the elements differ."""
+    max_reused_W_over_w_in_comparisons: float = 1.5
+    """Value of `max_reused_W_over_w` for comparisons of D on different elements; near 1: the elements
+    differ."""
     max_elements: int = 16000
     """Maximum number of elements of an arm. An arm that needs more elements is not resolved."""
-    stages: int = 12
+    stage_count: int = 12
     """Number of Gauss points of an element. Eleven integrate exp(3.2) to 3e-17, twelve to 1e-19: the twelfth
     allows for coefficients that vary. A multiple of 4, so that rows are whole vector instructions."""
     lane_count: int = 4
     """Number of elements that are solved together by vector instructions."""
     max_terms: int = 28
     """Maximum number of powers of w in a propagator; 24 suffice for exp(3.2)."""
-    negligible_term_ratio: float = 1e-18
+    negligible_term_over_largest: float = 1e-18
     """The series of a propagator in w ends at the first term that is, in every entry of the propagator, below
     this fraction of the largest earlier term of the entry."""
     max_cached_arms: int = 16
     """Maximum number of arms whose propagators are cached. It limits the memory and changes no result."""
 
-    field_ranges: ClassVar = {"w_bound_ratio": (1.0, math.inf)}
+    field_ranges: ClassVar = {"W_over_w": (1.0, math.inf)}
+    """Exclusive bounds (lower, upper) of fields, by name, that the proofs require; see `KernelConstants`."""
 
     @property
-    def width(self) -> int:
+    def lane_axis_length(self) -> int:
         """Length of the last axis of arrays over elements: number of initial values times number of lanes."""
-        return MINORS * self.lane_count
+        return MINOR_COUNT * self.lane_count
 
     @property
     def largest_z_by_term_count(self) -> tuple[float, ...]:
@@ -66,20 +68,20 @@ class ArmElementSettings(KernelConstants):
 
         At |z| = R > 1 the exponents of an element are at most q sqrt(R), q = `max_exponent`. By Cauchy's
         bound with the best R, term n of the propagator is at most (e q/(2 n))^(2 n) |z|^n. From n on, such a
-        term of the derivative is at most `negligible_term_ratio`, and each term at most half of the previous
-        term.
+        term of the derivative is at most `negligible_term_over_largest`, and each term at most half of the
+        previous term.
         """
         factors = [(math.e * self.max_exponent / (2 * n)) ** 2 for n in range(2, self.max_terms)]
         sizes = [
-            min((self.negligible_term_ratio / (n * factor**n)) ** (1 / (n - 1)), 1 / (3 * factor))
+            min((self.negligible_term_over_largest / (n * factor**n)) ** (1 / (n - 1)), 1 / (3 * factor))
             for n, factor in enumerate(factors, start=2)
         ]
         return (0.0, 0.0, *sizes)
 
     def __post_init__(self) -> None:
         KernelConstants.__post_init__(self)
-        if self.stages % 4:
-            raise ValueError(f"stages = {self.stages} is not a multiple of 4")
+        if self.stage_count % 4:
+            raise ValueError(f"stages = {self.stage_count} is not a multiple of 4")
 
 
 ARM_ELEMENT_SETTINGS = ArmElementSettings()

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ....arrays import Array
-from ....model.compiled.compilation import compiled, compiled_for_vectors
+from ....model.compiled.compilation import compiled, compiled_with_reordered_sums
 from .trial_points import AVERAGED_WEIGHT_SETTINGS, TrialPoints, interpolate_at_position, trial_points
 
 
@@ -25,49 +25,52 @@ class TrialWeight(NamedTuple):
     """Logarithm of the weight t at n points of an arm, and the integral of this logarithm from the first
     point to every point, (n,) each."""
 
-    log_t: Array
-    log_integral: Array
+    log_weight: Array
+    """Logarithm of the weight t at each point, (n,)."""
+    integral_of_log_weight: Array
+    """Integral of log t over u from the first point to each point, (n,)."""
 
 
 @compiled
-def averaged_regions_of_arms(F: Array, u: Array, coefficients: Array) -> Array:
+def regions_from_averaged_weights_of_arms(F: Array, u: Array, coefficients: Array) -> Array:
     """Constants (a, c) of the region of all eigenvalues for each arm and each trial weight of
-    `averaged_regions`, (n, trials, 2); inf for an arm without c2 > 0 and g > 0 everywhere. F: forces, (n,).
-    u: points of the arms, (points,). coefficients: `LocalCoefficients` at these points, (6, n, points)."""
-    regions = np.full((len(F), AVERAGED_WEIGHT_SETTINGS.trial_count, 2), math.inf)
+    `regions_from_averaged_weights`, (n, trials, 2); inf for an arm without c2 > 0 and g > 0 everywhere. F:
+    forces, (n,). u: points of the arms, (points,). coefficients: `LocalCoefficients` at these points, (6, n,
+    points)."""
+    regions = np.full((len(F), AVERAGED_WEIGHT_SETTINGS.trial_region_count, 2), math.inf)
     for arm in range(len(F)):
         if (coefficients[1, arm] > 0).all() and (coefficients[5, arm] > 0).all():
             # The smallest region of several arms need not have the smallest region of any of them.
-            regions[arm] = averaged_regions(
+            regions[arm] = regions_from_averaged_weights(
                 u, np.ascontiguousarray(coefficients[:, arm]), F[arm], len(F) == 1
             )
     return regions
 
 
 @compiled
-def averaged_regions(u: Array, coefficients: Array, F: float, only_smallest: bool) -> Array:
+def regions_from_averaged_weights(u: Array, coefficients: Array, F: float, only_smallest: bool) -> Array:
     """Constants (a, c) of the region of each trial weight, (trials, 2); inf if a trial gives no bound. u:
     points of an arm from clamp to tip, (points,), two at a jump. coefficients: `LocalCoefficients` at the
     points, (6, points), with c2 > 0 and g > 0. F: force. only_smallest: whether a trial may end, with inf, as
     soon as its a reaches the smallest a of a region with c = 0."""
-    regions = np.full((AVERAGED_WEIGHT_SETTINGS.trial_count, 2), math.inf)
+    regions = np.full((AVERAGED_WEIGHT_SETTINGS.trial_region_count, 2), math.inf)
     _, c2, c3, gamma2, gamma3, _ = coefficients
     loads = abs(F) * np.sqrt(c2 * c3 * gamma3 / gamma2)
     factors = AVERAGED_WEIGHT_SETTINGS.load_term_factors
     # Logarithms take most of the time, and all half-widths share most points.
-    log_t = np.empty((len(factors), len(u)))
+    log_weight = np.empty((len(factors), len(u)))
     for m in range(len(factors)):
-        log_t[m] = np.log(coefficients[5] / (coefficients[0] + factors[m] * loads))
+        log_weight[m] = np.log(coefficients[5] / (coefficients[0] + factors[m] * loads))
     row = 0
     max_a2 = math.inf
     limiting_source = 0
-    for h in AVERAGED_WEIGHT_SETTINGS.half_widths:
+    for h in AVERAGED_WEIGHT_SETTINGS.window_half_widths:
         points = trial_points(u, coefficients, loads, F, h)
         for m in range(len(factors)):
-            weight = _trial_weight(points, factors[m], log_t[m])
+            weight = _trial_weight(points, factors[m], log_weight[m])
             trial = (F, factors[m], h, max_a2)
             # The point that limited a in an earlier trial mostly limits a again.
-            if not _reaches_limit_at(limiting_source, points, weight, trial):
+            if not _reaches_a_squared_limit_at(limiting_source, points, weight, trial):
                 limiting_source = _write_regions_of_trial(regions[row : row + 2], points, weight, trial)
             if only_smallest:
                 max_a2 = min(max_a2, regions[row + 1, 0] ** 2)
@@ -80,34 +83,34 @@ def _trial_weight(points: TrialPoints, factor: float, log_t_of_arm: Array) -> Tr
     """Logarithms of the weight t at the points of one half-width. factor: f. log_t_of_arm: log t at the
     points of the arm."""
     u = points.u
-    log_t = np.empty(len(u))
+    log_weight = np.empty(len(u))
     integral = np.zeros(len(u))
     for i in range(len(u)):
-        if points.sources[i] >= 0:
-            log_t[i] = log_t_of_arm[points.sources[i]]
+        if points.arm_point_indices[i] >= 0:
+            log_weight[i] = log_t_of_arm[points.arm_point_indices[i]]
         else:
-            log_t[i] = math.log(_weight_before_averaging(points, i, factor))
+            log_weight[i] = math.log(_weight_before_averaging(points, i, factor))
         if i > 0:
-            integral[i] = integral[i - 1] + (u[i] - u[i - 1]) * (log_t[i] + log_t[i - 1]) / 2
-    return TrialWeight(log_t, integral)
+            integral[i] = integral[i - 1] + (u[i] - u[i - 1]) * (log_weight[i] + log_weight[i - 1]) / 2
+    return TrialWeight(log_weight, integral)
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def _weight_before_averaging(points: TrialPoints, i: int, factor: float) -> float:
     """The weight t = g/(nu + f l) at point number i. factor: f."""
-    return points.coefficients[5, i] / (points.coefficients[0, i] + factor * points.loads[i])
+    return points.coefficients[5, i] / (points.coefficients[0, i] + factor * points.load_terms[i])
 
 
 @compiled
-def _reaches_limit_at(
+def _reaches_a_squared_limit_at(
     source: int, points: TrialPoints, weight: TrialWeight, trial: tuple[float, float, float, float]
 ) -> bool:
     """Whether a^2 of both regions of a trial reaches the limit at the arm's point number `source`. Other
     arguments: as in `_write_regions_of_trial`."""
     i = source
-    while points.sources[i] != source:  # added points shift the points of the arm
+    while points.arm_point_indices[i] != source:  # added points shift the points of the arm
         i += 1
-    _, clamp, drag = _squared_norms(points, weight, i, trial)
+    _, clamp, drag = _weight_and_squared_norms(points, weight, i, trial)
     return min(clamp, drag) >= trial[3]
 
 
@@ -134,10 +137,10 @@ def _write_regions_of_trial(
     source = 0
     limiting_source = 0
     for i in range(len(u)):
-        alpha, clamp, drag = _squared_norms(points, weight, i, trial)
+        alpha, clamp, drag = _weight_and_squared_norms(points, weight, i, trial)
         a2_clamp = max(a2_clamp, clamp)
         a2_drag = max(a2_drag, drag)
-        source = max(source, points.sources[i])
+        source = max(source, points.arm_point_indices[i])
         if min(clamp, drag) > largest_norm:
             largest_norm = min(clamp, drag)
             limiting_source = source
@@ -157,35 +160,37 @@ def _write_regions_of_trial(
     return limiting_source
 
 
-@compiled_for_vectors
-def _squared_norms(
+@compiled_with_reordered_sums
+def _weight_and_squared_norms(
     points: TrialPoints, weight: TrialWeight, i: int, trial: tuple[float, float, float, float]
 ) -> tuple[float, float, float]:
     """Returns (alpha, clamp, drag) at point number i: the averaged weight, and a^2 of the two regions of
     `_write_regions_of_trial`, whose arguments these are."""
     nu, c2, c3, gamma2, gamma3, g = points.coefficients[:, i]
     F, factor, h, _ = trial
-    alpha, slope = _alpha_and_log_slope(points, weight, i, h)
+    alpha, slope = _averaged_weight_and_log_slope(points, weight, i, h)
     A2 = slope**2 / (gamma2 * c2)
     B2 = F * F * alpha * c3 / gamma2
     drag = gamma3 * alpha * c2
     # Without a load t nu equals g; the rounded difference must not be divided by a drag near 0.
     t = _weight_before_averaging(points, i, factor)
-    e = g - t * nu if factor * points.loads[i] > 0 else 0.0
+    e = g - t * nu if factor * points.load_terms[i] > 0 else 0.0
     return alpha, squared_block_norm(A2, B2, e, drag), squared_block_norm(A2, B2, g - alpha * nu, drag)
 
 
-@compiled_for_vectors
-def _alpha_and_log_slope(points: TrialPoints, weight: TrialWeight, i: int, h: float) -> tuple[float, float]:
+@compiled_with_reordered_sums
+def _averaged_weight_and_log_slope(
+    points: TrialPoints, weight: TrialWeight, i: int, h: float
+) -> tuple[float, float]:
     """Returns (alpha, derivative of log alpha) at point number i. h: half-width of the window."""
     u = points.u
-    start = interpolate_at_position(points.window_starts, i, weight.log_t)
-    end = interpolate_at_position(points.window_ends, i, weight.log_t)
+    start = interpolate_at_position(points.window_starts, i, weight.log_weight)
+    end = interpolate_at_position(points.window_ends, i, weight.log_weight)
     # Beyond its ends the arm continues with its end values, so that every window has the same width.
-    integral_to_end = interpolate_at_position(points.window_ends, i, weight.log_integral)
-    integral_to_end += max(u[i] + h - u[-1], 0.0) * weight.log_t[-1]
-    integral_to_start = interpolate_at_position(points.window_starts, i, weight.log_integral)
-    integral_to_start -= max(u[0] - (u[i] - h), 0.0) * weight.log_t[0]
+    integral_to_end = interpolate_at_position(points.window_ends, i, weight.integral_of_log_weight)
+    integral_to_end += max(u[i] + h - u[-1], 0.0) * weight.log_weight[-1]
+    integral_to_start = interpolate_at_position(points.window_starts, i, weight.integral_of_log_weight)
+    integral_to_start -= max(u[0] - (u[i] - h), 0.0) * weight.log_weight[0]
     return math.exp((integral_to_end - integral_to_start) / (2 * h)), (end - start) / (2 * h)
 
 

@@ -17,7 +17,7 @@ n^2 N^2 with 4 c^2 = int (g - alpha nu)^2/(alpha c2) (int_0^u c3) du. Both give,
 
 a convex region bounded by a parabola. Several weights alpha are tried, and the smallest region is used. With
 alpha = g/(nu + |F| sqrt(c2 c3 gamma3/gamma2)) the region of a uniform rod equals the region of
-`rodsweep.determinant.certificate.box`.
+`rodsweep.determinant.certificate.eigenvalue_box`.
 
 Extremes along the arm are evaluated at points between the breaks, and `HULL_SETTINGS.enlargement_fraction`
 allows for the arm between these points."""
@@ -35,13 +35,13 @@ from ....model.local_coefficients import local_coefficient_array
 from ....model.material.rod_material import RodMaterial
 from ....model.rod import Rod
 from ...parameter_path import ParameterPath
-from .averaged_weight import averaged_regions_of_arms
+from .averaged_weight import regions_from_averaged_weights_of_arms
 from .region import HULL_SETTINGS, UNBOUNDED_HULL, EigenvalueHull, PathHulls
 from .weights import (
     four_c_squared_by_clamp,
     smallest_squared_norm,
+    squared_norms_of_varying_weights,
     trial_constant_weights,
-    varying_weight_norms,
 )
 
 
@@ -64,7 +64,12 @@ def _hull_of_sampled_arms(arms: "HullSamples") -> EigenvalueHull:
     """The smallest hull found for the spectra of all sampled arms; `UNBOUNDED_HULL` if no bound is found."""
     max_c = 1 - HULL_SETTINGS.min_one_minus_c
     a, c = _smallest_common_region(
-        arms.F, arms.lengths, arms.local, arms.averaged_regions, _chebyshev_matrices(), max_c
+        arms.F,
+        arms.interval_lengths,
+        arms.local_coefficients,
+        arms.regions_from_averaged_weights,
+        _chebyshev_matrices(),
+        max_c,
     )
     return EigenvalueHull((1 + HULL_SETTINGS.enlargement_fraction) * a, c) if isfinite(a) else UNBOUNDED_HULL
 
@@ -72,16 +77,16 @@ def _hull_of_sampled_arms(arms: "HullSamples") -> EigenvalueHull:
 class HullSamples(NamedTuple):
     """Coefficients of n arms of one material at Chebyshev points, from which hulls are computed.
 
-    F: forces, (n,). lengths: lengths of the intervals between breaks, (pieces,). local: coefficients,
-    (6, n, pieces, points), with increasing u. averaged_regions: constants (a, c) of the trial regions of each
-    arm from averaged weights, (n, trials, 2); inf if a trial gives no bound; (n, 0, 2) for arms without
-    jumps.
+    F: forces, (n,). interval_lengths: lengths of the intervals between breaks, (pieces,). local_coefficients:
+    coefficients, (6, n, pieces, points), with increasing u. regions_from_averaged_weights: constants (a, c)
+    of the trial regions of each arm from averaged weights, (n, trials, 2); inf if a trial gives no bound; (n,
+    0, 2) for arms without jumps.
     """
 
     F: Array
-    lengths: Array
-    local: Array
-    averaged_regions: Array
+    interval_lengths: Array
+    local_coefficients: Array
+    regions_from_averaged_weights: Array
 
 
 def _hull_samples(rods: Sequence[Rod]) -> HullSamples:
@@ -92,7 +97,9 @@ def _hull_samples(rods: Sequence[Rod]) -> HullSamples:
     coefficients = local_coefficient_array(rods, u)
     averaged_regions: Array = np.empty((len(rods), 0, 2))
     if material.jump_positions:
-        averaged_regions = averaged_regions_of_arms(F, end_to_end_u, coefficients.reshape(6, len(F), -1))
+        averaged_regions = regions_from_averaged_weights_of_arms(
+            F, end_to_end_u, coefficients.reshape(6, len(F), -1)
+        )
     return HullSamples(F, lengths, coefficients, averaged_regions)
 
 
@@ -101,30 +108,32 @@ def _chebyshev_points_of_material(material: RodMaterial) -> tuple[Array, Array, 
     """Returns (lengths, u, end_to_end_u): lengths of the intervals between breaks of the profile, (pieces,);
     their Chebyshev points u, (pieces, points); the same points with intervals that follow each other without
     the short distances of the first and last points from the breaks, (pieces * points,)."""
-    x = (1 - 2 * HULL_SETTINGS.end_distance_fraction) * _chebyshev_matrices().points
+    x = (1 - 2 * HULL_SETTINGS.end_point_distance_over_interval) * _chebyshev_matrices().points
     lengths = np.diff(material.breaks)
     u = material.breaks[:-1, None] + lengths[:, None] * (x + 1) / 2
-    lengths = lengths * (1 - 2 * HULL_SETTINGS.end_distance_fraction)
+    lengths = lengths * (1 - 2 * HULL_SETTINGS.end_point_distance_over_interval)
     interval_starts = np.cumsum(lengths) - lengths
     return lengths, u, (interval_starts[:, None] + lengths[:, None] * (x + 1) / 2).ravel()
 
 
 def _slice_of_samples(arms: HullSamples, arm_indices: slice) -> HullSamples:
     """The samples of the arms with the indices `arm_indices`."""
-    coefficients = np.ascontiguousarray(arms.local[:, arm_indices])
+    coefficients = np.ascontiguousarray(arms.local_coefficients[:, arm_indices])
     return arms._replace(
-        F=arms.F[arm_indices], local=coefficients, averaged_regions=arms.averaged_regions[arm_indices]
+        F=arms.F[arm_indices],
+        local_coefficients=coefficients,
+        regions_from_averaged_weights=arms.regions_from_averaged_weights[arm_indices],
     )
 
 
 class ChebyshevMatrices(NamedTuple):
     """Chebyshev points in [-1, 1], (points,), and the matrices that differentiate and integrate an
-    interpolant. derivative, integral: from values at the points to values at the points, (points, points).
-    Integrals start at -1."""
+    interpolant. differentiation_matrix, integration_matrix: from values at the points to values at the
+    points, (points, points). Integrals start at -1."""
 
     points: Array
-    derivative: Array
-    integral: Array
+    differentiation_matrix: Array
+    integration_matrix: Array
 
 
 @cache
@@ -165,7 +174,9 @@ def _smallest_common_region(
         smallest = (sqrt(smallest_squared_norm(alphas, coefficients.reshape(6, -1), max_weighted_force)), 0.0)
     continuous = averaged.shape[1] == 0
     if continuous and (g > 0).all() and (c2 > 0).all():
-        for square in varying_weight_norms(F, lengths, coefficients, chebyshev.derivative):
+        for square in squared_norms_of_varying_weights(
+            F, lengths, coefficients, chebyshev.differentiation_matrix
+        ):
             smallest = _smaller_region(smallest, (sqrt(square), 0.0), max_c)
     for trial in range(averaged.shape[1]):
         # With the largest a and the largest c of all arms, the region contains the region of every arm.
@@ -174,7 +185,7 @@ def _smallest_common_region(
     # Where c2 = 0, g equals nu: only alpha = 1 keeps (g - alpha nu)^2/c2 finite.
     if not (c2 > 0).all():
         alphas = np.ones(1)
-    integrals = four_c_squared_by_clamp(alphas, F, lengths, coefficients, chebyshev.integral)
+    integrals = four_c_squared_by_clamp(alphas, F, lengths, coefficients, chebyshev.integration_matrix)
     for k in range(len(alphas)):
         c = (1 + HULL_SETTINGS.enlargement_fraction) * sqrt(integrals[k]) / 2
         smallest = _smaller_region(smallest, (sqrt(alphas[k] * max_weighted_force), c), max_c)
@@ -186,9 +197,9 @@ def _smaller_region(
     current: tuple[float, float], candidate: tuple[float, float], max_c: float
 ) -> tuple[float, float]:
     """The smaller of the regions (a, c) `current` and `candidate`, by the measure a^2 (1 +
-    (c/c_doubling_measure)^4). `current` is returned if `candidate` has c >= `max_c`."""
+    (c/c_at_doubled_measure)^4). `current` is returned if `candidate` has c >= `max_c`."""
     if not candidate[1] < max_c:
         return current
-    current_size = current[0] ** 2 * (1 + (current[1] / HULL_SETTINGS.c_doubling_measure) ** 4)
-    candidate_size = candidate[0] ** 2 * (1 + (candidate[1] / HULL_SETTINGS.c_doubling_measure) ** 4)
+    current_size = current[0] ** 2 * (1 + (current[1] / HULL_SETTINGS.c_at_doubled_measure) ** 4)
+    candidate_size = candidate[0] ** 2 * (1 + (candidate[1] / HULL_SETTINGS.c_at_doubled_measure) ** 4)
     return candidate if candidate_size < current_size else current

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from ....arrays import Array
 from ....model.compiled.compilation import compiled
 from ....model.compiled.kernel_constants import KernelConstants
-from ...certificate.box import BOX_SETTINGS
+from ...certificate.eigenvalue_box import BOX_SETTINGS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -19,16 +19,16 @@ class HullSettings(KernelConstants):
     evaluated and alpha is differentiated."""
     enlargement_fraction: float = 0.05
     """The constants of a hull are enlarged by this fraction, for extremes between points and for rounding."""
-    end_distance_fraction: float = 1e-9
+    end_point_distance_over_interval: float = 1e-9
     """Distance of the first and last Chebyshev point from the ends of an interval between breaks, divided by
     the length of the interval, so that no point lies on a jump."""
     min_one_minus_c: float = 0.1
     """Hulls with 1 - c below this number are not used: they are too large to be useful."""
-    c_doubling_measure: float = 0.15
-    """The smallest hull has the least a^2 (1 + (c/c_doubling_measure)^4), which is 2 a^2 at this c."""
+    c_at_doubled_measure: float = 0.15
+    """The smallest hull has the least a^2 (1 + (c/c_at_doubled_measure)^4), which is 2 a^2 at this c."""
     constant_weight_count: int = 41
     """Number of constant weights alpha tried, from smallest to largest |g/nu| along the arm, besides 1."""
-    min_weight: float = 1e-3
+    min_constant_weight: float = 1e-3
     """Smallest constant weight alpha tried, if |g/nu| is smaller somewhere."""
     supporting_line_count: int = 48
     """Number of supporting lines of the hull tried for the distance of a point w from the hull."""
@@ -59,7 +59,7 @@ class EigenvalueHull(NamedTuple):
             return inf, inf
         n = (a + sqrt(a * a + 4 * b * depth)) / (2 * b)
         # A pad in proportion to the depth keeps the box open where F = 0 makes the bound vanish.
-        padding = BOX_SETTINGS.padding_fraction * depth + BOX_SETTINGS.min_padding
+        padding = BOX_SETTINGS.padding_over_depth * depth + BOX_SETTINGS.min_padding
         return a * a / (4 * b) + padding, a * n + self.c * n * n + padding
 
 
@@ -68,7 +68,7 @@ UNBOUNDED_HULL = EigenvalueHull(inf, 0.0)
 
 
 @compiled
-def distance_and_normal(w: complex, a: float, c: float) -> tuple[float, complex]:
+def hull_distance_and_normal(w: complex, a: float, c: float) -> tuple[float, complex]:
     """Returns (distance, normal) for w with Im w >= 0 and the hull with the constants a, c. distance: lower
     bound of the distance of w from the hull, at most 0 if w lies inside. normal: unit vector towards w.
     <normal, w - v> >= distance for every v in the hull."""

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....arrays import Array
-from ....model.compiled.compilation import compiled, compiled_for_vectors
+from ....model.compiled.compilation import compiled, compiled_with_reordered_sums
 from ....model.compiled.kernel_constants import KernelConstants
 
 
@@ -20,7 +20,7 @@ class AveragedWeightSettings(KernelConstants):
     load_term_factors: tuple[float, ...] = (1.0, 0.5, 0.0)
     """Values of f in l = f |F| sqrt(c2 c3 gamma3/gamma2), the term with the load in the trial weight t. f = 1
     is mostly the best and comes first: its region ends the trials of others early."""
-    half_widths: tuple[float, ...] = (0.01, 0.02, 0.04, 0.08, 0.16, 0.32)
+    window_half_widths: tuple[float, ...] = (0.01, 0.02, 0.04, 0.08, 0.16, 0.32)
     """Values of the half-width h of the window, in L."""
     max_distance_across_jump: float = 1e-6
     """Two successive points closer than this distance, in L, lie on the two sides of a jump."""
@@ -28,9 +28,9 @@ class AveragedWeightSettings(KernelConstants):
     """Distance, in L, between the points added on both sides of u at which the slope of alpha jumps."""
 
     @property
-    def trial_count(self) -> int:
+    def trial_region_count(self) -> int:
         """Number of trial regions: two for each pair of f and h."""
-        return 2 * len(self.load_term_factors) * len(self.half_widths)
+        return 2 * len(self.load_term_factors) * len(self.window_half_widths)
 
 
 AVERAGED_WEIGHT_SETTINGS = AveragedWeightSettings()
@@ -40,19 +40,20 @@ class GridPositions(NamedTuple):
     """Positions of n points in a grid: index of the grid interval, (n,), and fraction of its length, (n,)."""
 
     interval_index: NDArray[np.int64]
-    fraction: Array
+    """Index of the grid interval that contains each point, (n,)."""
+    interval_fraction: Array
 
 
 class TrialPoints(NamedTuple):
     """Points of an arm at which the weights of one half-width h are evaluated. u: from clamp to tip, (n,).
-    sources: index of each point among the points of the arm, -1 for an added point, (n,). coefficients:
-    `LocalCoefficients`, (6, n). loads: |F| sqrt(c2 c3 gamma3/gamma2), (n,). window_starts, window_ends:
-    positions of u - h and of u + h in u."""
+    arm_point_indices: index of each point among the points of the arm, -1 for an added point, (n,).
+    coefficients: `LocalCoefficients`, (6, n). load_terms: |F| sqrt(c2 c3 gamma3/gamma2), (n,). window_starts,
+    window_ends: positions of u - h and of u + h in u."""
 
     u: Array
-    sources: NDArray[np.int64]
+    arm_point_indices: NDArray[np.int64]
     coefficients: Array
-    loads: Array
+    load_terms: Array
     window_starts: GridPositions
     window_ends: GridPositions
 
@@ -60,7 +61,8 @@ class TrialPoints(NamedTuple):
 @compiled
 def trial_points(u: Array, coefficients: Array, loads: Array, F: float, h: float) -> TrialPoints:
     """The points for the half-width h of an arm under the force F with the points u, (points,), where the arm
-    has the `LocalCoefficients` `coefficients`, (6, points), and the `loads` of `TrialPoints`, (points,)."""
+    has the `LocalCoefficients` `coefficients`, (6, points), and the `load_terms` of `TrialPoints`,
+    (points,)."""
     points, sources = _with_points_where_window_ends_jump(u, h)
     coefficients_at_points = np.empty((6, len(points)))
     loads_at_points = np.empty(len(points))
@@ -131,9 +133,9 @@ def _grid_positions(x: Array, grid: Array) -> GridPositions:
     return GridPositions(interval, fraction)
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def interpolate_at_position(positions: GridPositions, n: int, values: Array) -> float:
     """Value at position number n in a grid, interpolated linearly from `values` at the grid points,
     (points,)."""
     i = positions.interval_index[n]
-    return values[i] + positions.fraction[n] * (values[i + 1] - values[i])
+    return values[i] + positions.interval_fraction[n] * (values[i + 1] - values[i])

@@ -33,12 +33,12 @@ def smallest_squared_norm(alphas: Array, coefficients: Array, max_weighted_force
 @compiled
 def trial_constant_weights(coefficients: Array) -> Array:
     """Constant weights alpha to try, (HULL_SETTINGS.constant_weight_count + 1,): a geometric progression from
-    the smallest to the largest |g/nu| along the arms, none below `min_weight`, and 1. coefficients:
+    the smallest to the largest |g/nu| along the arms, none below `min_constant_weight`, and 1. coefficients:
     coefficients, (6, n, pieces, points)."""
     ratio = np.abs(coefficients[5] / coefficients[0])
-    start = log(max(ratio.min(), HULL_SETTINGS.min_weight))
+    start = log(max(ratio.min(), HULL_SETTINGS.min_constant_weight))
     # At least twice the smallest weight, so that the progression has a length even if all ratios are tiny.
-    log_max = log(max(ratio.max(), 2 * HULL_SETTINGS.min_weight))
+    log_max = log(max(ratio.max(), 2 * HULL_SETTINGS.min_constant_weight))
     alphas = np.ones(HULL_SETTINGS.constant_weight_count + 1)
     for k in range(HULL_SETTINGS.constant_weight_count):
         alphas[k] = exp(start + (log_max - start) * k / (HULL_SETTINGS.constant_weight_count - 1))
@@ -46,7 +46,9 @@ def trial_constant_weights(coefficients: Array) -> Array:
 
 
 @compiled
-def varying_weight_norms(F: Array, lengths: Array, coefficients: Array, derivative: Array) -> Array:
+def squared_norms_of_varying_weights(
+    F: Array, lengths: Array, coefficients: Array, derivative: Array
+) -> Array:
     """a^2 of each weight alpha(u) = g/(nu + f |F| sqrt(c2 c3 gamma3/gamma2)), f from
     `HULL_SETTINGS.load_term_factors`: the largest squared norm of the hull's matrix along all arms,
     (factors,).

@@ -12,11 +12,11 @@ from ....config.arm.axes import NON_LOAD_KEYS
 from ....config.arm.shape import MATERIAL_KEYS
 from ....model.arm.arm import SlenderArm
 from ....model.arm.drag import DRAG_ESTIMATE_NAMES
-from ....model.arm.quantities import ALL_QUANTITIES, ARM_SCALES, LOAD_OF_RATIO
+from ....model.arm.quantities import ARM_FILE_VARIABLES, ARM_SCALES, LOAD_NAME_BY_RELATIVE_LOAD
 from ....model.units import value_in_unit
 from ....results.file.view import ResultView
-from ...summary.arm.arm import quantity_words
-from ...tables.rows_and_columns import quantities_of_view
+from ...summary.arm.arm_texts import quantity_words
+from ...tables.rows_and_columns import arm_quantities_at_points
 from ..style import heading_text
 
 NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
@@ -29,7 +29,7 @@ number."""
 def in_typed_unit(view: ResultView, name: str, values: Array, si: str = "") -> tuple[Array, str]:
     """Returns (values, unit) of the quantity `name` in the unit typed by the user. values: in the SI unit
     `si` (by default the unit of the quantity), of any shape."""
-    si = si or ALL_QUANTITIES[name].unit
+    si = si or ARM_FILE_VARIABLES[name].unit
     unit = view.typed_units.get(name, si)
     return (values, "") if si == "1" else (values * value_in_unit(1.0, unit, si), unit)
 
@@ -84,12 +84,12 @@ def set_heading(figure: Figure, view: ResultView, *lines: str) -> None:
 def quantities_at_point(view: ResultView, number: int) -> dict[str, float]:
     """Quantities that the user gave for the arm at a point, by name, in SI units; a drag as an index in
     DRAG_ESTIMATE_NAMES. number: number of the point, from 1."""
-    columns = quantities_of_view(view)
-    derived = (*ARM_SCALES, *LOAD_OF_RATIO)
+    columns = arm_quantities_at_points(view)
+    derived = (*ARM_SCALES, *LOAD_NAME_BY_RELATIVE_LOAD)
     return {name: float(column[number - 1]) for name, column in columns.items() if name not in derived}
 
 
-def shear_stiffness(view: ResultView, poisson: float) -> float:
+def k2_at_poisson_ratio(view: ResultView, poisson: float) -> float:
     """The dimensionless k2 of the arm of a file with the Poisson's ratio `poisson`; only this ratio, a load
     and the drag may vary in the file."""
     quantities: dict[str, Any] = {
@@ -106,7 +106,7 @@ def _arm_of(view: ResultView, quantities: Mapping[str, Any]) -> SlenderArm:
     return SlenderArm(**quantities, **material)
 
 
-def replaced_parameters(view: ResultView, number: int) -> dict[str, float]:
+def parameters_given_beside_arm(view: ResultView, number: int) -> dict[str, float]:
     """Parameters at a point, by name, that differ from the parameters computed from the arm, because the
     config gives them. F is included if the arm has no load, and otherwise left out. number: number of the
     point, from 1."""
@@ -115,7 +115,7 @@ def replaced_parameters(view: ResultView, number: int) -> dict[str, float]:
         quantities["drag"] = DRAG_ESTIMATE_NAMES[int(quantities["drag"])]
     arm = _arm_of(view, quantities)
     stored_parameters = {name: float(view.point_columns[name][number - 1]) for name in view.parameters}
-    if arm.load:
+    if arm.load_name:
         stored_parameters.pop("F", None)
     return {
         name: value

@@ -13,7 +13,7 @@ from ....arrays import Array
 from ....model.arm.neglected import COMPRESSION_LIMIT, Validity
 from ....results.file.view import ResultView
 from ..cells import cell_edges, fill_cells
-from ..style import LABELS
+from ..style import AXIS_LABELS
 
 VALIDITY_HATCHES = {Validity.does_not_apply: "////", Validity.doubtful: "..."}
 """Hatches of points by validity of the model; other points have none."""
@@ -61,7 +61,7 @@ def _hatch_points(
 ) -> bool:
     """Hatches the cells of points in the mask `outside`, in all panels whose axes are the one or two
     parameters `names`; returns whether any panel has these axes."""
-    labels = [LABELS[name] for name in names]
+    labels = [AXIS_LABELS[name] for name in names]
     edges = [cell_edges(view.parameter_values[name]) for name in names]
     cells = np.squeeze(outside)
     is_hatched = False

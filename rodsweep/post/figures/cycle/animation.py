@@ -17,11 +17,18 @@ from ....arrays import Array
 from ....errors import EnvironmentIncomplete, InputError
 from ....results.file.view import ResultView
 from ....solve_progress import SolvePosition, report
-from ...output_files import replaced_file
-from ..layout.fitting import fit_layout
+from ...output_files import temporary_output_path
+from ..layout.layout_fitting import fit_layout
 from ..style import BLUE, VERMILION
-from .portrait import SHAPE_MARGIN, WALL_DEPTH, draw_clamp, draw_force_arrow, draw_tip_path, set_common_limits
 from .selection import SHAPE_VARIABLE_NAMES, CycleSelection, StoredCycle, chosen_cycles
+from .shapes_and_tip_motion import (
+    SHAPE_MARGIN,
+    WALL_DEPTH,
+    draw_clamp,
+    draw_force_arrow,
+    draw_tip_path,
+    set_common_limits,
+)
 from .tip_path import SEGMENTS_BETWEEN_SHAPES, smooth_tip_path
 
 FILM_SUFFIXES = (".gif", ".mp4")
@@ -60,12 +67,12 @@ def write_animation(view: ResultView, points: Sequence[int], output: Path) -> st
         raise InputError(f"{view.path} holds {frames} shapes of a cycle, {remedy}")
     writer = _film_writer(output, max(1, round(frames / FILM_PERIOD_SECONDS)))
     figure, arms = prepared_animation(selection)
-    with replaced_file(output) as partial, writer.saving(figure, str(partial), dpi=DPI):
+    with temporary_output_path(output) as partial, writer.saving(figure, str(partial), dpi=DPI):
         for frame_index in range(frames):
             for arm in arms:
                 arm.show_frame(frame_index)
             writer.grab_frame()
-    return f"one period in {frames} frames" + selection.omissions
+    return f"one period in {frames} frames" + selection.omissions_clause
 
 
 def prepared_animation(selection: CycleSelection) -> tuple[Figure, list["MovingArm"]]:
@@ -135,13 +142,13 @@ class MovingArm:
 class FilmedMotion(NamedTuple):
     """Motion of an arm in the units of the film.
 
-    x, y: shapes, (frames, nodes). step: time between shapes. length: length of the arm. units: names of the
-    units of length and time.
+    x, y: shapes, (frames, nodes). shape_interval: time between shapes. length: length of the arm. units:
+    names of the units of length and time.
     """
 
     x: Array
     y: Array
-    step: float
+    shape_interval: float
     length: float
     units: tuple[str, str]
 
@@ -165,9 +172,10 @@ def motion_film(motion: FilmedMotion) -> bytes:
         writer = PillowWriter(fps=FRAME_RATE)
         with writer.saving(figure, str(output), dpi=DPI):
             for k in range(frames):
-                report(lambda k=k: SolvePosition(f"frame {k + 1} of {frames}", k / frames))  # type: ignore[misc]
+                position = SolvePosition(f"frame {k + 1} of {frames}", k / frames)
+                report(lambda position=position: position)  # type: ignore[misc]
                 rod.set_data(motion.x[k], motion.y[k])
                 path.set_data(*tip_path[: k * SEGMENTS_BETWEEN_SHAPES + 1].T)
-                axes.set_title(f"$t$ = {k * motion.step:.3g} {motion.units[1]}")
+                axes.set_title(f"$t$ = {k * motion.shape_interval:.3g} {motion.units[1]}")
                 writer.grab_frame()
         return output.read_bytes()

@@ -8,8 +8,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from ....results.file.view import ResultView
-from ...summary.errors import relative_power_error
 from ...summary.number_texts import rounded_text
+from ...summary.variable_errors import relative_power_error
 from ..arm.quantities import NO_BREAK_SPACE
 from ..style import BLUE, GREEN, VERMILION, draw_shared_legend, text_colour
 from .selection import ENERGY_BUDGET_VARIABLE_NAMES, StoredCycle, chosen_cycles, rounded_number_in_tex
@@ -41,7 +41,7 @@ def draw_energy(view: ResultView, points: Sequence[int], is_narrow: bool = False
     draw_shared_legend(figure, column_count=2 if is_narrow else min(3, 1 + len(cycles)))
     figure.align_ylabels(panel_rows[:, 0])
     figure.suptitle(selection.title)
-    return figure, "energy, injection and dissipation over a cycle" + selection.omissions
+    return figure, "energy, injection and dissipation over a cycle" + selection.omissions_clause
 
 
 def _power_and_imbalance_texts(cycle: StoredCycle) -> tuple[str, str]:
@@ -79,7 +79,7 @@ def _draw_budget(panels: Sequence[Axes], cycle: StoredCycle) -> None:
     bottom.plot(time, injection - dissipation, color=GREEN, lw=1.5, label=r"injection $-$ dissipation")
     marks = np.arange(ENERGY_RATE_MARK_COUNT) / ENERGY_RATE_MARK_COUNT
     rate = interpolate_samples(time_derivative(cycle.values["energy"]), marks) / cycle.period
-    rate = rate * cycle.units.power_of_rate
+    rate = rate * cycle.units.power_unit_per_energy_rate
     bottom.plot(
         marks * cycle.period, rate, "o", color=text_colour(), mfc="none", ms=3.5, label="derivative of $U$"
     )

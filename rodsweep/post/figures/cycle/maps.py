@@ -26,11 +26,11 @@ from ..cells import (
     draw_coloured_cells,
     fill_cells,
     label_maps,
-    map_panels,
-    point_map,
+    new_map_panels,
+    point_grid,
 )
-from .amplitudes.square_root import HOPF_SYMBOL
-from .selection import shared_and_own_of_arms
+from .amplitudes.square_root_law import HOPF_SYMBOL
+from .selection import shared_and_own_texts_of_arms
 from .units_and_labels import units_of_files
 
 STATUS_LOOKS = {
@@ -63,11 +63,11 @@ def draw_maps(view: ResultView, is_narrow: bool = False) -> tuple[Figure, str]:
     """Returns (figure, description). The figure has maps of the period and of the largest y of the tip, with
     Hopf points, unstable cycles, and the statuses of cells without a cycle. Raises InputError if no point has
     a cycle."""
-    points = point_map(view)
+    points = point_grid(view)
     statuses = view.status_names[points.point_indices]
     cycles = np.isin(statuses, CYCLE_STATUSES)
     style.require_content(view, cycles.any(), "cycle")
-    figure, panels = map_panels(2, is_narrow)
+    figure, panels = new_map_panels(2, is_narrow)
     lines = hopf_lines(points, view)
     (units,) = units_of_files([view], [points.point_indices.ravel()])
     _, largest_y, period, _ = units.panel_labels
@@ -81,7 +81,7 @@ def draw_maps(view: ResultView, is_narrow: bool = False) -> tuple[Figure, str]:
     label_maps(panels, points)
     style.draw_shared_legend(figure, column_count=MAX_LEGEND_ROW_ENTRIES)
     figure.suptitle(style.heading_text(view, _common_parameters_text(view, points, units.in_si)))
-    return figure, f"period and amplitude over {' and '.join(points.names)}{points.omissions}"
+    return figure, f"period and amplitude over {' and '.join(points.names)}{points.omissions_clause}"
 
 
 def _common_parameters_text(view: ResultView, points: PointGrid, is_in_si: bool) -> str:
@@ -91,7 +91,7 @@ def _common_parameters_text(view: ResultView, points: PointGrid, is_in_si: bool)
         return style.parameter_text(points.common_parameters)
     varied = (quantity for quantity, name in PARAMETER_CHANGED_ALONG.items() if name in points.names)
     numbers = [int(points.point_indices[place]) + 1 for place in ((0, 0), (-1, -1))]
-    return shared_and_own_of_arms(view, numbers, {*points.names, *varied})[0]
+    return shared_and_own_texts_of_arms(view, numbers, {*points.names, *varied})[0]
 
 
 def _draw_statuses(axes: Axes, points: PointGrid, statuses: NDArray[np.str_]) -> None:
@@ -154,6 +154,6 @@ def _hopf_points(points: PointGrid, view: ResultView) -> Iterator[Array]:
     stored_thresholds = StoredThresholds(view, name)
     for value, row_indices in zip(points.y, points.point_indices, strict=True):
         parameters = points.common_parameters | {row_parameter: float(value)}
-        changes = stored_thresholds.thresholds_on(ParameterLine(name, parameters, points.x, row_indices))
+        changes = stored_thresholds.thresholds_on_line(ParameterLine(name, parameters, points.x, row_indices))
         located = (change for change in changes if isinstance(change, LocatedThreshold))
         yield np.array([change.position for change in located if change.changes_stability])

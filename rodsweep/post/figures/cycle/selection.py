@@ -14,9 +14,9 @@ from ....arrays import Array, list_of
 from ....errors import InputError
 from ....results.file.view import ResultView
 from ...summary.number_texts import rounded_text
-from ..arm.quantities import quantities_at_point, quantity_text, replaced_parameters
+from ..arm.quantities import parameters_given_beside_arm, quantities_at_point, quantity_text
 from ..style import heading_text, parameter_text
-from .units_and_labels import DIMENSIONLESS_UNITS, REQUIRED_QUANTITIES, CycleUnits, units_at_points
+from .units_and_labels import DIMENSIONLESS_UNITS, QUANTITIES_REQUIRED_FOR_UNITS, CycleUnits, units_at_points
 
 MAX_CYCLES = 3
 """Largest number of cycles that fit side by side into one figure."""
@@ -26,7 +26,7 @@ ENERGY_BUDGET_VARIABLE_NAMES = ("energy", "injection", "dissipation")
 """Names of the variables with the energy budget over a period."""
 TRANSIENT_VARIABLE_NAMES = ("transient_time", "transient_x", "transient_y")
 """Names of the variables with the motion from the initial state."""
-STORING_OPTIONS = dict.fromkeys(SHAPE_VARIABLE_NAMES, "shapes") | dict.fromkeys(
+CONFIG_OPTION_BY_VARIABLE = dict.fromkeys(SHAPE_VARIABLE_NAMES, "shapes") | dict.fromkeys(
     TRANSIENT_VARIABLE_NAMES, "transient"
 )
 """Option of the config with which the task stores a variable. Other variables over a period are stored with
@@ -62,14 +62,16 @@ class StoredCycle:
         """The period as TeX, rounded according to its error; a line can be broken after the symbol T."""
         if self.units.in_si:
             return f"$T$ = {self.units.time_text(self.period)}"
-        return self._period(self.period, r"\tau_2", r"T\,")
+        return self._period_with_unit_text(self.period, r"\tau_2", r"T\,")
 
     @property
-    def period_in_tau1(self) -> str:
+    def period_in_tau1_text(self) -> str:
         """The period in units of tau1 as TeX; empty for a rod without tau1."""
-        return self._period(self.period / self.tau1, r"\tau_1") if 0 < self.tau1 < np.inf else ""
+        return (
+            self._period_with_unit_text(self.period / self.tau1, r"\tau_1") if 0 < self.tau1 < np.inf else ""
+        )
 
-    def _period(self, value: float, unit: str, symbol: str = "") -> str:
+    def _period_with_unit_text(self, value: float, unit: str, symbol: str = "") -> str:
         """A period with its unit as TeX. value: the period in `unit`. symbol: symbol before the equals sign,
         or empty."""
         error = float(self.values["period_error"])
@@ -107,7 +109,7 @@ class CycleSelection:
     """The cycles, at most MAX_CYCLES."""
     title: str
     """Title of the file, and text of the parameters that all cycles share."""
-    omissions: str
+    omissions_clause: str
     """Clause on cycles that the figure leaves out; empty if all cycles are shown."""
 
 
@@ -115,7 +117,7 @@ def chosen_cycles(view: ResultView, points: Sequence[int], variable_names: Seque
     """Cycles at the points with the numbers `points`, or the first cycles, at most MAX_CYCLES, if `points` is
     empty. Raises InputError if a point, a cycle or a variable is missing, or for more than MAX_CYCLES
     points."""
-    _refuse_missing(view, variable_names)
+    _require_variables(view, variable_names)
     complaint = "the point has no cycle to draw; its status is {status}; choose another"
     return _selected_cycles(view, points, view.status_names == "cycle", "cycle", complaint)
 
@@ -124,7 +126,7 @@ def chosen_transients(view: ResultView, points: Sequence[int]) -> CycleSelection
     """Motions from the initial state at the points with the numbers `points`, or the first stored motions, at
     most MAX_CYCLES, if `points` is empty. Raises InputError if a chosen motion, every motion or a variable is
     missing, if a point does not exist, or if more than MAX_CYCLES points are chosen."""
-    _refuse_missing(view, TRANSIENT_VARIABLE_NAMES)
+    _require_variables(view, TRANSIENT_VARIABLE_NAMES)
     is_stored = np.isfinite(view.variables[TRANSIENT_VARIABLE_NAMES[0]][..., -1].ravel())
     complaint = (
         "the motion of this point from its initial state is not stored; choose a point that was integrated "
@@ -133,12 +135,12 @@ def chosen_transients(view: ResultView, points: Sequence[int]) -> CycleSelection
     return _selected_cycles(view, points, is_stored, "transient", complaint)
 
 
-def _refuse_missing(view: ResultView, variable_names: Sequence[str]) -> None:
+def _require_variables(view: ResultView, variable_names: Sequence[str]) -> None:
     """Raises InputError if one of the variables `variable_names` is missing; the message names the option
     with which the variable is stored."""
     for name in variable_names:
         if name not in view.variables:
-            key = f"limit_cycle.{STORING_OPTIONS.get(name, 'samples')}"
+            key = f"limit_cycle.{CONFIG_OPTION_BY_VARIABLE.get(name, 'samples')}"
             raise InputError(f"{view.path} holds no {name}; run with {key} > 0, which stores it")
 
 
@@ -164,7 +166,7 @@ def _selected_cycles(
         raise InputError(f"{view.path} holds no {noun} that could be drawn; {reason}")
     numbers = list(points) or list_of(available[:MAX_CYCLES])
     columns = view.point_columns
-    common_text, labels = shared_and_own_of_points(view, numbers)
+    common_text, labels = shared_and_own_texts_of_points(view, numbers)
     cycles = []
     for number, label, units in zip(numbers, labels, units_at_points(view, numbers), strict=True):
         parameters = {name: float(column[number - 1]) for name, column in columns.items()}
@@ -178,7 +180,7 @@ def _selected_cycles(
     return CycleSelection(cycles, heading_text(view, common_text), omissions_clause)
 
 
-def _without_shared_texts(texts: Sequence[Mapping[str, str]]) -> tuple[str, list[str]]:
+def _split_shared_texts(texts: Sequence[Mapping[str, str]]) -> tuple[str, list[str]]:
     """Returns (shared, own): the texts that all mappings share, and the other texts of each mapping."""
     shared = {name: text for name, text in texts[0].items() if all(each[name] == text for each in texts)}
     own = [", ".join(text for name, text in each.items() if name not in shared) for each in texts]
@@ -188,23 +190,23 @@ def _without_shared_texts(texts: Sequence[Mapping[str, str]]) -> tuple[str, list
 def shared_and_own_texts(parameters: Sequence[dict[str, float]]) -> tuple[str, list[str]]:
     """Returns (shared, own): text of the parameters with equal values in all mappings, and text of the other
     parameters of each mapping."""
-    return _without_shared_texts(
+    return _split_shared_texts(
         [{name: parameter_text({name: value}) for name, value in each.items()} for each in parameters]
     )
 
 
-def shared_and_own_of_points(view: ResultView, numbers: Sequence[int]) -> tuple[str, list[str]]:
+def shared_and_own_texts_of_points(view: ResultView, numbers: Sequence[int]) -> tuple[str, list[str]]:
     """Returns (shared, own): text of the parameters that are equal at all points, and text of the other
     parameters of each point; for an arm, of the quantities. numbers: numbers of the points, from 1."""
-    if all(name in view.quantities for name in REQUIRED_QUANTITIES):
-        return shared_and_own_of_arms(view, numbers)
+    if all(name in view.quantities for name in QUANTITIES_REQUIRED_FOR_UNITS):
+        return shared_and_own_texts_of_arms(view, numbers)
     columns = view.point_columns
     return shared_and_own_texts(
         [{name: float(columns[name][number - 1]) for name in columns} for number in numbers]
     )
 
 
-def shared_and_own_of_arms(
+def shared_and_own_texts_of_arms(
     view: ResultView, numbers: Sequence[int], omitted: Collection[str] = ()
 ) -> tuple[str, list[str]]:
     """Returns (shared, own): text of the quantities that are equal for all arms, and text of the other
@@ -217,6 +219,8 @@ def shared_and_own_of_arms(
     for number in numbers:
         quantities = quantities_at_point(view, number).items()
         texts = {name: quantity_text(view, name, value) for name, value in quantities}
-        texts |= {n: parameter_text({n: value}) for n, value in replaced_parameters(view, number).items()}
+        texts |= {
+            n: parameter_text({n: value}) for n, value in parameters_given_beside_arm(view, number).items()
+        }
         texts_of_arms.append({name: text for name, text in texts.items() if name not in omitted})
-    return _without_shared_texts(texts_of_arms)
+    return _split_shared_texts(texts_of_arms)

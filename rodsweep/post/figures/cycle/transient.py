@@ -37,7 +37,7 @@ def draw_transients(view: ResultView, points: Sequence[int], is_narrow: bool = F
     label_tip_axes(panel_rows[0, 0], panel_rows[1, 0], selection.cycles[0].units)
     figure.align_ylabels(panel_rows[:, 0])
     figure.suptitle(selection.title)
-    return figure, "the tip from the start on" + selection.omissions
+    return figure, "the tip from the start on" + selection.omissions_clause
 
 
 def draw_start_of_motion(upper: Axes, lower: Axes, cycle: StoredCycle) -> None:

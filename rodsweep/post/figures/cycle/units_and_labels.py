@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ....arrays import Array
 from ....model.units import value_in_unit, with_si_prefix
 from ....results.file.view import ResultView
-from ...tables.rows_and_columns import quantities_of_view
+from ...tables.rows_and_columns import arm_quantities_at_points
 from ..arm.quantities import NO_BREAK_SPACE
 
 LENGTH_VARIABLE_NAMES = ("shape_x", "shape_y", "tip_x", "tip_y", "transient_x", "transient_y")
@@ -23,13 +23,13 @@ ENERGY_VARIABLE_NAMES = ("energy",)
 """Names of variables that are energies."""
 POWER_VARIABLE_NAMES = ("injection", "dissipation", "injection_mean", "dissipation_mean")
 """Names of variables that are powers."""
-PREFIXED_BELOW_SECONDS = 0.1
+MAX_PREFIXED_TIME_IN_SECONDS = 0.1
 """If the longest period is below this value, in s, times have a prefix such as ms."""
 NumberOrArray = Any
 """A number, or an array with a number for each point, (points,)."""
 SI_UNITS_OF_SCALES = ("m", "s", "J", "W")
 """SI units of length, time, energy and power."""
-REQUIRED_QUANTITIES = ("length", "tau2", "force_scale")
+QUANTITIES_REQUIRED_FOR_UNITS = ("length", "tau2", "force_scale")
 """Quantities of an arm from which the units of a figure are computed."""
 
 
@@ -79,7 +79,7 @@ class CycleUnits:
         return "energy\n$U L/k_3$", "power\n" r"$\times\, L\tau_2/k_3$", r"$\dot U L\tau_2/k_3$"
 
     @property
-    def power_of_rate(self) -> float:
+    def power_unit_per_energy_rate(self) -> float:
         """Ratio of the figure's units of energy and time, (energy unit)/(time unit), in the figure's unit of
         power."""
         return self.power * self.time / self.energy
@@ -119,11 +119,13 @@ def units_at_points(view: ResultView, numbers: Sequence[int]) -> list[CycleUnits
 def units_of_files(views: Sequence[ResultView], indices: Sequence[NDArray[np.int64]]) -> list[CycleUnits]:
     """Units for the points of each file, with factors of shape (n,); dimensionless if a file has no arm.
     indices: indices of the points of each file, (n,)."""
-    if not all(name in view.quantities for view in views for name in REQUIRED_QUANTITIES):
+    if not all(name in view.quantities for view in views for name in QUANTITIES_REQUIRED_FOR_UNITS):
         return [DIMENSIONLESS_UNITS] * len(views)
     scales = []
     for view, chosen in zip(views, indices, strict=True):
-        L, tau2, force = (quantities_of_view(view)[name][chosen] for name in REQUIRED_QUANTITIES)
+        L, tau2, force = (
+            arm_quantities_at_points(view)[name][chosen] for name in QUANTITIES_REQUIRED_FOR_UNITS
+        )
         scales.append((L, tau2, force * L, force * L / tau2))
     of_files = list(zip(views, indices, scales, strict=True))
     period = max(_largest_in_units(view, "period", chosen, scale[1]) for view, chosen, scale in of_files)
@@ -133,7 +135,7 @@ def units_of_files(views: Sequence[ResultView], indices: Sequence[NDArray[np.int
     largest_energy = max(float(np.nanmax(scale[2])) for scale in scales)
     names = (
         views[0].typed_units.get("length", "m"),
-        with_si_prefix(period, "s")[1] if 0 < period < PREFIXED_BELOW_SECONDS else "s",
+        with_si_prefix(period, "s")[1] if 0 < period < MAX_PREFIXED_TIME_IN_SECONDS else "s",
         with_si_prefix(largest_energy, "J")[1],
         with_si_prefix(mean_power, "W")[1],
     )

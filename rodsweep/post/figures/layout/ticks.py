@@ -19,7 +19,7 @@ def thin_ticks(figure: Figure) -> bool:
     """Removes some tick labels, such as every second, from each axis whose labels overlap; returns whether
     any label was removed."""
     panels = [*figure.axes, *(inset for axes in figure.axes for inset in axes.child_axes)]
-    return any([_thin_axis(axis) for panel in panels for axis in (panel.xaxis, panel.yaxis)])
+    return any([_thin_ticks_of_axis(axis) for panel in panels for axis in (panel.xaxis, panel.yaxis)])
 
 
 def visible_labels(axis: Axis) -> list[Text]:
@@ -38,7 +38,7 @@ def _visible_ticks(axis: Axis) -> list[tuple[float, Text]]:
     ]
 
 
-def _thin_axis(axis: Axis) -> bool:
+def _thin_ticks_of_axis(axis: Axis) -> bool:
     """Removes some labelled ticks of an axis if their labels overlap; returns whether any was removed."""
     ticks = _visible_ticks(axis)
     if len(ticks) < 2:
@@ -50,7 +50,7 @@ def _thin_axis(axis: Axis) -> bool:
     min_gap = LABEL_GAP * max(box.height for box in boxes) if is_horizontal else 0.0
     if (starts[1:] - ends[:-1] >= min_gap).all():
         return False
-    kept = _kept_positions(np.array([position for position, _ in ticks]), axis.get_scale() == "log")
+    kept = _positions_of_kept_ticks(np.array([position for position, _ in ticks]), axis.get_scale() == "log")
     if isinstance(axis.get_major_formatter(), FixedFormatter):
         axis.set_ticks(kept, [label.get_text() for position, label in ticks if position in kept])
     else:
@@ -58,7 +58,7 @@ def _thin_axis(axis: Axis) -> bool:
     return True
 
 
-def _kept_positions(positions: Array, is_logarithmic: bool) -> Array:
+def _positions_of_kept_ticks(positions: Array, is_logarithmic: bool) -> Array:
     """The positions, (m,), of the ticks, (n,), that stay: on a logarithmic axis the powers of ten, if there
     are at least two and other ticks; otherwise every second tick, with 0 if it is a tick."""
     if is_logarithmic:

@@ -10,7 +10,7 @@ from ..arm.quantities import set_heading
 from ..point_lists import label_point_numbers, shared_parameters
 from ..style import BLUE, VERMILION, draw_shared_legend, parameter_text, require_content
 
-SPREAD_RATIO = 100.0
+MIN_MODULUS_RATIO_FOR_SYMLOG = 100.0
 """An axis is symmetric logarithmic if the ratio of the largest to the smallest nonzero modulus exceeds
 this number."""
 LINEAR_RANGE_FRACTION = 1e-6
@@ -32,7 +32,7 @@ def draw_eigenvalues(view: ResultView) -> Figure:
     figure = Figure(figsize=(5.2, 4.0), layout="constrained")
     axes = figure.subplots()
     _draw_markers(axes, growth, frequency, growth > 0)
-    scale_if_spread(axes, growth, frequency)
+    make_symlog_if_widely_spread(axes, growth, frequency)
     for mode in range(min(mode_count, MAX_NUMBERED_MODES)):
         if np.isfinite(growth[mode]):
             eigenvalue = growth[mode], frequency[mode]
@@ -55,7 +55,7 @@ def draw_list_of_spectra(view: ResultView) -> Figure:
     number = np.broadcast_to(np.arange(1, len(growth) + 1)[:, None], growth.shape)
     for axes, values, part_name in zip(panels, (growth, frequency), ("Re", "Im"), strict=True):
         _draw_markers(axes, number, values, growth > 0)
-        scale_if_spread(axes, None, values)
+        make_symlog_if_widely_spread(axes, None, values)
         axes.axhline(0, color="0.5", lw=0.6, zorder=0)
         axes.set_ylabel(rf"$\mathrm{{{part_name}}}\,\omega\,\tau_2$")
     label_point_numbers(panels[1], view, len(growth))
@@ -73,12 +73,13 @@ def _draw_markers(axes: Axes, x: np.ndarray, y: np.ndarray, is_growing: np.ndarr
             axes.plot(x[is_drawn], y[is_drawn], marker, color=colour, mfc="none", ms=4.5, label=label)
 
 
-def scale_if_spread(axes: Axes, x: np.ndarray | None, y: np.ndarray) -> None:
+def make_symlog_if_widely_spread(axes: Axes, x: np.ndarray | None, y: np.ndarray) -> None:
     """Makes each axis symmetric logarithmic if the ratio of its largest to smallest nonzero modulus is above
-    SPREAD_RATIO. x, y: values on the axes, of any shape; None for an axis that stays unchanged."""
+    MIN_MODULUS_RATIO_FOR_SYMLOG. x, y: values on the axes, of any shape; None for an axis that stays
+    unchanged."""
     for set_scale, values in ((axes.set_xscale, x), (axes.set_yscale, y)):
         moduli = np.abs(values[np.isfinite(values) & (values != 0)]) if values is not None else np.zeros(0)
-        if moduli.size and moduli.max() > SPREAD_RATIO * moduli.min():
+        if moduli.size and moduli.max() > MIN_MODULUS_RATIO_FOR_SYMLOG * moduli.min():
             smallest = max(
                 float(np.quantile(moduli, LINEAR_RANGE_QUANTILE)), moduli.max() * LINEAR_RANGE_FRACTION
             )

@@ -32,7 +32,7 @@ CLASS_COLOURS = {
 }
 """Colours of the classes: blue for stable rods, orange for unstable rods. The colours also differ in grey
 prints. Bars of single rods are "not stored" beyond a full list of crossings."""
-STATE_COLOURS = {
+STABLE_STATE_COLOURS = {
     "missing": "white",
     "neither_known": "#F6E3A1",
     "straight": CLASS_COLOURS["oscillatory"],
@@ -89,17 +89,17 @@ class Palette:
 
 CLASS_PALETTE = Palette("class", STABILITY_CLASSES, CLASS_COLOURS)
 """Palette for the stability class of the straight rod."""
-STATE_PALETTE = Palette("stable_states", STABLE_STATES, STATE_COLOURS)
+STABLE_STATE_PALETTE = Palette("stable_states", STABLE_STATES, STABLE_STATE_COLOURS)
 """Palette for the stable states listed in STABLE_STATES."""
 
 
-FURTHER_HOPF = "later"
+HOPF_OF_FURTHER_PAIR = "later"
 """Key in CROSSING_MARKS of a Hopf point at which a further pair of modes of an unstable rod becomes
 unstable."""
 CROSSING_MARKS = {
     "onset": (style.BLUE, "o", rf"onset ${style.TEX_SYMBOLS['F']}_*$"),
     "hopf": (style.VERMILION, "s", rf"Hopf ${style.TEX_SYMBOLS['F']}_{{**}}$"),
-    FURTHER_HOPF: (style.VERMILION, "D", "further Hopf point"),
+    HOPF_OF_FURTHER_PAIR: (style.VERMILION, "D", "further Hopf point"),
     "restabilization": (style.GREEN, "^", "restabilization"),
 }
 """(colour, marker, legend entry) of each kind of crossing that is marked."""
@@ -124,10 +124,10 @@ def draw_class_bars(view: ResultView) -> Figure:
     mark_thresholds_on_bars(axes, view, is_vertical=rod_count > 1)
     largest_force = float(np.nanmax(variables["F_end"]))
     if rod_count == 1:
-        axes.set(xlim=(0, largest_force), ylim=(-0.75, 0.75), yticks=[], xlabel=style.LABELS["F"])
+        axes.set(xlim=(0, largest_force), ylim=(-0.75, 0.75), yticks=[], xlabel=style.AXIS_LABELS["F"])
         axes.spines["left"].set_visible(False)
     else:
-        axes.set(ylim=(0, largest_force), ylabel=style.LABELS["F"])
+        axes.set(ylim=(0, largest_force), ylabel=style.AXIS_LABELS["F"])
         label_point_numbers(axes, view, rod_count)
     style.draw_shared_legend(figure, column_count=2)
     set_heading(figure, view, style.parameter_text(shared_parameters(view)))
@@ -139,7 +139,7 @@ def classes_over_force(view: ResultView, rod: int) -> Iterator[tuple[float, floa
     search. The first interval has the class "monotone"; the last is "not stored" if the file has no room for
     all crossings."""
     names = ("crossing_kind", "crossing_F", "unstable_after")
-    kinds, F, counts = (view.by_point(name)[rod] for name in names)
+    kinds, F, counts = (view.flattened_by_point(name)[rod] for name in names)
     largest_force = float(view.variables["F_end"].ravel()[rod])
     crossing_count = int(view.variables["crossing_count"].ravel()[rod])
     start = 0.0
@@ -157,7 +157,7 @@ def classes_over_force(view: ResultView, rod: int) -> Iterator[tuple[float, floa
 def draw_class_bar(axes: Axes, view: ResultView, rod: int, is_vertical: bool) -> None:
     """Draws the bar along F of the rod with the index `rod`, coloured by stability class."""
     intervals = list(classes_over_force(view, rod))
-    undecided_from, undecided_to = (view.by_point(name)[rod] for name in ("open_from", "open_to"))
+    undecided_from, undecided_to = (view.flattened_by_point(name)[rod] for name in ("open_from", "open_to"))
     if np.isfinite(undecided_from):
         intervals.append((float(undecided_from), float(undecided_to), "undecided"))
     for start, end, word in intervals:
@@ -175,10 +175,12 @@ def mark_thresholds_on_bars(
 
     unit: unit of the loads in legend entries; empty for F. factor: load at F = 1, in this unit.
     """
-    kinds, F, counts = map(view.by_point, ("crossing_kind", "crossing_F", "unstable_after"))
+    kinds, F, counts = map(view.flattened_by_point, ("crossing_kind", "crossing_F", "unstable_after"))
     is_hopf = kinds == CROSSING_KINDS.index("hopf")
-    masks = {kind: kinds == CROSSING_KINDS.index(kind) for kind in CROSSING_MARKS if kind != FURTHER_HOPF}
-    masks |= {"hopf": is_hopf & (counts <= 2), FURTHER_HOPF: is_hopf & (counts > 2)}
+    masks = {
+        kind: kinds == CROSSING_KINDS.index(kind) for kind in CROSSING_MARKS if kind != HOPF_OF_FURTHER_PAIR
+    }
+    masks |= {"hopf": is_hopf & (counts <= 2), HOPF_OF_FURTHER_PAIR: is_hopf & (counts > 2)}
     look: dict[str, Any] = {"mec": "white", "mew": 0.6, "ms": 6, "clip_on": False}
     for kind, (colour, marker, word) in CROSSING_MARKS.items():
         rods, crossing_indices = np.nonzero(masks[kind])
@@ -186,7 +188,7 @@ def mark_thresholds_on_bars(
             continue
         force = F[rods, crossing_indices]
         x, y = (rods + 1, force) if is_vertical else (force, rods)
-        name = plural(word) if kind == FURTHER_HOPF and rods.size > 1 else word
+        name = plural(word) if kind == HOPF_OF_FURTHER_PAIR and rods.size > 1 else word
         if unit:
             name = name.partition(" $")[0]
         loads_text = ", ".join(f"{factor * force_value:#.{THRESHOLD_DIGITS}g}" for force_value in force)

@@ -9,14 +9,14 @@ from matplotlib.transforms import Bbox
 from numpy.typing import NDArray
 
 from ....arrays import Array
-from ....model.parameters import NON_OPTIONAL_LINEAR_PARAMETERS
+from ....model.parameters import NON_OPTIONAL_LINEAR_PARAMETER_NAMES
 from ....results.file.view import ResultView
 from ....results.layouts.branch import SPECIAL_KINDS
-from ...plane_curves import PlaneParameters, curve_paths
+from ...plane_curves import PlaneParameters, points_by_curve
 from ..style import GREEN, TEX_SYMBOLS, number_in_tex
 from .regions import DrawnPlane
 
-CURVE_LOOKS = {
+BOUNDARY_CURVE_LOOKS = {
     1: (rf"Hopf points (first: ${TEX_SYMBOLS['F']}_{{**}}$)", 1.4, "-"),
     0: (rf"double eigenvalue (first: ${TEX_SYMBOLS['F']}_*$)", 1.0, "--"),
 }
@@ -31,7 +31,7 @@ DOUBLE_EIGENVALUE_LOOK = ("double eigenvalue", 1.0, ":")
 """(legend entry, width, style) of double eigenvalues in figures whose dashed curves are subcritical."""
 CYCLE_CURVE_STYLES = {"fold": ("folds of cycles", "#9B1B30"), "torus": ("torus points of cycles", GREEN)}
 """(legend entry, colour) of curves of special points of cycles, by kind."""
-CYCLE_MARKS = {
+SPECIAL_POINT_MARKS_ON_ROWS = {
     "fold": ("folds of cycles, on no curve", "s"),
     "torus": ("torus points of cycles, on no curve", "D"),
     "symmetry_breaking": ("symmetry breakings of cycles", "^"),
@@ -46,24 +46,24 @@ most this number."""
 def draw_boundary_curves(axes: Axes, view: ResultView, parameters: PlaneParameters, hopf_only: bool) -> None:
     """Draws boundary curves, generalised Hopf points and folds; if `hopf_only`, only Hopf curves with their
     generalised Hopf points."""
-    looks = CURVE_LOOKS
+    looks = BOUNDARY_CURVE_LOOKS
     if "curve_criticality" in view.variables:
         _draw_hopf_curves_by_criticality(axes, view, parameters)
         looks = {0: DOUBLE_EIGENVALUE_LOOK}
     for kind, (label, width, style) in looks.items():
         if kind == 1 or not hopf_only:
-            for path in curve_paths(view, parameters, "curve", kind).values():
+            for path in points_by_curve(view, parameters, "curve", kind).values():
                 axes.plot(*path.T, style, color="k", lw=width, label=label)
     if not hopf_only:
         _mark_curve_folds(axes, view, parameters)
-        _mark_partial_beam(axes, view, parameters)
+        _mark_partial_beam_fold(axes, view, parameters)
 
 
 def _draw_hopf_curves_by_criticality(axes: Axes, view: ResultView, parameters: PlaneParameters) -> None:
     """Draws Hopf curves with line styles by criticality, generalised Hopf points, and curves of these."""
     variables = view.variables
     for curve in np.unique(variables["curve_number"][variables["curve_kind"] == 1]):
-        for criticality, points in parts_of_equal_criticality(view, int(curve), parameters):
+        for criticality, points in hopf_curve_parts_by_criticality(view, int(curve), parameters):
             label, width, style = CRITICALITY_LOOKS[criticality]
             axes.plot(*points.T, style, color="k", lw=width, label=label)
     line_symbol, row_symbol = (TEX_SYMBOLS[name] for name in parameters)
@@ -77,7 +77,7 @@ def _draw_hopf_curves_by_criticality(axes: Axes, view: ResultView, parameters: P
 def _draw_bautin_curves(axes: Axes, view: ResultView, parameters: PlaneParameters) -> None:
     """Draws curves of generalised Hopf points over a third parameter."""
     variables = view.variables
-    candidates = [name for name in NON_OPTIONAL_LINEAR_PARAMETERS if name not in parameters]
+    candidates = [name for name in NON_OPTIONAL_LINEAR_PARAMETER_NAMES if name not in parameters]
     third = next(name for name in candidates if f"bautin_along_{name}" in variables)
     numbers = variables["bautin_along_curve"]
     for number in np.unique(numbers):
@@ -87,7 +87,7 @@ def _draw_bautin_curves(axes: Axes, view: ResultView, parameters: PlaneParameter
         axes.plot(x, y, "-.", color="tab:red", lw=1.2, label=label)
 
 
-def parts_of_equal_criticality(
+def hopf_curve_parts_by_criticality(
     view: ResultView, curve: int, parameters: PlaneParameters
 ) -> list[tuple[int, Array]]:
     """(sign of Re c, points, (n, 2)) of parts of a Hopf curve between generalised Hopf points."""
@@ -119,14 +119,14 @@ def _mark_curve_folds(axes: Axes, view: ResultView, parameters: PlaneParameters)
         axes.plot(x, y, "ko", ms=4, label=label)
 
 
-def _mark_partial_beam(axes: Axes, view: ResultView, parameters: PlaneParameters) -> None:
+def _mark_partial_beam_fold(axes: Axes, view: ResultView, parameters: PlaneParameters) -> None:
     """Marks the fold in the partial beam limit, if it lies in the plane."""
     if "partial_beam_k1" not in view.variables:
         return
     F, k1 = float(view.variables["partial_beam_F"]), float(view.variables["partial_beam_k1"])
     x, y = (F if name == "F" else k1 for name in parameters)
-    line = view.variables[parameters.line]
-    rows = view.parameter_values[parameters.row]
+    line = view.variables[parameters.line_parameter]
+    rows = view.parameter_values[parameters.row_parameter]
     if line[0] <= x <= line[-1] and rows[0] <= y <= rows[-1]:
         label = rf"partial beam $2F_c = {F:.6g}$, $4F_c = {k1:.6g}$"
         axes.plot(x, y, "+", color="k", ls="", ms=10, mew=1.2, label=label)
@@ -135,16 +135,18 @@ def _mark_partial_beam(axes: Axes, view: ResultView, parameters: PlaneParameters
 def draw_cycle_curves(axes: Axes, view: ResultView, parameters: PlaneParameters) -> None:
     """Draws curves of folds and torus points of cycles, below marks and Hopf curves."""
     for kind, (label, colour) in CYCLE_CURVE_STYLES.items():
-        for path in curve_paths(view, parameters, "cycle_curve", SPECIAL_KINDS.index(kind)).values():
+        for path in points_by_curve(view, parameters, "cycle_curve", SPECIAL_KINDS.index(kind)).values():
             axes.plot(*path.T, color=colour, lw=1.8, zorder=1.9, label=label)
 
 
-def mark_cycles_on_rows(axes: Axes, view: ResultView, parameters: PlaneParameters) -> None:
+def mark_special_points_on_rows(axes: Axes, view: ResultView, parameters: PlaneParameters) -> None:
     """Marks the special points of cycles on rows that lie on no curve."""
-    row_values = view.point_columns[parameters.row]
-    kinds, positions = (view.by_point(f"cycle_special_{name}") for name in ("kind", parameters.line))
+    row_values = view.point_columns[parameters.row_parameter]
+    kinds, positions = (
+        view.flattened_by_point(f"cycle_special_{name}") for name in ("kind", parameters.line_parameter)
+    )
     look: dict[str, Any] = {"color": "k", "mfc": "white", "ms": 3.5, "mew": 0.8}
-    for kind, (label, marker) in CYCLE_MARKS.items():
+    for kind, (label, marker) in SPECIAL_POINT_MARKS_ON_ROWS.items():
         code = SPECIAL_KINDS.index(kind)
         rows, items = np.nonzero(kinds == code)
         points = np.column_stack([positions[rows, items], row_values[rows]])
@@ -160,11 +162,11 @@ def _is_on_curve(
     is_near = np.zeros(len(points), dtype=bool)
     if "cycle_curve_number" not in view.variables:
         return is_near
-    rows = view.point_columns[parameters.row]
-    plane = DrawnPlane(view.variables[parameters.line], rows[np.isfinite(rows)])
+    rows = view.point_columns[parameters.row_parameter]
+    plane = DrawnPlane(view.variables[parameters.line_parameter], rows[np.isfinite(rows)])
     centres = plane.fractions_of_axes(*points.T)
     boxes = [Bbox([centre - CURVE_TOLERANCE, centre + CURVE_TOLERANCE]) for centre in centres]
-    for path in curve_paths(view, parameters, "cycle_curve", kind).values():
+    for path in points_by_curve(view, parameters, "cycle_curve", kind).values():
         curve = CurvePath(plane.fractions_of_axes(*path.T))
         is_near |= [curve.intersects_bbox(box, filled=False) for box in boxes]
     return is_near

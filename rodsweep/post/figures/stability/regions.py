@@ -15,9 +15,9 @@ from ..style import is_logarithmic
 PIXEL_COUNT = 900
 """Number of pixels along each axis. In a figure of 183 mm width a pixel measures 0.2 mm, half the width of
 the line that is drawn over a boundary."""
-CURVE_PIXEL_WIDTH = 2
+CURVE_WIDTH_IN_PIXELS = 2
 """Width, in pixels, of the line that is drawn over a boundary."""
-CURVE_STEP = 0.4
+CURVE_POINT_DISTANCE_IN_PIXELS = 0.4
 """Distance, in pixels, between points of a boundary; with a distance below 1 the boundary has no gap."""
 
 
@@ -41,7 +41,7 @@ class DrawnPlane:
         return np.column_stack(columns)
 
     @staticmethod
-    def positions(axis: Array, fractions: Array) -> Array:
+    def coordinates_at_fractions(axis: Array, fractions: Array) -> Array:
         """Coordinates, (n,), at fractions, (n,), of the axis with the values `axis`."""
         if is_logarithmic(axis):
             return np.asarray(axis[0] * (axis[-1] / axis[0]) ** fractions)
@@ -50,7 +50,7 @@ class DrawnPlane:
     @classmethod
     def pixel_centres(cls, axis: Array) -> Array:
         """Coordinates of the centres of pixels along the axis with the values `axis`, (PIXEL_COUNT,)."""
-        return cls.positions(axis, (np.arange(PIXEL_COUNT) + 0.5) / PIXEL_COUNT)
+        return cls.coordinates_at_fractions(axis, (np.arange(PIXEL_COUNT) + 0.5) / PIXEL_COUNT)
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +60,7 @@ class ClassifiedPoints:
     coordinates: Array
     classes: NDArray[Any]
 
-    def with_regions(self, regions: NDArray[Any]) -> tuple["ClassifiedPoints", NDArray[Any]]:
+    def points_and_regions_inside(self, regions: NDArray[Any]) -> tuple["ClassifiedPoints", NDArray[Any]]:
         """Returns (points inside the plane, number of the region of each of these points). regions: number of
         the region of each pixel, (PIXEL_COUNT, PIXEL_COUNT)."""
         is_inside = ((self.coordinates >= 0) & (self.coordinates <= 1)).all(axis=1)
@@ -87,13 +87,17 @@ def pixel_classes(
         row, column = _pixels_of_points(_dense_curve_points(curve)).T
         walls[row, column] = True
     regions, count = scipy.ndimage.label(~walls)
-    computed_points, computed_regions = computed.with_regions(regions)
-    sources = [(computed_points, computed_regions), row_points.with_regions(regions), (computed_points, None)]
+    computed_points, computed_regions = computed.points_and_regions_inside(regions)
+    sources = [
+        (computed_points, computed_regions),
+        row_points.points_and_regions_inside(regions),
+        (computed_points, None),
+    ]
     table = np.full((PIXEL_COUNT, PIXEL_COUNT), undecided, computed.classes.dtype)
     distance_to_wall = scipy.ndimage.distance_transform_edt(~walls) if walls.any() else None
     for region in range(1, count + 1):
         pixels = np.nonzero(regions == region)
-        is_visible = distance_to_wall is None or distance_to_wall[pixels].max() > CURVE_PIXEL_WIDTH
+        is_visible = distance_to_wall is None or distance_to_wall[pixels].max() > CURVE_WIDTH_IN_PIXELS
         for source, of_region in sources:
             if of_region is None and is_visible:
                 break
@@ -136,7 +140,9 @@ def _dense_curve_points(curve: Array) -> Array:
     point_parts = [curve[:1]]
     for i in np.flatnonzero(entry <= exit_):
         inner_fraction = exit_[i] - entry[i]
-        count = int(inner_fraction * np.abs(steps[i]).max() * PIXEL_COUNT / CURVE_STEP) + 1
+        count = (
+            int(inner_fraction * np.abs(steps[i]).max() * PIXEL_COUNT / CURVE_POINT_DISTANCE_IN_PIXELS) + 1
+        )
         point_parts.append(curve[i] + steps[i] * np.linspace(entry[i], exit_[i], count + 1)[:, None])
     points = np.concatenate(point_parts)
     return points[((points > -half_pixel) & (points < 1 + half_pixel)).all(axis=1)]

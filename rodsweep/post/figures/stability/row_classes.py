@@ -11,7 +11,7 @@ from ....model.material.rod_material import RodMaterial
 from ....results.file.view import ResultView
 from ....results.layouts.phase_diagram import STABILITY_CLASSES, STABLE_STATES
 from ....results.layouts.thresholds import CROSSING_KINDS, HOPF_CROSSING_CODES
-from ....results.layouts.variables import flag_number
+from ....results.layouts.variables import stored_number_of_word
 from ...crushing import material_of_rods
 from ...plane_curves import PlaneParameters
 
@@ -19,10 +19,10 @@ CLASS_WORDS = {"class": STABILITY_CLASSES, "stable_states": STABLE_STATES}
 """(code, word) of the values of the variables `class` and `stable_states`, by variable."""
 ONSET_CODE = CROSSING_KINDS.index("onset")
 """Code of an onset of oscillations."""
-MIN_DISTANCE_FROM_CHANGE = 1e-9
+MIN_DISTANCE_FROM_CLASS_CHANGE = 1e-9
 """A point closer to a change of class than this relative distance is not used, because its class is
 uncertain."""
-STABLE_CLASS_ABOVE = {
+STABLE_CLASS_ABOVE_CROSSING = {
     "onset": "oscillatory",
     "restabilization": "oscillatory",
     "real_again": "monotone",
@@ -43,15 +43,15 @@ def classes_between_crossings(
     last part only if all crossings are stored. Rows at infinity are left out.
     """
     names = ("crossing_kind", "unstable_after", "crossing_at", "crossing_count", "open_from")
-    kinds, unstable_counts, positions, counts, undecided_from = map(view.by_point, names)
-    values = view.point_columns[parameters.row]
+    kinds, unstable_counts, positions, counts, undecided_from = map(view.flattened_by_point, names)
+    values = view.point_columns[parameters.row_parameter]
     material = material_of_rods(view)
     rows: list[tuple[float, float, int]] = []
     for index in np.flatnonzero(np.isfinite(values)):
         stored_indices = np.flatnonzero(kinds[index] > 0)
         if not len(stored_indices):
             continue
-        low, high = _uncrushed_row(view, material, parameters, int(index))
+        low, high = _uncrushed_range_of_row(view, material, parameters, int(index))
         ends = [low, *list_of(positions[index, stored_indices]), high]
         crossings = [(int(kinds[index, i]), int(unstable_counts[index, i])) for i in stored_indices]
         curve_words = ["monotone" if crossings[0] == (ONSET_CODE, 0) else ""]
@@ -60,24 +60,26 @@ def classes_between_crossings(
             curve_words[-1] = ""
         for word, (start, end) in zip(curve_words, pairwise(ends), strict=True):
             if word and start < end:
-                rows.append(((start + end) / 2, float(values[index]), flag_number(word, STABILITY_CLASSES)))
+                rows.append(
+                    ((start + end) / 2, float(values[index]), stored_number_of_word(word, STABILITY_CLASSES))
+                )
     x, y, classes = np.array(rows, dtype=float).reshape(-1, 3).T
     return x, y, classes.astype(np.intp)
 
 
-def _uncrushed_row(
+def _uncrushed_range_of_row(
     view: ResultView, material: RodMaterial, parameters: PlaneParameters, index: int
 ) -> tuple[float, float]:
     """First and last value on a row at which the force does not crush the rod."""
     rod = {name: float(column[index]) for name, column in view.point_columns.items()}
-    row_start, row_end = list_of(view.variables[parameters.line][[0, -1]])
-    return uncrushed_interval(material, rod, (parameters.line, row_start, row_end))
+    row_start, row_end = list_of(view.variables[parameters.line_parameter][[0, -1]])
+    return uncrushed_interval(material, rod, (parameters.line_parameter, row_start, row_end))
 
 
 def class_above_crossing(kind: int, unstable: int) -> str:
     """Class of a rod at F just above a crossing. unstable: number of unstable modes above the crossing; -1 if
     unknown."""
-    stable = STABLE_CLASS_ABOVE.get(CROSSING_KINDS[kind], "undecided")
+    stable = STABLE_CLASS_ABOVE_CROSSING.get(CROSSING_KINDS[kind], "undecided")
     if unstable > 0:
         return "flutter"
     return stable if unstable == 0 else "undecided"
@@ -92,19 +94,23 @@ def pixel_classes_of_row(
     A pixel has the class of the nearest computed point between the same two changes of class; "undecided" if
     there is no such point.
     """
-    x = view.variables[parameters.line]
-    classes = view.by_point(variable)[index]
+    x = view.variables[parameters.line_parameter]
+    classes = view.flattened_by_point(variable)[index]
     changes = _class_changes(view, variable, parameters, index)
     if variable == "class":
         positions, rows, classified = classes_between_crossings(view, parameters)
-        is_in_row = rows == view.parameter_values[parameters.row][index]
+        is_in_row = rows == view.parameter_values[parameters.row_parameter][index]
         x = np.append(x, positions[is_in_row])
         classes = np.append(classes, classified[is_in_row])
-    decided = np.abs(x[:, None] - changes).min(axis=1, initial=np.inf) > MIN_DISTANCE_FROM_CHANGE * np.abs(x)
+    decided = np.abs(x[:, None] - changes).min(
+        axis=1, initial=np.inf
+    ) > MIN_DISTANCE_FROM_CLASS_CHANGE * np.abs(x)
     pixels = (pixel_edges[1:] + pixel_edges[:-1]) / 2
     piece_of_pixels = np.searchsorted(changes, pixels)
     piece_of_points = np.searchsorted(changes, x)
-    classified = np.full(len(pixels), flag_number("undecided", CLASS_WORDS[variable]), dtype=np.intp)
+    classified = np.full(
+        len(pixels), stored_number_of_word("undecided", CLASS_WORDS[variable]), dtype=np.intp
+    )
     for piece_number in np.unique(piece_of_pixels):
         own_pixels = piece_of_pixels == piece_number
         own_points = decided & (piece_of_points == piece_number)
@@ -117,8 +123,8 @@ def pixel_classes_of_row(
 def _class_changes(view: ResultView, variable: str, parameters: PlaneParameters, index: int) -> Array:
     """Positions of the changes of class along a row, in increasing order, (m,). variable: `class` or
     `stable_states`."""
-    names = ("crossing_at", "crossing_kind", f"cycle_special_{parameters.line}")
-    values_by_name = {name: view.by_point(name)[index] for name in names if name in view.variables}
+    names = ("crossing_at", "crossing_kind", f"cycle_special_{parameters.line_parameter}")
+    values_by_name = {name: view.flattened_by_point(name)[index] for name in names if name in view.variables}
     positions = values_by_name["crossing_at"]
     kinds = values_by_name["crossing_kind"]
     if variable == "class":
@@ -126,9 +132,9 @@ def _class_changes(view: ResultView, variable: str, parameters: PlaneParameters,
     else:
         change_positions = [
             positions[np.isin(kinds, HOPF_CROSSING_CODES)],
-            values_by_name[f"cycle_special_{parameters.line}"],
+            values_by_name[f"cycle_special_{parameters.line_parameter}"],
         ]
-    row_ends = view.variables[parameters.line][[0, -1]]
-    ends = np.array(_uncrushed_row(view, material_of_rods(view), parameters, index))
+    row_ends = view.variables[parameters.line_parameter][[0, -1]]
+    ends = np.array(_uncrushed_range_of_row(view, material_of_rods(view), parameters, index))
     changes = np.concatenate([*change_positions, ends[ends != row_ends]])
     return np.unique(changes[np.isfinite(changes)])

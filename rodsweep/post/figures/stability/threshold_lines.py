@@ -24,11 +24,11 @@ CRITICAL_FORCE_LOOKS = (
 panel has no other colours for its lines."""
 FILE_COLOURS = (*style.LINE_COLOURS[:5], "0.3")
 """Colours of the files in a figure of several files."""
-KIND_LOOK: dict[str, Any] = {"ms": 3, "lw": 1.2}
+THRESHOLD_LINE_LOOK: dict[str, Any] = {"ms": 3, "lw": 1.2}
 """Matplotlib style of all lines of thresholds."""
 LINE_STYLES = ("-", "--", ":")
 """Line styles for the values of the second parameter in one panel."""
-MAX_LINES = 6
+MAX_COLOURED_LINES = 6
 """Largest number of values of the second parameter that have distinguishable colours."""
 DARKEST_SHADE = 0.0
 """Start of the used range of the colour map."""
@@ -54,7 +54,7 @@ def draw_lines_of_grid(view: ResultView, names: list[str], search: str) -> tuple
     style.require_content(view, np.isfinite(x).sum() > 1, f"two finite values of {x_name}")
     if second_name:
         shades = matplotlib.colormaps["viridis"](np.linspace(DARKEST_SHADE, LIGHTEST_SHADE, len(table)))
-        _add_kind_entries(axes, np.concatenate(table, axis=1))
+        _add_threshold_kind_entries(axes, np.concatenate(table, axis=1))
         for value, values, shade in zip(view.parameter_values[second_name], table, shades, strict=True):
             label = f"${style.TEX_SYMBOLS[second_name]} = {style.number_in_tex(float(value))}$"
             _draw_coloured_lines(axes, x, values, shade, label)
@@ -75,7 +75,7 @@ def draw_lines_of_files(views: Sequence[ResultView], x_name: str, search: str) -
     axes = figure.subplots()
     tables = [_first_force_table(view, x_name)[0] for view in views]
     forces = np.concatenate(tables, axis=1)
-    _add_kind_entries(axes, forces)
+    _add_threshold_kind_entries(axes, forces)
     for view, values, colour in zip(views, tables, FILE_COLOURS, strict=False):
         label = style.file_label(view, views)
         _draw_coloured_lines(axes, _abscissa_values(view, x_name), values, colour, label)
@@ -92,7 +92,7 @@ def draw_lines_of_files(views: Sequence[ResultView], x_name: str, search: str) -
     return figure, f"critical forces against {x_name} of {len(views)} files{clause}"
 
 
-def draw_selected_lines(
+def draw_lines_of_three_values(
     view: ResultView, names: list[str], is_narrow: bool, search: str
 ) -> tuple[Figure, str]:
     """Returns (figure, description). As in the paper's Fig. 3, the figure has a panel for each of the two
@@ -103,7 +103,7 @@ def draw_selected_lines(
     panels = figure.subplots(row_count, column_count, sharey=True, squeeze=False).ravel()
     texts = []
     for panel, x_name, second_name in zip(panels, names, reversed(names), strict=True):
-        line_count = _draw_some_lines(panel, view, x_name, second_name)
+        line_count = _draw_lines_of_three_values(panel, view, x_name, second_name)
         texts.append(f"{line_count} of {len(view.parameter_values[second_name])} values of {second_name}")
         if is_narrow or panel is panels[0]:
             panel.set_ylabel(style.CRITICAL_FORCE_LABEL)
@@ -114,7 +114,7 @@ def draw_selected_lines(
     return figure, f"critical forces against {' and '.join(names)}, {lines}{omissions_clause}"
 
 
-def _draw_some_lines(panel: Axes, view: ResultView, x_name: str, second_name: str) -> int:
+def _draw_lines_of_three_values(panel: Axes, view: ResultView, x_name: str, second_name: str) -> int:
     """Draws thresholds against the parameter `x_name` for up to three different values of the parameter
     `second_name`, see `_first_middle_and_last_line`, with a legend of these values above the panel; returns
     the number of values."""
@@ -159,7 +159,9 @@ def _draw_lines_by_kind(axes: Axes, x: Array, values: Array, **look: Any) -> Non
     for forces, (_, label, colour, marker, line_style) in zip(values, CRITICAL_FORCE_LOOKS, strict=True):
         if np.isfinite(forces).any():
             keywords = (
-                KIND_LOOK | {"color": colour, "marker": marker, "ls": line_style, "label": label} | look
+                THRESHOLD_LINE_LOOK
+                | {"color": colour, "marker": marker, "ls": line_style, "label": label}
+                | look
             )
             axes.plot(x[is_finite], forces[is_finite], **keywords)
 
@@ -171,7 +173,7 @@ def _draw_coloured_lines(axes: Axes, x: Array, values: Array, colour: Any, label
     axes.plot([], [], color=colour, lw=2, label=label)
 
 
-def _add_kind_entries(axes: Axes, values: Array) -> None:
+def _add_threshold_kind_entries(axes: Axes, values: Array) -> None:
     """Adds legend entries, in grey, of the kinds of thresholds with a finite force in `values`, (3, n)."""
     _draw_lines_by_kind(axes, np.full(values.shape[1], np.inf), values, color="0.3")
 
@@ -181,7 +183,7 @@ def _label_axes(axes: Axes, view: ResultView, x_name: str, table: Array) -> None
     at 0."""
     x = _abscissa_values(view, x_name)
     style.scale_axis(axes, "x", np.sort(x[np.isfinite(x)]))
-    axes.set_xlabel(style.INVERSE_DRAG_LABEL if x_name == "gamma3" else style.LABELS[x_name])
+    axes.set_xlabel(style.INVERSE_DRAG_LABEL if x_name == "gamma3" else style.AXIS_LABELS[x_name])
     drawn_top = axes.get_ylim()[1] if axes.lines else 0.0
     axes.set_ylim(0, max(float(np.nanmax(table, initial=0.0)) * FORCE_AXIS_MARGIN_FACTOR, drawn_top) or 1.0)
 

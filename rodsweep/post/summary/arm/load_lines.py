@@ -6,14 +6,14 @@ from collections.abc import Mapping
 import numpy as np
 
 from ....model.arm.neglected import COMPRESSION_LIMIT, DOUBTFUL_RATIO
-from ....model.arm.quantities import SCALE_NAMES, UNITS
+from ....model.arm.quantities import LOAD_SCALE_NAMES, UNITS_AND_EXAMPLES
 from ....results.file.view import ResultView
-from ....wording import two_digits
+from ....wording import two_significant_digits
 from ...crushing import material_of_rods
 from ..selection import Selection
-from .arm import range_in_unit, region_of_arms, varied_columns
+from .arm_texts import arm_quantity_ranges_text, range_text_in_printing_unit, varied_arm_quantities
 
-ANSWER_DIGITS = 3
+MAX_ANSWER_DIGITS = 3
 """Largest number of significant digits in an answer; a number with a large error has fewer digits."""
 VERDICTS_BY_COMPRESSION = {
     DOUBTFUL_RATIO: f"is more than {DOUBTFUL_RATIO:g} times its limit, and the model is doubtful",
@@ -28,11 +28,11 @@ def flutter_force_line(arms: Selection) -> list[str]:
 
     Of two arms with tips of different size, the larger flutter pressure may be the smaller force.
     """
-    forces = (arms.variables["F_hopf"] * arms.variables[SCALE_NAMES["force"]])[arms.mask]
+    forces = (arms.variables["F_hopf"] * arms.variables[LOAD_SCALE_NAMES["force"]])[arms.mask]
     if arms.view.load_kind == "force" or not np.isfinite(forces).any():
         return []
     extremes_text = extreme_arms_text(arms, forces, "smallest")
-    text = range_in_unit(arms.view, forces, "N", 0.0, ANSWER_DIGITS)
+    text = range_text_in_printing_unit(arms.view, forces, "N", 0.0, MAX_ANSWER_DIGITS)
     return [f"flutter as a force at the tip: {text}{f', {extremes_text}' if extremes_text else ''}"]
 
 
@@ -44,7 +44,7 @@ def extreme_arms_text(arms: Selection, loads: np.ndarray, smallest: str) -> str:
     indices = np.flatnonzero(arms.mask)
     ends = (indices[np.nanargmin(loads)], indices[np.nanargmax(loads)])
     first_text, last_text = (
-        region_of_arms(Selection(arms.view, np.arange(arms.mask.size) == end)) for end in ends
+        arm_quantity_ranges_text(Selection(arms.view, np.arange(arms.mask.size) == end)) for end in ends
     )
     return "" if first_text == last_text else f"{smallest} at {first_text}; largest at {last_text}"
 
@@ -52,26 +52,28 @@ def extreme_arms_text(arms: Selection, loads: np.ndarray, smallest: str) -> str:
 def drag_lines(arms: Selection, names: Mapping[str, str]) -> list[str]:
     """Line on the variation of variables over the drags of an arm; an empty list if drag does not vary.
     names: variables by printed name."""
-    arm_indices = arm_index_of_points(arms.view)
+    arm_indices = arm_index_apart_from_drag(arms.view)
     if arm_indices is None:
         return []
     up_to = "up to " if len(np.unique(arm_indices)) > 1 else ""
     variations = []
     for word, name in names.items():
         values = np.where(arms.mask, arms.variables[name], np.nan).ravel()
-        ratio = _largest_spread(values, arm_indices)
+        ratio = _largest_ratio_within_arm(values, arm_indices)
         if np.isfinite(ratio):
-            factor_text = f"{two_digits(100 * (ratio - 1))} %" if ratio < 2 else f"a factor of {ratio:.3g}"
+            factor_text = (
+                f"{two_significant_digits(100 * (ratio - 1))} %" if ratio < 2 else f"a factor of {ratio:.3g}"
+            )
             variations.append(f"{word} by {up_to}{factor_text}")
-    drag_count = len(np.unique(varied_columns(arms.view)["drag"]))
+    drag_count = len(np.unique(varied_arm_quantities(arms.view)["drag"]))
     text = f"the results of an arm vary over the {drag_count} drags of its range: {', '.join(variations)}"
     return [text] if variations else []
 
 
-def arm_index_of_points(view: ResultView) -> np.ndarray | None:
+def arm_index_apart_from_drag(view: ResultView) -> np.ndarray | None:
     """Index of the arm at each point, (points,): equal for points that differ only in drag. None if drag does
     not vary."""
-    columns = varied_columns(view)
+    columns = varied_arm_quantities(view)
     if columns.pop("drag", None) is None:
         return None
     point_count = view.variables["status"].size
@@ -79,9 +81,9 @@ def arm_index_of_points(view: ResultView) -> np.ndarray | None:
     return np.unique(table, axis=0, return_inverse=True)[1].ravel()
 
 
-def _largest_spread(values: np.ndarray, arm_indices: np.ndarray) -> float:
+def _largest_ratio_within_arm(values: np.ndarray, arm_indices: np.ndarray) -> float:
     """Maximum, over all arms, of the largest value of an arm divided by the smallest; NaN if no arm has two
-    positive values. arm_indices: index of the arm at each point, as from `arm_index_of_points`."""
+    positive values. arm_indices: index of the arm at each point, as from `arm_index_apart_from_drag`."""
     ratios = []
     for index in np.unique(arm_indices):
         arm_values = values[(arm_indices == index) & np.isfinite(values)]
@@ -107,11 +109,13 @@ def compression_lines(rows: Selection) -> list[str]:
     largest = COMPRESSION_LIMIT * columns["k1"] * material_of_rods(view).relative_crushing_forces(tapers)
     limits = largest[rows.mask.ravel()]
     kind = view.load_kind
-    scale = np.broadcast_to(view.variables[SCALE_NAMES[kind]], rows.mask.shape)[rows.mask]
+    scale = np.broadcast_to(view.variables[LOAD_SCALE_NAMES[kind]], rows.mask.shape)[rows.mask]
     lines = []
     for max_fraction, verdict in VERDICTS_BY_COMPRESSION.items():
         if max_fraction * limits.min() < view.variables["F"].max():
             loads = max_fraction * limits * scale
-            text = range_in_unit(view, loads[np.isfinite(loads)], UNITS[kind][0], 0.0, ANSWER_DIGITS)
+            text = range_text_in_printing_unit(
+                view, loads[np.isfinite(loads)], UNITS_AND_EXAMPLES[kind][0], 0.0, MAX_ANSWER_DIGITS
+            )
             lines.append(f"above {text} compression {verdict}")
     return lines

@@ -7,10 +7,10 @@ import numpy as np
 from ....model.arm.neglected import DOUBTFUL_RATIO, Validity
 from ....results.layouts.si_variables import NEGLECTED_EFFECTS, UNKNOWN_VALIDITY_NUMBER, VALIDITY_VARIABLES
 from ....results.layouts.thresholds import HOPF_CROSSING_CODES
-from ....wording import count_of_total, counted, two_digits
+from ....wording import count_of_total, counted, two_significant_digits
 from ..selection import Selection
 
-OTHER_PLANE_WARNING = (
+OTHER_BENDING_PLANE_WARNING = (
     "the motion is in the plane of the height; where the height exceeds the width, the arm flutters first in "
     "the other plane, at a lower load: exchange width and height to compute this flutter"
 )
@@ -23,14 +23,14 @@ UNKNOWN_VALIDITY_REASON = (
 """Reason why it is not known whether the model applies."""
 
 
-def plane_lines(quantities: Mapping[str, np.ndarray]) -> list[str]:
-    """List with the warning OTHER_PLANE_WARNING if some arm is higher than wide, and flutters first in the
-    plane that is not computed; else an empty list.
+def bending_plane_warning(quantities: Mapping[str, np.ndarray]) -> list[str]:
+    """List with the warning OTHER_BENDING_PLANE_WARNING if some arm is higher than wide, and flutters first
+    in the plane that is not computed; else an empty list.
 
     quantities: quantities of the arm in SI units, by name, () or (n,).
     """
     height, width = (np.asarray(quantities.get(name, np.nan)) for name in ("height", "width"))
-    return [OTHER_PLANE_WARNING] if np.max(height) > np.min(width) else []
+    return [OTHER_BENDING_PLANE_WARNING] if np.max(height) > np.min(width) else []
 
 
 def validity_caveat(variables: Mapping[str, np.ndarray]) -> str:
@@ -67,7 +67,7 @@ def validity_sentence(validity: Mapping[str, np.ndarray], condition: str = "", n
     verdict_text = "does not apply" if worst_validity == Validity.does_not_apply else "is doubtful"
     index = int(np.flatnonzero(is_affected)[np.argmax(excesses[is_affected])])
     name = NEGLECTED_EFFECTS[int(effects[index])].replace("_", " ")
-    size_text = f"{'up to ' * int(is_affected.sum() > 1)}{two_digits(excesses[index])}"
+    size_text = f"{'up to ' * int(is_affected.sum() > 1)}{two_significant_digits(excesses[index])}"
     limit_text = f", more than {DOUBTFUL_RATIO:g}" if worst_validity == Validity.doubtful else ""
     return (
         f"the model {verdict_text}{place_text}{condition}: {name} is {size_text} times its "

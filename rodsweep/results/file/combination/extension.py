@@ -25,7 +25,7 @@ from ...layouts.variables import ExtensionRule, Layout
 from ..creation import FilePlan
 from ..points import stored_records
 from ..validation import ResultHeader
-from .identity import compared_settings, config_difference
+from .config_comparison import compared_settings, config_difference
 
 ROUNDING_TOLERANCE = 4 * np.finfo(float).eps
 """Two values on an axis with at most this relative difference are treated as equal up to rounding."""
@@ -37,19 +37,19 @@ Indices = NDArray[np.int64]
 class StoredPointMap:
     """Map from stored points to new points: by the positions on each axis of a grid, or in a list."""
 
-    shape: tuple[int, ...]
+    stored_shape: tuple[int, ...]
     """Shape of the stored grid or list."""
     new_shape: tuple[int, ...]
     """Shape of the new grid or list."""
-    axis_positions: tuple[Indices, ...]
+    new_axis_positions: tuple[Indices, ...]
     """For each axis, the position of every stored value on the new axis, (n,); -1 if the points with this
     value are computed again."""
 
     def __call__(self, index: Indices) -> Indices:
         """New flat indices of the points with the stored flat indices `index`, (n,); -1 for a point that is
         computed again."""
-        old_places = np.unravel_index(index, self.shape)
-        places = [positions[i] for positions, i in zip(self.axis_positions, old_places, strict=True)]
+        old_places = np.unravel_index(index, self.stored_shape)
+        places = [positions[i] for positions, i in zip(self.new_axis_positions, old_places, strict=True)]
         is_kept = np.min(places, axis=0) >= 0
         # Positions of -1 are replaced only to keep the conversion valid.
         new_index = np.ravel_multi_index([np.maximum(positions, 0) for positions in places], self.new_shape)
@@ -81,7 +81,7 @@ class Extension:
             index = self.point_map(records["index"])
             is_kept = index >= 0
             for option, old_value in self.increased_options:
-                is_kept &= option.has_data(records, old_value)
+                is_kept &= option.has_additional_data(records, old_value)
             if is_kept.any():
                 yield self._records_in_new_layout(records[is_kept], index[is_kept])
 
@@ -92,7 +92,7 @@ class Extension:
         converted["index"] = index
         for variable in self.new_layout.variables:
             target = converted[variable.name]
-            target[...] = variable.fill
+            target[...] = variable.fill_value
             if variable.name in (records.dtype.names or ()):
                 values = records[variable.name]
                 common_part = tuple(map(slice, np.minimum(values.shape, target.shape)))
@@ -173,7 +173,7 @@ def _stored_point_map(header: ResultHeader, old: Points, plan: FilePlan) -> Stor
         axis = plan.groups.axis
         old_groups = groups_along_longest_axis(old.shape, old.varied_parameter_by_axis)
         is_same_axis = old_groups is not None and old_groups.axis == axis
-        is_kept = is_same_axis & _is_stretch_unchanged(positions[axis], new_points.shape[axis])
+        is_kept = is_same_axis & _is_group_unchanged(positions[axis], new_points.shape[axis])
         positions[axis] = np.where(is_kept, positions[axis], -1)
     return StoredPointMap(old.shape, new_points.shape, tuple(positions))
 
@@ -204,7 +204,7 @@ def _positions_before_first_change(positions: Indices, new_length: int, upward: 
     return np.where(is_kept if upward else is_kept[::-1], positions, -1)
 
 
-def _is_stretch_unchanged(positions: Indices, new_length: int) -> NDArray[np.bool_]:
+def _is_group_unchanged(positions: Indices, new_length: int) -> NDArray[np.bool_]:
     """Whether the group of each old value, (n,), is unchanged on the new axis. positions: new position of
     each old value, (n,). new_length: number of values on the new axis."""
     indices = np.arange(len(positions))
@@ -223,6 +223,6 @@ def _positions_in_list(header: ResultHeader, old: Points, new: Points) -> Indice
         index_by_row.setdefault(row.tobytes(), i)
     positions = np.array([index_by_row.get(row.tobytes(), -1) for row in rows[1]], dtype=np.int64)
     if (positions < 0).any():
-        point_text = old.text(int(np.argmax(positions < 0)))
+        point_text = old.parameter_text(int(np.argmax(positions < 0)))
         _refuse_difference(header, f"the point {point_text} is in the file and not in the list")
     return positions

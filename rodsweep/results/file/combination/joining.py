@@ -25,8 +25,8 @@ from ..creation import FilePlan
 from ..points import points_of_file, records_at, stored_records, write_records
 from ..provenance import MAX_ATTRIBUTE_LENGTH, blas_kernels_in
 from ..validation import ResultHeader
+from .config_comparison import compared_settings, config_difference
 from .extension import ROUNDING_TOLERANCE, StoredPointMap, points_description
-from .identity import compared_settings, config_difference
 
 NOT_INHERITED_ATTRIBUTES = (
     "program", "format", "fingerprint", "config_resolved", "coordinates", "finished", "snapshot",
@@ -82,7 +82,7 @@ class JoinedFile:
                 index = int(records["index"][i])
                 pair = (self.sources[owner[index]], self.sources[number])
                 if not self._is_rounding_error(name, stored_records[i][name], records[i][name], pair):
-                    text = self.plan.points.text(index)
+                    text = self.plan.points.parameter_text(index)
                     paths = " and ".join(str(source.path) for source in pair)
                     raise InputError(
                         f"{paths} disagree about the point {text}: the values of {name} differ; repeat one "
@@ -161,7 +161,7 @@ def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]
     if not covered.all():
         raise InputError(
             f"together the files do not form a full grid: {np.count_nonzero(~covered)} of {covered.size} "
-            f"points are in no file, the first at {union.text(int(np.argmin(covered)))}; compute "
+            f"points are in no file, the first at {union.parameter_text(int(np.argmin(covered)))}; compute "
             "these points into a separate file, or merge fewer files"
         )
     return union, maps
@@ -242,4 +242,4 @@ def _with_attributes(plan: FilePlan, header: ResultHeader, config: Config) -> Fi
     inherited = {
         name: value for name, value in header.attributes.items() if name not in NOT_INHERITED_ATTRIBUTES
     }
-    return replace(plan, attributes=inherited | {"config": text}, flags=flags)
+    return replace(plan, attributes=inherited | {"config": text}, status_flags=flags)

@@ -17,18 +17,21 @@ from ...run.journal import JOURNAL_GLOB, journal_directory
 from ..creation import FilePlan, add_variables, create_file
 from ..points import missing_ranges, points_of_file, records_to_add, write_records
 from ..provenance import KERNELS_ATTRIBUTE, merged_history, several_kernels_warning, utc_time
-from ..replacement import FileReplacement, disk_refusals
+from ..replacement import FileReplacement, disk_errors_as_refusals
 from ..validation import ResultHeader, read_header
 from .joining import FilePlanMaker, JoinedFile, joined_file_of
 
 
 @dataclass(frozen=True, slots=True)
 class MergeResult:
-    """Outcome of a merge: numbers of computed and of missing points, whether the file is finished."""
+    """Outcome of a merge."""
 
-    point_count: int
-    missing_count: int
+    computed_point_count: int
+    """Number of computed points in the merged file."""
+    missing_point_count: int
+    """Number of points that are in none of the merged files."""
     is_finished: bool
+    """Whether the merged file is finished: no point is missing."""
     kernel_warning: str
     """Warning about the BLAS kernels that computed the points; empty for a single kernel."""
 
@@ -44,10 +47,10 @@ def merge(output: Path, paths: Sequence[Path], planner: FilePlanMaker) -> MergeR
     EnvironmentIncomplete if the disk fails.
     """
     sources = _read_headers(paths)
-    with disk_refusals(output):
+    with disk_errors_as_refusals(output):
         replacement = FileReplacement(output)
     try:
-        with disk_refusals(output, lambda: "; the shards are untouched"):
+        with disk_errors_as_refusals(output, lambda: "; the shards are untouched"):
             if output.exists():  # the file may have appeared while another run held the lock
                 other_paths = [path for path in paths if not os.path.samefile(output, path)]
                 sources = _read_headers([output, *other_paths])
@@ -64,7 +67,7 @@ def _merge(
     """Replaces the output by a copy of the first source with the points of all other sources added."""
     layout = sources[0].layout
     plan = planner(config_from_resolved(sources[0].config), points_of_file(sources[0].path, layout))
-    with replacement.replacing(sources[0].path) as copy:
+    with replacement.writing_new_file(sources[0].path) as copy:
         used = [sources[0]]
         for source in sources[1:]:
             if write_records(copy, records_to_add(copy, source.path, layout), layout):
@@ -74,7 +77,7 @@ def _merge(
 
 def _write_joined_file(replacement: FileReplacement, joined: JoinedFile) -> MergeResult:
     """Replaces the output by the planned joined file and writes the points of all sources into it."""
-    with replacement.replacing(None) as copy:
+    with replacement.writing_new_file(None) as copy:
         create_file(copy, joined.plan)
         used = joined.write(copy)
         return _write_provenance_and_finish(copy, joined.plan, used or joined.sources[:1])
@@ -84,7 +87,7 @@ def _write_provenance_and_finish(copy: Path, plan: FilePlan, used: Sequence[Resu
     """Writes the provenance of the points into the merged file, and finishes the file if no point is missing;
     returns the outcome of the merge. used: sources of the stored points."""
     missing_indices = missing_ranges(copy)
-    finished = not missing_indices and not plan.layout.has_variables_of_all_points
+    finished = not missing_indices and not plan.layout.has_sweep_wide_variables
     history = merged_history([source.attributes for source in used])
     with h5py.File(copy, "r+") as file:
         if finished and "finished" not in file.attrs:
@@ -113,7 +116,7 @@ def _has_same_fingerprint(header: ResultHeader, other: ResultHeader) -> bool:
     """Whether two files have the same fingerprint; raises InputError if only the layouts differ."""
     if header.fingerprint != other.fingerprint:
         return False
-    if (header.layout.record_dtype, header.points) != (other.layout.record_dtype, other.points):
+    if (header.layout.record_dtype, header.point_count) != (other.layout.record_dtype, other.point_count):
         raise InputError(
             f"{other.path} was written by another version of rodsweep than {header.path}; repeat the run of "
             "one file with the version of the other"

@@ -17,19 +17,19 @@ from ...orbit.newton import ORBIT_NEWTON_SETTINGS, ConvergedOrbit, relative_chan
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh
 from ...unsolvable import Unsolvable
-from .corrected_linearisation import CORRECTION_SETTINGS, corrected_linearisation
+from .corrected_linearisation import LINEARISATION_CORRECTION_SETTINGS, corrected_linearisation
 from .matrix import BorderedMatrix
 from .scale import ArcLengthScale
 
 
 @dataclass(frozen=True, eq=False)
 class BorderCondition:
-    """Equation that closes the bordered system of an orbit: `border` . `scale.components(orbit)` = `value`.
-    border: row vector, (3,)."""
+    """Equation that closes the bordered system of an orbit: `border` . `scale.components(orbit)` =
+    `target_value`. border: row vector, (3,)."""
 
     scale: ArcLengthScale
     border: Array
-    value: float
+    target_value: float
 
     @classmethod
     def at_arc_length(
@@ -40,8 +40,9 @@ class BorderCondition:
         return cls(scale, border, float(border @ scale.components(orbit)) + length)
 
     def residual(self, orbit: Orbit) -> float:
-        """Residual of the condition at an orbit: `value` minus `border` . `scale.components(orbit)`."""
-        return self.value - float(self.border @ self.scale.components(orbit))
+        """Residual of the condition at an orbit: `target_value` minus `border` .
+        `scale.components(orbit)`."""
+        return self.target_value - float(self.border @ self.scale.components(orbit))
 
     def solve_cycle(
         self,
@@ -59,56 +60,58 @@ class BorderCondition:
         last matrix of the workspace, assembled near `orbit`, with which the iteration begins, or None.
         """
         matrix = nearby or BorderedMatrix(orbit, self.scale, workspace)
-        matrix_distance = matrix.distance_of(orbit) if nearby else 0.0
+        distance_from_matrix_orbit = matrix.relative_distance_to_orbit(orbit) if nearby else 0.0
         previous_change = np.inf
-        step = self._step(matrix, orbit)
+        step = self._newton_step(matrix, orbit)
         for _ in range(ORBIT_NEWTON_SETTINGS.max_iterations):
             report()
             change = self.relative_change_within_limit(orbit, step)
             orbit = moved_orbit(orbit, self.scale.parameter_name, step)
-            matrix_distance = matrix_distance + change
+            distance_from_matrix_orbit = distance_from_matrix_orbit + change
             # There is no rate at the first step with a matrix.
             is_first_step = previous_change == np.inf
             contraction = np.inf if is_first_step else change / previous_change
             # The next step would have the length change * rate; a negligible step is not made.
-            is_contracting = contraction <= ORBIT_NEWTON_SETTINGS.new_matrix_ratio
+            is_contracting = contraction <= ORBIT_NEWTON_SETTINGS.max_step_ratio_with_old_matrix
             is_converged = change <= tolerance or (
                 change * min(contraction, 1.0) <= tolerance and is_contracting
             )
             if is_converged:
-                solved = self._with_matrix_error(orbit, matrix, matrix_distance, max_matrix_distance)
+                solved = self._with_accurate_linearisation(
+                    orbit, matrix, distance_from_matrix_orbit, max_matrix_distance
+                )
                 if solved is not None:
                     return solved
             # Tangent and multipliers need a near matrix, so one step more follows even after convergence.
             if is_converged or not (is_first_step or is_contracting):
                 matrix = BorderedMatrix(orbit, self.scale, workspace)
-                matrix_distance = 0.0
+                distance_from_matrix_orbit = 0.0
                 previous_change = np.inf
             else:
                 previous_change = change
-            step = self._step(matrix, orbit)
+            step = self._newton_step(matrix, orbit)
         raise Unsolvable(
             f"Newton's method for the cycle does not converge: its last relative step is {change:.0e}"
         )
 
-    def _step(self, matrix: BorderedMatrix, orbit: Orbit) -> Array:
+    def _newton_step(self, matrix: BorderedMatrix, orbit: Orbit) -> Array:
         """Newton's step at an orbit under this condition, (N + 1,), with `matrix`, assembled at this orbit or
         at a nearby orbit."""
         residual = self.residual(orbit)
         if matrix.orbit is orbit:
-            return matrix.step(self.border, residual)
-        return matrix.correction(orbit, self.border, residual)
+            return matrix.newton_step(self.border, residual)
+        return matrix.newton_step_at_nearby_orbit(orbit, self.border, residual)
 
     def relative_change_within_limit(self, orbit: Orbit, step: Array) -> float:
-        """Relative change of orbit and parameter in Newton's `step`, (N + 1,); raises Unsolvable if this
-        change is too large."""
+        """Relative change of orbit and parameter in Newton's `newton_step`, (N + 1,); raises Unsolvable if
+        this change is too large."""
         change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate_unit)
         # Negated, so that a step of nan ends the search too.
         if not change <= ORBIT_NEWTON_SETTINGS.max_relative_step:
             raise Unsolvable("Newton's method for the cycle finds no cycle of the branch near the prediction")
         return change
 
-    def _with_matrix_error(
+    def _with_accurate_linearisation(
         self, orbit: Orbit, matrix: BorderedMatrix, distance: float, max_error: float
     ) -> ConvergedOrbit | None:
         """The solved `orbit` with tangent and multipliers of a relative error of at most `max_error`: those
@@ -116,10 +119,10 @@ class BorderCondition:
         distance between the orbit and the orbit at which `matrix` was assembled."""
         if distance <= max_error:
             return ConvergedOrbit(orbit, matrix, distance)
-        if distance > CORRECTION_SETTINGS.max_matrix_distance:
+        if distance > LINEARISATION_CORRECTION_SETTINGS.max_distance_from_matrix_orbit:
             return None
         corrected = corrected_linearisation(matrix, orbit, self.border, max_error)
-        return None if corrected is None else ConvergedOrbit(orbit, corrected, corrected.error)
+        return None if corrected is None else ConvergedOrbit(orbit, corrected, corrected.relative_error)
 
     def solve_on_mesh(
         self, mesh: OrbitMesh, solved: ConvergedOrbit, tolerance: float, max_matrix_distance: float = np.inf
@@ -133,7 +136,7 @@ class BorderCondition:
 def require_equal_unknowns(form: StressForm, orbit: Orbit) -> None:
     """Raises Unsolvable if the states of `form` have other unknowns than the states of `orbit`, so that they
     cannot be compared."""
-    if form.unknown_velocities != orbit.form.unknown_velocities:
+    if form.unknown_velocity_components != orbit.form.unknown_velocity_components:
         settings = VELOCITY_ELIMINATION_SETTINGS
         raise Unsolvable(
             "the solver changes its unknowns at a rotational drag of "

@@ -28,52 +28,52 @@ from .matrix import BorderedMatrix
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CorrectionSettings:
+class LinearisationCorrectionSettings:
     """Settings for the correction of tangent and multipliers with the matrix of a nearby orbit."""
 
-    max_matrix_distance: float = 1e-2
+    max_distance_from_matrix_orbit: float = 1e-2
     """Largest relative distance between a cycle and the orbit of the matrix for which a correction is tried;
     at larger distances it rarely converges."""
-    min_multiplier: float = 1e-3
+    min_corrected_multiplier_modulus: float = 1e-3
     """Multipliers over the solved part with smaller moduli are not corrected: the errors of these multipliers
     have no effect on stability or special points."""
     tangent_tolerance: float = 1e-5
     """Relative tolerance of the tangent, which serves for predictions and for the signs at folds."""
-    max_passes: int = 4
+    max_correction_steps: int = 4
     """Maximum number of corrections; a pass takes a tenth of the time of a matrix."""
 
 
-CORRECTION_SETTINGS = CorrectionSettings()
+LINEARISATION_CORRECTION_SETTINGS = LinearisationCorrectionSettings()
 
 
 @dataclass(frozen=True, eq=False)
 class CorrectedLinearisation:
-    """Tangent and multipliers at `orbit`, corrected with the factors of the nearby matrix `nearby`.
+    """Tangent and multipliers at `orbit`, corrected with the factors of the nearby matrix `nearby_matrix`.
     corrected_tangent: tangent of the branch, (N + 1,), of unit arc length. multipliers_over_solved_part:
-    multipliers over the solved part of the period, (rank,). error: estimate of the relative error of the
-    tangent and of the multipliers, divided by the largest modulus or 1."""
+    multipliers over the solved part of the period, (rank,). relative_error: estimate of the relative error of
+    the tangent and of the multipliers, divided by the largest modulus or 1."""
 
     orbit: Orbit
-    nearby: BorderedMatrix
+    nearby_matrix: BorderedMatrix
     corrected_tangent: Array
-    multipliers_over_solved_part: Complex
-    error: float
+    multipliers_over_solved_time_interval: Complex
+    relative_error: float
     tangent: Array | None = None  # as in `BorderedMatrix`
 
     @property
     def workspace(self) -> NewtonWorkspace:
         """Memory of the matrix."""
-        return self.nearby.workspace
+        return self.nearby_matrix.workspace
 
     def multipliers(self) -> Complex:
         """Floquet multipliers larger than rounding error, by descending modulus, (rank,), with the trivial
         multiplier."""
-        return multipliers_over_period(self.multipliers_over_solved_part, self.orbit)
+        return multipliers_over_period(self.multipliers_over_solved_time_interval, self.orbit)
 
     def branch_tangent(self, border: Array) -> Array:
         """Tangent of the branch, (N + 1,), of unit arc length, which makes an acute angle with `border`, in
         components (deflection, log period, parameter), (3,)."""
-        derivative = self.nearby.scale.directional_derivative(self.orbit, self.corrected_tangent)
+        derivative = self.nearby_matrix.scale.directional_derivative(self.orbit, self.corrected_tangent)
         return self.corrected_tangent if derivative @ border > 0 else -self.corrected_tangent
 
 
@@ -86,19 +86,22 @@ def corrected_linearisation(
     # The invariant subspaces of a strongly unstable orbit are not those of a single propagator.
     if nearby.has_several_shooting_intervals:
         return None
-    subspace = _CorrectedSubspace.at_matrix(nearby)
+    subspace = _CorrectedInvariantSubspaces.at_matrix(nearby)
     if subspace is None:
         return None
     first = nearby.branch_tangent(border)
     tangent: Array = first / (nearby.scale.directional_derivative(orbit, first) @ border)
     changes: Array = np.full(2, np.inf)
     errors = changes
-    for number in range(CORRECTION_SETTINGS.max_passes):
+    for number in range(LINEARISATION_CORRECTION_SETTINGS.max_correction_steps):
         columns, ends = nearby.residual_variations(orbit, np.vstack([tangent, subspace.increments]))
         corrected = corrected_tangent(nearby, orbit, border, tangent, (columns[:, :, :1], ends[:1]))
         previous_changes = changes
         changes = np.array(
-            [subspace.correct(orbit, ends[1:]), _tangent_change(nearby, orbit, corrected, tangent)]
+            [
+                subspace.correct_ritz_values(orbit, ends[1:]),
+                _relative_tangent_change(nearby, orbit, corrected, tangent),
+            ]
         )
         tangent = corrected
         # A correction leaves errors of second order; those of the multipliers are seen in the trivial
@@ -108,18 +111,20 @@ def corrected_linearisation(
         if number > 0:
             # Successive changes decrease by a rate; the next change would be the error that is left.
             errors = np.minimum(errors, changes * changes / previous_changes)
-        if errors[0] <= tolerance and errors[1] <= max(tolerance, CORRECTION_SETTINGS.tangent_tolerance):
+        if errors[0] <= tolerance and errors[1] <= max(
+            tolerance, LINEARISATION_CORRECTION_SETTINGS.tangent_tolerance
+        ):
             unit = np.linalg.norm(nearby.scale.directional_derivative(orbit, tangent))
             return CorrectedLinearisation(
                 orbit, nearby, tangent / unit, subspace.multipliers, float(errors[0])
             )
         if not np.isfinite(errors).all():
             return None
-        subspace.move(columns[:, :, 1:])
+        subspace.apply_map_to_right_subspace(columns[:, :, 1:])
     return None
 
 
-def _tangent_change(matrix: BorderedMatrix, orbit: Orbit, tangent: Array, previous: Array) -> float:
+def _relative_tangent_change(matrix: BorderedMatrix, orbit: Orbit, tangent: Array, previous: Array) -> float:
     """Relative change between two approximations, (N + 1,) each, of the tangent at `orbit`, in the components
     (deflection, log period, parameter)."""
     derivative = matrix.scale.directional_derivative(orbit, tangent)
@@ -127,10 +132,11 @@ def _tangent_change(matrix: BorderedMatrix, orbit: Orbit, tangent: Array, previo
     return float(np.linalg.norm(change) / np.linalg.norm(derivative))
 
 
-class _CorrectedSubspace:
+class _CorrectedInvariantSubspaces:
     """Right and left invariant subspaces of the map G over the solved part for the multipliers with moduli of
-    at least `CORRECTION_SETTINGS.min_multiplier`, and the Ritz values of G on these subspaces. increments:
-    changes of the orbit for the basis of the right subspace as changes of the start, (k, N + 1)."""
+    at least `LINEARISATION_CORRECTION_SETTINGS.min_corrected_multiplier_modulus`, and the Ritz values of G on
+    these subspaces. increments: changes of the orbit for the basis of the right subspace as changes of the
+    start, (k, N + 1)."""
 
     def __init__(self, matrix: BorderedMatrix, right: Array, left: Array, values: Complex) -> None:
         """right, left: real bases of the subspaces at the orbit of `matrix`, (k, n) each. values:
@@ -146,7 +152,7 @@ class _CorrectedSubspace:
         self._next_starts = right
 
     @classmethod
-    def at_matrix(cls, matrix: BorderedMatrix) -> "_CorrectedSubspace | None":
+    def at_matrix(cls, matrix: BorderedMatrix) -> "_CorrectedInvariantSubspaces | None":
         """The subspaces at the orbit of `matrix`; None if rounding separates a pair of multipliers at the
         smallest modulus."""
         orbit = matrix.orbit
@@ -156,9 +162,9 @@ class _CorrectedSubspace:
         if not np.isfinite(small).all():
             return None
         # Schur vectors of the ordered form; the first `count` span the invariant subspace.
-        _, count, real_parts, imaginary_parts, right, _, _ = dgees(_is_corrected, small, sort_t=1)
+        _, count, real_parts, imaginary_parts, right, _, _ = dgees(_is_multiplier_corrected, small, sort_t=1)
         # The left invariant subspace of a matrix is the right one of its transpose.
-        _, left_count, _, _, left, _, _ = dgees(_is_corrected, small.T, sort_t=1)
+        _, left_count, _, _, left, _, _ = dgees(_is_multiplier_corrected, small.T, sort_t=1)
         if count != left_count or count == 0:
             return None
         values = real_parts + 1j * imaginary_parts
@@ -174,7 +180,7 @@ class _CorrectedSubspace:
         """Distance of the trivial multiplier from 1, relative to the largest modulus or 1."""
         return float(np.abs(self._values - 1).min()) / max(1.0, float(np.abs(self._values).max()))
 
-    def correct(self, orbit: Orbit, end_changes: Array) -> float:
+    def correct_ritz_values(self, orbit: Orbit, end_changes: Array) -> float:
         """Corrects the Ritz values at the cycle `orbit`. Returns the largest change of a Ritz value, divided
         by the largest modulus or 1. end_changes: ends, (k, n), of `BorderedMatrix.residual_variations` at
         this cycle for `increments`."""
@@ -190,18 +196,20 @@ class _CorrectedSubspace:
         self._next_starts = np.linalg.solve(ritz.T, images.T - ritz.T @ basis)
         return change / max(1.0, float(np.abs(values).max()))
 
-    def move(self, columns: Array) -> None:
+    def apply_map_to_right_subspace(self, columns: Array) -> None:
         """Replaces the right subspace by its image under G. columns: stages, (K, s, k, n), of
-        `BorderedMatrix.residual_variations`, whose ends the last call of `correct` had."""
+        `BorderedMatrix.residual_variations`, whose ends the last call of `correct_ritz_values` had."""
         starts = np.ascontiguousarray(self._next_starts)
         self.increments = self.increments + self._matrix.orbit_increments_at_fixed_parameter(
             starts, np.ascontiguousarray(columns)
         )
 
 
-def _is_corrected(real: float, imaginary: float) -> bool:
+def _is_multiplier_corrected(real: float, imaginary: float) -> bool:
     """Whether a multiplier over the solved part is corrected. real, imaginary: its two parts."""
-    return bool(real**2 + imaginary**2 >= CORRECTION_SETTINGS.min_multiplier**2)
+    return bool(
+        real**2 + imaginary**2 >= LINEARISATION_CORRECTION_SETTINGS.min_corrected_multiplier_modulus**2
+    )
 
 
 def linearisation_of(solved: ConvergedOrbit) -> BorderedMatrix | CorrectedLinearisation:
@@ -216,4 +224,4 @@ def nearby_bordered_matrix(solved: ConvergedOrbit) -> BorderedMatrix:
     """The bordered matrix of an orbit that was solved with the parameter as an unknown, assembled at a nearby
     orbit; raises TypeError if the parameter was fixed."""
     linearisation = linearisation_of(solved)
-    return linearisation.nearby if isinstance(linearisation, CorrectedLinearisation) else linearisation
+    return linearisation.nearby_matrix if isinstance(linearisation, CorrectedLinearisation) else linearisation

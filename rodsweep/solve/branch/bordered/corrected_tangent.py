@@ -6,7 +6,7 @@ import numpy as np
 
 from ....arrays import Array
 from ...orbit.matrix.linearisation import closing_residual
-from ...orbit.matrix.phase import phase_right_side, write_phase_row
+from ...orbit.matrix.phase_condition import phase_right_side, write_phase_row
 from ...orbit.orbit import Orbit
 from .matrix import BorderedMatrix
 
@@ -24,7 +24,7 @@ def corrected_tangent(
     change = replace(orbit, values=tangent[:-1])
     row = np.empty(len(orbit.start_state))
     write_phase_row(orbit.start_state, p.rod, p.node_matrices, row)
-    parameter_derivative = orbit.form.parameter_derivative(matrix.scale.parameter_name)
+    parameter_derivative = orbit.form.nodal_rod_parameter_derivative(matrix.scale.parameter_name)
     phase_derivative = phase_right_side(orbit.start_state, parameter_derivative, p.rod, p.node_matrices)
     matching_sides = matrix.matching_right_sides(closing_residual(change.all_states, p), columns, ends)
     phase_side = phase_derivative * tangent[-1] - row @ change.start_state

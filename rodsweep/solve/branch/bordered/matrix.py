@@ -15,15 +15,15 @@ from ...orbit.matrix.linearisation import (
     reduced_residuals,
     reduced_stage_residual_variations,
 )
-from ...orbit.matrix.multipliers import multipliers_over_period, multipliers_over_solved_part
-from ...orbit.matrix.phase import phase_residual, phase_right_side, write_phase_row
+from ...orbit.matrix.multipliers import multipliers_over_period, multipliers_over_solved_time_interval
+from ...orbit.matrix.phase_condition import phase_residual, phase_right_side, write_phase_row
 from ...orbit.matrix.right_sides import write_right_sides
 from ...orbit.matrix.shooting_intervals import shooting_intervals_of
 from ...orbit.matrix.substitution import substitute_stages
 from ...orbit.matrix.workspace import FactorStorage, NewtonWorkspace
 from ...orbit.newton import relative_change
 from ...orbit.orbit import Orbit
-from .closed_system import LinearSystemWithBorderRow
+from .linear_system_with_border_row import LinearSystemWithBorderRow
 from .scale import ArcLengthScale, deflection_functional
 
 
@@ -43,7 +43,7 @@ class BorderedMatrix:
         p = orbit.orbit_equations
         derivatives = parameter_derivatives(orbit.form, scale.parameter_name)
         K, s, n = orbit.stage_states.shape
-        V = np.empty((K, s, 3, len(p.node_matrices.weights)))
+        V = np.empty((K, s, 3, len(p.node_matrices.quadrature_weights)))
         # Third axis: column of the period (0), residual (1), column of the parameter (2).
         self._stage_columns = np.empty((K, s, 3, n))
         self._memory = FactorStorage(workspace, K, s, n)
@@ -51,7 +51,7 @@ class BorderedMatrix:
         ends = eliminate_newton_matrix(
             orbit.all_states, V, orbit.solved_duration, p, self._memory.factors, self._stage_columns
         )
-        self._shooting_intervals = shooting_intervals_of(self._memory.factors, p.mass)
+        self._shooting_intervals = shooting_intervals_of(self._memory.factors, p.mass_diagonal)
         m = len(self._shooting_intervals.flow_maps)
         self._matrix = np.zeros((m * n + 2, m * n + 2))
         for j in range(m):
@@ -61,7 +61,7 @@ class BorderedMatrix:
             if j < m - 1:
                 self._matrix[rows, (j + 1) * n : (j + 2) * n] = -np.eye(n)
             else:
-                self._matrix[rows, :n] -= p.symmetry
+                self._matrix[rows, :n] -= p.symmetry_matrix
         for place, c in ((-2, 0), (-1, 2)):
             column = slice(c, c + 1)
             self._matrix[:-2, place] = -self.matching_right_sides(
@@ -70,30 +70,31 @@ class BorderedMatrix:
         row = np.empty(n)
         write_phase_row(orbit.start_state, p.rod, p.node_matrices, row)
         self._matrix[-2, :n] = row
-        # `phase_right_side` is a right-hand side, with a minus sign; in a column of the matrix the sign is
-        # plus.
+        # `phase_right_side` is a right-hand side, with a minus sign; in a column of the matrix it is plus.
         self._matrix[-2, -1] = -phase_right_side(
-            orbit.start_state, derivatives.change, p.rod, p.node_matrices
+            orbit.start_state, derivatives.rod_derivative, p.rod, p.node_matrices
         )
         self._system = LinearSystemWithBorderRow(self._matrix)
-        self._right_sides = self._matching_and_phase_sides(orbit, self._stage_columns[:, :, 1:2], ends[1:2])
+        self._right_sides = self._matching_and_phase_right_sides(
+            orbit, self._stage_columns[:, :, 1:2], ends[1:2]
+        )
 
     @property
-    def has_factors(self) -> bool:
+    def has_valid_factors(self) -> bool:
         """Whether no other matrix was assembled in the workspace, so that systems can be solved."""
         return self._memory.is_valid
 
-    def distance_of(self, orbit: Orbit) -> float:
+    def relative_distance_to_orbit(self, orbit: Orbit) -> float:
         """Relative distance of an orbit on the same mesh from the orbit of this matrix."""
         return relative_change(self.orbit, orbit.values - self.orbit.values)
 
-    def step(self, border: Array, residual: float) -> Array:
+    def newton_step(self, border: Array, residual: float) -> Array:
         """Newton's step at the orbit, (N + 1,), which changes `border` . `scale.components` by `residual`,
         to first order. border: last row of the matrix, (3,). residual: residual of the condition that
         closes the system, by `BorderCondition.residual`."""
         return self.solve(border, np.append(self._right_sides, residual), self._stage_columns[:, :, 1], 1.0)
 
-    def correction(self, orbit: Orbit, border: Array, residual: float) -> Array:
+    def newton_step_at_nearby_orbit(self, orbit: Orbit, border: Array, residual: float) -> Array:
         """Approximate Newton's step, (N + 1,), at a neighbouring `orbit` with a similar parameter, from the
         factors of this matrix. border: last row of the matrix, (3,). residual: residual of the condition that
         closes the system."""
@@ -102,7 +103,7 @@ class BorderedMatrix:
         columns, ends = reduced_residuals(
             orbit.all_states, orbit.solved_duration, orbit.orbit_equations, p, factors
         )
-        right_side = np.append(self._matching_and_phase_sides(orbit, columns, ends), residual)
+        right_side = np.append(self._matching_and_phase_right_sides(orbit, columns, ends), residual)
         return self.solve(border, right_side, columns[:, :, 0], 1.0)
 
     def branch_tangent(self, border: Array) -> Array:
@@ -131,7 +132,7 @@ class BorderedMatrix:
         )
         return sides
 
-    def derivative_by_other_parameter(self, name: str, border: Array) -> float:
+    def parameter_derivative_by_other_parameter(self, name: str, border: Array) -> float:
         """Derivative of the parameter coordinate with respect to the coordinate of another parameter `name`,
         along the cycles with equal `border` . `scale.components`, (3,).
 
@@ -142,7 +143,7 @@ class BorderedMatrix:
         columns, ends = self.residual_variations(orbit, variation[None], name)
         sides = self.matching_right_sides(np.zeros(len(orbit.start_state)), columns, ends)
         p = orbit.orbit_equations
-        change = orbit.form.parameter_derivative(name)
+        change = orbit.form.nodal_rod_parameter_derivative(name)
         phase_side = phase_right_side(orbit.start_state, change, p.rod, p.node_matrices)
         return float(self.solve(border, np.array([*sides, phase_side, 0.0]), columns[:, :, 0], 1.0)[-1])
 
@@ -166,17 +167,17 @@ class BorderedMatrix:
         return self._memory.propagator
 
     @cached_property
-    def multipliers_over_solved_part(self) -> Complex:
+    def multipliers_over_solved_time_interval(self) -> Complex:
         """Multipliers over the solved time interval, (multipliers,): eigenvalues of the propagator, composed
         with the reflection for a symmetric orbit."""
         if len(self._shooting_intervals.flow_maps) == 1:
-            return multipliers_over_solved_part(self.propagator, self.orbit)
+            return multipliers_over_solved_time_interval(self.propagator, self.orbit)
         return self._shooting_intervals.multipliers(self.orbit)
 
     def multipliers(self) -> Complex:
         """Floquet multipliers larger than rounding error, by descending modulus, (multipliers,), with the
         trivial multiplier."""
-        return multipliers_over_period(self.multipliers_over_solved_part, self.orbit)
+        return multipliers_over_period(self.multipliers_over_solved_time_interval, self.orbit)
 
     def approximate_null_vector(self) -> Array:
         """Approximate null vector of the matrix with the parameter fixed, (N + 1,), of any length and sign:
@@ -206,7 +207,7 @@ class BorderedMatrix:
         sides[-1] += jump
         return sides.ravel()
 
-    def _matching_and_phase_sides(self, orbit: Orbit, columns: Array, end_increments: Array) -> Array:
+    def _matching_and_phase_right_sides(self, orbit: Orbit, columns: Array, end_increments: Array) -> Array:
         """Right-hand sides of the m matching conditions of an orbit, one for each of its m shooting
         intervals, and of the phase condition, (m n + 1,). columns: reduced right-hand sides, (K, s, 1, n).
         end_increments: increment of the state at the end of the last time interval that `columns` cause if

@@ -28,7 +28,7 @@ from ....discretization.state_layout import StateLayout
 from ....model.material.rod_material import RodMaterial
 from ...orbit.orbit import Orbit
 
-ALONG_PARAMETER = np.array([0.0, 0.0, 1.0])
+PARAMETER_DIRECTION = np.array([0.0, 0.0, 1.0])
 """Unit vector along the parameter, (3,), in components (deflection, log period, parameter)."""
 
 
@@ -65,7 +65,7 @@ class ArcLengthScale:
     def components(self, orbit: Orbit) -> Array:
         """(deflection at t = 0, logarithm of the period, parameter coordinate) of an orbit, (3,), in units of
         the scale."""
-        deflection = deflection_of(orbit) / self.deflection_unit
+        deflection = deflection_at_time_zero(orbit) / self.deflection_unit
         coordinate = orbit.form.rod.coordinate(self.parameter_name) / self.coordinate_unit
         return np.array([deflection, np.log(orbit.period), coordinate])
 
@@ -78,7 +78,7 @@ class ArcLengthScale:
         return np.array([deflection, change[-2] / orbit.period, change[-1] / self.coordinate_unit])
 
 
-def deflection_of(orbit: Orbit) -> float:
+def deflection_at_time_zero(orbit: Orbit) -> float:
     """Deflection of an orbit in L at t = 0, when the tip's y is largest; linear in the state."""
     return float(deflection_functional(orbit) @ orbit.start_state)
 
@@ -93,5 +93,5 @@ def deflection_functional(orbit: Orbit) -> Array:
 def _cached_deflection_functional(layout: StateLayout, mesh: Mesh, material: RodMaterial) -> Array:
     """Cached `deflection_functional`, (n,); callers share the array and must not change it."""
     # In linear theory the curvature at u moves the tip by the lever 1 - u, which is 0 at the tip.
-    weights = mesh.quadrature * relative_bending_compliance_at_nodes(material, mesh)
+    weights = mesh.quadrature_weights * relative_bending_compliance_at_nodes(material, mesh)
     return layout.state_with_stresses({"m3": weights[:-1] * (1 - mesh.node_positions[:-1])})

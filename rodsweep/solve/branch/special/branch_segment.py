@@ -3,14 +3,14 @@
 from ....arrays import Array
 from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
-from ...orbit.orbit_mesh import mesh_of
+from ...orbit.orbit_mesh import mesh_of_orbit
 from ...unsolvable import Unsolvable
 from ..arc_length_step import BranchCycle, arc_length_between
 from ..bordered.condition import moved_orbit
 from ..bordered.corrected_linearisation import nearby_bordered_matrix
 from ..bordered.matrix import BorderedMatrix
 from ..branch_prediction import parameter_change_polynomial
-from .augmented.fold_and_torus_functions import FoldTestFunction, correct_until_converged
+from .augmented.fold_and_torus_test_functions import FoldTestFunction, correct_until_converged
 from .special_point import SPECIAL_POINT_SETTINGS
 
 
@@ -23,7 +23,7 @@ class BranchSegment:
     def __init__(self, start: BranchCycle, end: BranchCycle) -> None:
         self.start = start
         self.end = end
-        self.mesh = mesh_of(end.orbit)
+        self.mesh = mesh_of_orbit(end.orbit)
         self.length = arc_length_between(start, end)
         self._length_along_end_tangent = float(
             end.unit_tangent @ (end.scale.components(end.orbit) - end.scale.components(start.orbit))
@@ -38,9 +38,10 @@ class BranchSegment:
         # `end`.
         return self.end.predicted_orbit(-self._length_along_end_tangent * (1 - length / self.length))
 
-    def predicted_fold(self) -> tuple[float, float]:
-        """Returns (arc length, slope of `parameter_rate` there) of the fold of the polynomial through the
-        cycles up to `end`; raises Unsolvable if it has not exactly one fold between `start` and `end`."""
+    def predicted_fold_length_and_slope(self) -> tuple[float, float]:
+        """Returns (arc length, slope of `parameter_per_arc_length` there) of the fold of the polynomial
+        through the cycles up to `end`; raises Unsolvable if it has not exactly one fold between `start` and
+        `end`."""
         ends = (-self._length_along_end_tangent, 0.0)
         rate = parameter_change_polynomial(self.end.tangent, self.end.earlier_cycles, ends).deriv()
         roots = rate.roots()
@@ -62,14 +63,18 @@ class BranchSegment:
             # Predicted from the last cycle along its tangent: a secant method changes the length only a
             # little.
             predicted = moved_orbit(orbit, self.start.scale.parameter_name, (length - last_length) * tangent)
-            start = predicted if mesh_of(predicted) == self.mesh else self.mesh.interpolated_orbit(predicted)
+            start = (
+                predicted
+                if mesh_of_orbit(predicted) == self.mesh
+                else self.mesh.interpolated_orbit(predicted)
+            )
         condition = self.start.arc_length_condition(length)
         workspace = self.start.workspace
         solved = condition.solve_cycle(
             start,
             SPECIAL_POINT_SETTINGS.relative_cycle_tolerance,
             workspace,
-            SPECIAL_POINT_SETTINGS.max_matrix_distance,
+            SPECIAL_POINT_SETTINGS.max_distance_from_matrix_orbit,
             self._nearby_matrix(start),
         )
         self._matrix = nearby_bordered_matrix(solved)
@@ -87,9 +92,15 @@ class BranchSegment:
     def _nearby_matrix(self, orbit: Orbit) -> BorderedMatrix | None:
         """The last matrix of this segment if its factors serve for cycles near `orbit`; otherwise None."""
         matrix = self._matrix
-        if matrix is None or not matrix.has_factors or mesh_of(matrix.orbit) != mesh_of(orbit):
+        if (
+            matrix is None
+            or not matrix.has_valid_factors
+            or mesh_of_orbit(matrix.orbit) != mesh_of_orbit(orbit)
+        ):
             return None
-        is_near = matrix.distance_of(orbit) <= SPECIAL_POINT_SETTINGS.max_matrix_distance
+        is_near = (
+            matrix.relative_distance_to_orbit(orbit) <= SPECIAL_POINT_SETTINGS.max_distance_from_matrix_orbit
+        )
         return matrix if is_near else None
 
     @property
@@ -101,7 +112,7 @@ class BranchSegment:
             raise ValueError("no cycle was solved on this segment and mesh yet")
         return self._last_solved
 
-    def parameter_rate(self) -> float:
+    def parameter_per_arc_length(self) -> float:
         """Derivative of the scaled parameter coordinate with respect to arc length, at the last cycle that
         `cycle_at` solved."""
         return float(self.last_solved_cycle[2][-1]) / self.start.scale.coordinate_unit

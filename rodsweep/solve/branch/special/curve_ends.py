@@ -8,18 +8,18 @@ from .special_curves import CURVE_IDENTITY_SETTINGS, CurveEndReason, SpecialPoin
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CurveEndSettings:
+class SpecialCurveEndSettings:
     """Settings for the ends of a curve of special points."""
 
-    min_loop_points: int = 5
+    min_points_of_closed_curve: int = 5
     """Whether a curve closes is tested only after more than this number of points."""
-    max_edge_distance: float = 1e-8
+    max_distance_from_plane_edge: float = 1e-8
     """Points at most this far from an edge of the plane lie on the edge; each axis has length 1."""
-    margin_tolerance: float = 1e-10
+    zero_margin_tolerance: float = 1e-10
     """Tolerance of a margin, and of the position at which it becomes 0 (divided by the step length)."""
     crushing_margin: float = 1e-3
     """A curve ends where the relative distance of F from the force that crushes the arm is this number."""
-    crushing_tolerance: float = 1e-6
+    step_tolerance_before_crushing: float = 1e-6
     """Relative tolerance of the length of a step that is shortened to end at half of `crushing_margin`."""
     min_amplitude: float = 0.01
     """A curve ends, at an extrapolated Hopf point, where the largest tip y, in L, is below this number."""
@@ -28,7 +28,7 @@ class CurveEndSettings:
     the angle between multiplier and real axis is below this number."""
 
 
-END_SETTINGS = CurveEndSettings()
+SPECIAL_CURVE_END_SETTINGS = SpecialCurveEndSettings()
 ROW_EDGE_MARGIN_INDICES = (2, 3)
 """Indices, in `SpecialCurveProblem.margins`, of the two edges that are parallel to the rows."""
 END_REASON_BY_MARGIN = (
@@ -43,25 +43,26 @@ END_REASON_BY_MARGIN = (
 def are_identical_curves(first: SpecialPointCurve, second: SpecialPointCurve, line_axis: PlaneAxis) -> bool:
     """Whether two curves are identical: kinds agree, and their ends coincide within a tolerance. line_axis:
     axis of the parameter along a row."""
-    pairs = zip(_ends(first, line_axis), _ends(second, line_axis), strict=True)
+    pairs = zip(_curve_end_positions(first, line_axis), _curve_end_positions(second, line_axis), strict=True)
     distances = (abs(a - b) for p, q in pairs for a, b in zip(p, q, strict=True))
     return first.kind == second.kind and all(
         distance <= CURVE_IDENTITY_SETTINGS.max_end_distance for distance in distances
     )
 
 
-def leaves_range(curve: SpecialPointCurve, line_axis: PlaneAxis) -> bool:
+def leaves_range_of_rows(curve: SpecialPointCurve, line_axis: PlaneAxis) -> bool:
     """Whether a curve ends at an edge of the plane across the rows. line_axis: axis along the rows."""
-    positions = (line_axis.coordinate(curve.points[i].parameter_value) for i in (0, -1))
+    positions = (line_axis.scaled_coordinate(curve.points[i].parameter_value) for i in (0, -1))
     return any(
-        end is CurveEndReason.edge and min(abs(position), abs(1 - position)) <= END_SETTINGS.max_edge_distance
-        for end, position in zip(curve.ends, positions, strict=True)
+        end is CurveEndReason.edge
+        and min(abs(position), abs(1 - position)) <= SPECIAL_CURVE_END_SETTINGS.max_distance_from_plane_edge
+        for end, position in zip(curve.end_reasons, positions, strict=True)
     )
 
 
-def _ends(curve: SpecialPointCurve, line_axis: PlaneAxis) -> list[tuple[float, float]]:
+def _curve_end_positions(curve: SpecialPointCurve, line_axis: PlaneAxis) -> list[tuple[float, float]]:
     """Both ends of a curve, each as (row coordinate, position along the row), from 0 to 1, in ascending
     order."""
     ends = curve.points[0], curve.points[-1]
     # Ordered, because two traces of one curve may run in opposite directions.
-    return sorted((p.row_coordinate, line_axis.coordinate(p.parameter_value)) for p in ends)
+    return sorted((p.row_coordinate, line_axis.scaled_coordinate(p.parameter_value)) for p in ends)

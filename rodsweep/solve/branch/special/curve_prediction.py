@@ -8,39 +8,42 @@ import numpy as np
 
 from ....arrays import Array
 from ...orbit.orbit import Orbit
-from ...orbit.orbit_mesh import OrbitMesh, mesh_of
+from ...orbit.orbit_mesh import OrbitMesh, mesh_of_orbit
 from ...unsolvable import Unsolvable
 from ..bordered.condition import require_equal_unknowns
-from .curve_ends import END_SETTINGS
+from .curve_ends import SPECIAL_CURVE_END_SETTINGS
 from .parameter_roles import ParameterRoles
-from .solved_curve_point import SolvedPoint, arc_lengths
+from .solved_curve_point import SolvedCurvePoint, arc_lengths_from_last_point
 from .special_curves import CURVE_IDENTITY_SETTINGS, lagrange_weights
 
 
-def predicted_orbit(
-    roles: ParameterRoles, points: Sequence[SolvedPoint], length: float
+def predicted_orbit_and_row_coordinate(
+    roles: ParameterRoles, points: Sequence[SolvedCurvePoint], length: float
 ) -> tuple[Orbit, float]:
     """Returns (orbit, row coordinate), predicted at the arc length `length` beyond the last point, or before
     the rod is crushed; raises Unsolvable."""
     last_points = points[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
-    lengths = arc_lengths(last_points)
+    lengths = arc_lengths_from_last_point(last_points)
     weights = lagrange_weights(lengths, _length_before_crushing(roles, last_points, lengths, length))
-    return weighted_sum(roles, last_points, weights, mesh_of(last_points[-1].orbit))
+    return weighted_sum_of_curve_points(roles, last_points, weights, mesh_of_orbit(last_points[-1].orbit))
 
 
-def weighted_sum(
-    roles: ParameterRoles, points: Sequence[SolvedPoint], weights: Sequence[float] | Array, mesh: OrbitMesh
+def weighted_sum_of_curve_points(
+    roles: ParameterRoles,
+    points: Sequence[SolvedCurvePoint],
+    weights: Sequence[float] | Array,
+    mesh: OrbitMesh,
 ) -> tuple[Orbit, float]:
     """Returns (orbit on `mesh`, row coordinate): sums of `points` with weights, (points,); raises
     Unsolvable."""
     values = np.dot(weights, [mesh.interpolated_orbit(point.orbit).values for point in points])
-    row, parameters = _parameters(roles, points, weights)
+    row, parameters = _weighted_parameters(roles, points, weights)
     orbit = replace(mesh.interpolated_orbit(points[-1].orbit), values=values)
     return orbit_with_parameters(orbit, parameters), row
 
 
 def _length_before_crushing(
-    roles: ParameterRoles, points: Sequence[SolvedPoint], lengths: Array, length: float
+    roles: ParameterRoles, points: Sequence[SolvedCurvePoint], lengths: Array, length: float
 ) -> float:
     """The arc length `length`, shortened so that the rod predicted beyond `points` keeps half of the crushing
     margin; unchanged if the last point has less than half of this margin. lengths: arc lengths of the points,
@@ -49,15 +52,17 @@ def _length_before_crushing(
 
     def distance(length: float) -> float:
         rod = points[-1].orbit.form.rod
-        _, parameters = _parameters(roles, points, lagrange_weights(lengths, length))
+        _, parameters = _weighted_parameters(roles, points, lagrange_weights(lengths, length))
         values = {**rod.values, **parameters}
-        load = rod.material.crushing_ratio(values["F"], values["k1"], values["taper"])
-        return 1 - END_SETTINGS.crushing_margin / 2 - load
+        load = rod.material.force_over_crushing_force(values["F"], values["k1"], values["taper"])
+        return 1 - SPECIAL_CURVE_END_SETTINGS.crushing_margin / 2 - load
 
     # Both ends on one side of the limit: there is no root between them for brentq.
     if distance(length) >= 0 or distance(0.0) <= 0:
         return length
-    return float(brentq(distance, 0.0, length, rtol=END_SETTINGS.crushing_tolerance))
+    return float(
+        brentq(distance, 0.0, length, rtol=SPECIAL_CURVE_END_SETTINGS.step_tolerance_before_crushing)
+    )
 
 
 def orbit_with_parameters(orbit: Orbit, parameters: dict[str, float]) -> Orbit:
@@ -71,12 +76,12 @@ def orbit_with_parameters(orbit: Orbit, parameters: dict[str, float]) -> Orbit:
     return replace(orbit, form=form)
 
 
-def _parameters(
-    roles: ParameterRoles, points: Sequence[SolvedPoint], weights: Sequence[float] | Array
+def _weighted_parameters(
+    roles: ParameterRoles, points: Sequence[SolvedCurvePoint], weights: Sequence[float] | Array
 ) -> tuple[float, dict[str, float]]:
     """Returns (row coordinate, values of both parameters by name): sums of `points` with weights,
     (points,)."""
     branch_axis, row_axis = roles.axes_of(points[-1])
     row = float(np.dot(weights, [point.row_coordinate for point in points]))
-    value = float(np.dot(weights, [point.parameter for point in points]))
+    value = float(np.dot(weights, [point.branch_parameter for point in points]))
     return row, {branch_axis.name: value, row_axis.name: row_axis.value(row)}

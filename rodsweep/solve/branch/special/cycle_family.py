@@ -2,9 +2,9 @@
 
 Cycles near a special point form a family with two variables: arc length along the branch (`bordered`), and
 row coordinate. In this family the special points form a smooth curve, also at a cusp, where both parameters
-turn back: the zeros of a test function. The secant method finds a zero across the curve (`curve_secant`). The
-error is the difference between two meshes, measured at about every third point, plus the error of the secant
-method.
+turn back: the zeros of a test function. The secant method finds a zero across the curve
+(`secant_method_across_curve`). The error is the difference between two meshes, measured at about every third
+point, plus the error of the secant method.
 """
 
 from dataclasses import dataclass, replace
@@ -12,61 +12,63 @@ from math import ceil
 
 from ....arrays import Array
 from ....determinant.parameter_plane import PlaneAxis
+from ...orbit.coefficient_tails import smooth_space_and_time_tails
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.orbit import Orbit
-from ...orbit.orbit_mesh import OrbitMesh, mesh_limit_error, mesh_of
-from ...orbit.tails import smooth_space_and_time_tails
+from ...orbit.orbit_mesh import OrbitMesh, mesh_limit_error, mesh_of_orbit
 from ...unsolvable import Unsolvable
 from ..bordered.matrix import BorderedMatrix
 from ..bordered.scale import ArcLengthScale
-from .augmented.fold_and_torus_functions import FoldTestFunction, TorusTestFunction
+from .augmented.fold_and_torus_test_functions import FoldTestFunction, TorusTestFunction
 from .curve_prediction import orbit_with_parameters
-from .curve_secant import SecantSearch
+from .secant_method_across_curve import SecantSearch
 from .solved_curve_point import (
     CURVE_SECANT_SETTINGS,
     MeasuredCurveError,
     NormalDerivatives,
     SearchLine,
-    SolvedPoint,
+    SolvedCurvePoint,
 )
-from .special_point import SpecialKind
+from .special_point import SpecialPointKind
 
 
 @dataclass(frozen=True, slots=True)
 class CycleFamily:
     """Two-parameter family of the cycles near a point of a curve of special points.
 
-    kind: fold or torus. row_axis: axis of the row parameter. scale: units of arc length. border: direction of
-    the branch in components (deflection, log period, parameter), (3,). has_small_cycles: whether the fold
-    test function is divided by the deflection, because a Hopf point is near. workspace: memory of Newton's
-    matrices."""
+    kind: fold or torus. row_parameter_axis: axis of the row parameter. scale: units of arc length. border:
+    direction of the branch in components (deflection, log period, parameter), (3,). has_small_cycles: whether
+    the fold test function is divided by the deflection, because a Hopf point is near. workspace: memory of
+    Newton's matrices."""
 
-    kind: SpecialKind
-    row_axis: PlaneAxis
+    kind: SpecialPointKind
+    row_parameter_axis: PlaneAxis
     scale: ArcLengthScale
-    border: Array
+    branch_direction: Array
     has_small_cycles: bool
     workspace: NewtonWorkspace
 
     @classmethod
     def near_point(
-        cls, kind: SpecialKind, row_axis: PlaneAxis, point: SolvedPoint, workspace: NewtonWorkspace
+        cls, kind: SpecialPointKind, row_axis: PlaneAxis, point: SolvedCurvePoint, workspace: NewtonWorkspace
     ) -> "CycleFamily":
         """The family of the cycles near `point` of a curve of special points of the kind `kind`. row_axis:
         axis of the row parameter. workspace: memory of Newton's matrices."""
         has_small_cycles = (
-            kind == SpecialKind.fold and point.tip_y_max < CURVE_SECANT_SETTINGS.max_small_cycle_y
+            kind == SpecialPointKind.fold and point.tip_y_max < CURVE_SECANT_SETTINGS.max_tip_y_of_small_cycle
         )
         return cls(kind, row_axis, point.scale, point.branch_direction, has_small_cycles, workspace)
 
     def orbit_at_row(self, orbit: Orbit, row_coordinate: float) -> Orbit:
         """The orbit with unchanged values, for the rod at `row_coordinate`; raises Unsolvable."""
-        return orbit_with_parameters(orbit, {self.row_axis.name: self.row_axis.value(row_coordinate)})
+        return orbit_with_parameters(
+            orbit, {self.row_parameter_axis.name: self.row_parameter_axis.value(row_coordinate)}
+        )
 
     def test_function(self, matrix: BorderedMatrix) -> FoldTestFunction | TorusTestFunction:
         """The test function of this kind of special points, for cycles near the orbit of `matrix`."""
-        if self.kind == SpecialKind.fold:
-            return FoldTestFunction(matrix, self.border, self.has_small_cycles)
+        if self.kind == SpecialPointKind.fold:
+            return FoldTestFunction(matrix, self.branch_direction, self.has_small_cycles)
         return TorusTestFunction(matrix)
 
     def corrected_point(
@@ -76,7 +78,7 @@ class CycleFamily:
         line: SearchLine,
         derivatives: NormalDerivatives | None = None,
         is_other_mesh: bool = False,
-    ) -> SolvedPoint:
+    ) -> SolvedCurvePoint:
         """The point of the curve near the orbit `start`, found by the secant method across the curve; raises
         Unsolvable.
 
@@ -87,7 +89,8 @@ class CycleFamily:
         # Derivatives along another direction across the curve would mislead the secant method.
         is_usable = (
             derivatives
-            and derivatives.direction @ line.direction >= CURVE_SECANT_SETTINGS.min_cosine_for_reuse
+            and derivatives.direction @ line.direction
+            >= CURVE_SECANT_SETTINGS.min_cosine_for_derivative_reuse
         )
         start_derivatives = derivatives if is_usable else None
         search = SecantSearch(self, start, row_coordinate, line, start_derivatives, is_other_mesh)
@@ -103,8 +106,8 @@ class CycleFamily:
         row_coordinate: float,
         line: SearchLine,
         derivatives: NormalDerivatives | None = None,
-        previous: SolvedPoint | None = None,
-    ) -> SolvedPoint:
+        previous: SolvedCurvePoint | None = None,
+    ) -> SolvedCurvePoint:
         """The point of the curve near `start` with an error estimate, on a finer mesh if necessary; raises
         Unsolvable.
 
@@ -117,7 +120,7 @@ class CycleFamily:
             return replace(coarser_point, measured_error=previous.measured_error.for_next_point)
         # Each finer mesh serves twice: for the error of the coarser point, then as the coarser one.
         for _ in range(CURVE_SECANT_SETTINGS.max_finer_meshes):
-            mesh = mesh_of(coarser_point.orbit)
+            mesh = mesh_of_orbit(coarser_point.orbit)
             finer_mesh = self.finer_mesh_than(coarser_point)
             normal_derivatives = coarser_point.normal_derivatives
             start = finer_mesh.interpolated_orbit(coarser_point.orbit)
@@ -127,14 +130,16 @@ class CycleFamily:
             # The solutions on both meshes may be displaced along the curve; the slope removes this
             # displacement from the error.
             chord_change = line.chord_slope * (fine_point.row_coordinate - coarser_point.row_coordinate)
-            parameter_difference = abs(fine_point.parameter - coarser_point.parameter - chord_change)
-            error = (
-                CURVE_SECANT_SETTINGS.error_factor * parameter_difference
-                + CURVE_SECANT_SETTINGS.min_error * abs(fine_point.parameter)
+            parameter_difference = abs(
+                fine_point.branch_parameter - coarser_point.branch_parameter - chord_change
             )
-            if error <= CURVE_SECANT_SETTINGS.accuracy * abs(fine_point.parameter):
+            error = (
+                CURVE_SECANT_SETTINGS.error_per_mesh_difference * parameter_difference
+                + CURVE_SECANT_SETTINGS.min_relative_error * abs(fine_point.branch_parameter)
+            )
+            if error <= CURVE_SECANT_SETTINGS.accuracy * abs(fine_point.branch_parameter):
                 errors = MeasuredCurveError(
-                    error / abs(coarser_point.parameter),
+                    error / abs(coarser_point.branch_parameter),
                     smooth_space_and_time_tails(coarser_point.orbit),
                     mesh,
                 )
@@ -142,11 +147,11 @@ class CycleFamily:
             coarser_point = fine_point
         raise mesh_limit_error()
 
-    def finer_mesh_than(self, point: SolvedPoint) -> OrbitMesh:
+    def finer_mesh_than(self, point: SolvedCurvePoint) -> OrbitMesh:
         """A mesh finer than the mesh of `point` in space and time; raises Unsolvable if it is not allowed."""
-        mesh = mesh_of(point.orbit)
-        interval_count = ceil(CURVE_SECANT_SETTINGS.interval_ratio * mesh.interval_count)
-        mesh_of_higher_order = mesh.with_order(mesh.order + CURVE_SECANT_SETTINGS.order_increase)
+        mesh = mesh_of_orbit(point.orbit)
+        interval_count = ceil(CURVE_SECANT_SETTINGS.time_interval_count_ratio * mesh.interval_count)
+        mesh_of_higher_order = mesh.with_order(mesh.order + CURVE_SECANT_SETTINGS.element_order_increase)
         finer_mesh = replace(mesh_of_higher_order, interval_count=interval_count)
         if not finer_mesh.is_allowed:
             raise mesh_limit_error()

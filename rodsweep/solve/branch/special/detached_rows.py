@@ -2,10 +2,10 @@
 these curves lead, in stages.
 
 A stage traces curves through special points (`SpecialCurveTracer`), or solves rows again, each with the
-points at which curves cross it without a special point of its own (`DetachedRows`). The next stage follows
-from the results of all stages so far: rows after curves, and curves through the new special points of rows.
-At the end, curves that leave the range, and curves through folds beyond it (`FoldsBeyondRange`), are followed
-beyond the range, where they may cross further rows.
+points at which curves cross it without a special point of its own (`RowsWithDetachedBranches`). The next
+stage follows from the results of all stages so far: rows after curves, and curves through the new special
+points of rows. At the end, curves that leave the range, and curves through folds beyond it
+(`FoldsBeyondRange`), are followed beyond the range, where they may cross further rows.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -16,7 +16,7 @@ from ....arrays import Array
 from ....determinant.parameter_plane import PlaneAxis
 from ...continuation.curve_search import TracedCurves
 from .curve_ends import are_identical_curves
-from .folds_beyond import FoldsBeyondRange, RowItems
+from .folds_beyond_range import FoldsBeyondRange, RowWorkItems
 from .row_crossing import RowCrossing
 from .special_curve_tracer import SpecialCurveTracer
 from .special_curves import CurveEndReason, SpecialPointCurve
@@ -25,19 +25,24 @@ from .special_point import RowSpecialPoint, SpecialPoint
 MAX_DIAGRAM_STAGES = 8
 """Maximum number of stages of a diagram: stages of curves and stages of rows alternate, and each finds fewer
 branches than the stage before. `show` names the rows with cycles that are not reached."""
-Results = Mapping[int, dict[str, Array]]
-"""Results of work items, by number; the result of a row has the variables of the row by name, or is empty."""
-SpecialPointsOfRow = Callable[[int, dict[str, Array]], list[RowSpecialPoint]]
+WorkItemResults = Mapping[int, dict[str, Array]]
+"""Results of work items, by number; the result of a row has the variables of the row by name, or is
+empty."""
+SpecialPointsOfRowFunction = Callable[[int, dict[str, Array]], list[RowSpecialPoint]]
 """Function from (index of a row, its variables) to the folds and torus points of the row."""
 
 
 @dataclass(frozen=True, slots=True)
-class DetachedRows(RowItems):
+class RowsWithDetachedBranches(RowWorkItems):
     """Rows that are solved again. crossings: all points known so far at which curves cross a row without a
     special point of its own, by index of the row."""
 
-    outcome: ClassVar[str] = "row solved again with branches found from curves of folds and torus points"
+    done_item_phrase: ClassVar[str] = (
+        "row solved again with branches found from curves of folds and torus points"
+    )
+    """Noun for one row and what was done with it, for the report at the end of a run."""
     label: ClassVar[str] = "detached branches"
+    """Text before the row parameter in the progress display."""
 
     crossings: Mapping[int, tuple[RowCrossing, ...]]
 
@@ -46,24 +51,25 @@ class DetachedRows(RowItems):
         return tuple(crossing.special_point for crossing in self.crossings[row])
 
 
-Stage = SpecialCurveTracer | DetachedRows | FoldsBeyondRange
+DiagramStage = SpecialCurveTracer | RowsWithDetachedBranches | FoldsBeyondRange
 
 
 @dataclass(frozen=True, slots=True)
 class DiagramStages:
-    """The stages of a diagram whose first stage traces the curves of `first`. special_points_of_row: a
-    `SpecialPointsOfRow`. extended_axis: axis of the parameter along the rows, as far as branches are followed
-    beyond the range; None: curves are not followed beyond the range. leaving_rows: value of the row
-    parameter, by index, of the rows with branches that leave or enter the range."""
+    """The stages of a diagram whose first stage traces the curves of `first_stage`. special_points_of_row: a
+    `SpecialPointsOfRowFunction`. axis_extended_beyond_range: axis of the parameter along the rows, as far as
+    branches are followed beyond the range; None: curves are not followed beyond the range.
+    values_of_rows_leaving_range: value of the row parameter, by index, of the rows with branches that leave
+    or enter the range."""
 
-    first: SpecialCurveTracer
-    special_points_of_row: SpecialPointsOfRow
-    extended_axis: PlaneAxis | None = None
-    leaving_rows: Mapping[int, float] = field(default_factory=dict)
+    first_stage: SpecialCurveTracer
+    special_points_of_row: SpecialPointsOfRowFunction
+    axis_extended_beyond_range: PlaneAxis | None = None
+    values_of_rows_leaving_range: Mapping[int, float] = field(default_factory=dict)
 
-    def stages(self, results: Results) -> list[Stage]:
+    def stages(self, results: WorkItemResults) -> list[DiagramStage]:
         """All stages that follow from the results of work items; only the last stage may be incomplete."""
-        stages: list[Stage] = [self.first]
+        stages: list[DiagramStage] = [self.first_stage]
         while len(stages) < MAX_DIAGRAM_STAGES and not stages[-1].items_to_solve(results):
             next_stage = self._stage_after(stages, results)
             if next_stage is None:
@@ -71,65 +77,84 @@ class DiagramStages:
             stages.append(next_stage)
         return stages
 
-    def _stage_after(self, stages: Sequence[Stage], results: Results) -> Stage | None:
+    def _stage_after(self, stages: Sequence[DiagramStage], results: WorkItemResults) -> DiagramStage | None:
         """The stage after complete `stages`; None if nothing is left to do."""
         last_stage = stages[-1]
         if isinstance(last_stage, FoldsBeyondRange):
-            return self._tracer_beyond(stages, last_stage, results)
+            return self._tracer_beyond_range(stages, last_stage, results)
         if isinstance(last_stage, SpecialCurveTracer):
-            return _rows_after(last_stage, stages, results) or self._folds_beyond_after(stages, results)
+            return _rows_crossed_by_curves(last_stage, stages, results) or self._stage_of_folds_beyond_range(
+                stages, results
+            )
         new_points = self._new_special_points(stages, last_stage, results)
         if not new_points:
-            return self._folds_beyond_after(stages, results)
-        known_points = (*self.first.special_points, *self._special_points_of_rows(stages, results))
+            return self._stage_of_folds_beyond_range(stages, results)
+        known_points = (*self.first_stage.special_points, *self._special_points_of_rows(stages, results))
         # The tracer joins both lists, so a point in both would be met twice.
         known_points = tuple(point for point in known_points if point not in new_points)
         return replace(
-            self.first,
-            first_item=last_stage.end_item,
+            self.first_stage,
+            first_item_number=last_stage.end_item_number,
             special_points=new_points,
             special_points_not_to_trace=known_points,
-            starts_by_row={row: last_stage.branch_starts_of_row(row) for row in last_stage.crossings},
+            branch_starts_by_row={row: last_stage.branch_starts_of_row(row) for row in last_stage.crossings},
         )
 
-    def _folds_beyond_after(self, stages: Sequence[Stage], results: Results) -> FoldsBeyondRange | None:
+    def _stage_of_folds_beyond_range(
+        self, stages: Sequence[DiagramStage], results: WorkItemResults
+    ) -> FoldsBeyondRange | None:
         """The stage of the folds beyond the range, after complete `stages`; None if it was solved before, or
         if neither a branch nor a curve leaves the range."""
-        if self.extended_axis is None or any(isinstance(stage, FoldsBeyondRange) for stage in stages):
+        if self.axis_extended_beyond_range is None or any(
+            isinstance(stage, FoldsBeyondRange) for stage in stages
+        ):
             return None
-        if not self.leaving_rows and not self.first.point_of_each_leaving_curve(results):
+        if not self.values_of_rows_leaving_range and not self.first_stage.point_of_each_curve_leaving_range(
+            results
+        ):
             return None
-        return FoldsBeyondRange(stages[-1].end_item, self.first.row_axis.name, self.leaving_rows)
+        return FoldsBeyondRange(
+            stages[-1].end_item_number,
+            self.first_stage.row_parameter_axis.name,
+            self.values_of_rows_leaving_range,
+        )
 
-    def _tracer_beyond(
-        self, stages: Sequence[Stage], folds_beyond: FoldsBeyondRange, results: Results
+    def _tracer_beyond_range(
+        self, stages: Sequence[DiagramStage], folds_beyond: FoldsBeyondRange, results: WorkItemResults
     ) -> SpecialCurveTracer | None:
         """Curves within and beyond the range through the folds of `folds_beyond`, and through a special point
         of each curve that leaves the range; None if there are none."""
-        assert self.extended_axis is not None
+        assert self.axis_extended_beyond_range is not None
         # Special points of rows solved again are known only with the starts of their stage.
-        points = folds_beyond.special_points(results) + self.first.point_of_each_leaving_curve(results)
+        points = folds_beyond.special_points(results) + self.first_stage.point_of_each_curve_leaving_range(
+            results
+        )
         if not points:
             return None
-        known_points = (*self.first.special_points, *self._special_points_of_rows(stages, results))
+        known_points = (*self.first_stage.special_points, *self._special_points_of_rows(stages, results))
         return replace(
-            self.first,
-            line_axis=self.extended_axis,
-            first_item=folds_beyond.end_item,
+            self.first_stage,
+            axis_along_row=self.axis_extended_beyond_range,
+            first_item_number=folds_beyond.end_item_number,
             special_points=points,
             special_points_not_to_trace=tuple(point for point in known_points if point not in points),
         )
 
-    def _special_points_of_rows(self, stages: Sequence[Stage], results: Results) -> list[RowSpecialPoint]:
+    def _special_points_of_rows(
+        self, stages: Sequence[DiagramStage], results: WorkItemResults
+    ) -> list[RowSpecialPoint]:
         """Special points of all rows that were solved again."""
         return [
             point
-            for row, values in _changed_rows(stages, results).items()
+            for row, values in _rows_solved_again(stages, results).items()
             for point in self.special_points_of_row(row, values)
         ]
 
     def _new_special_points(
-        self, stages: Sequence[Stage], detached_rows: DetachedRows, results: Results
+        self,
+        stages: Sequence[DiagramStage],
+        detached_rows: RowsWithDetachedBranches,
+        results: WorkItemResults,
     ) -> list[RowSpecialPoint]:
         """Special points of the rows of `detached_rows` that lie on no curve traced so far."""
         points_by_row: dict[int, list[RowSpecialPoint | SpecialPoint]] = {}
@@ -145,23 +170,26 @@ class DiagramStages:
             if not any(point.is_same_as(other) for other in points_by_row.get(point.row_index, ()))
         ]
 
-    def changed_rows(self, results: Results) -> dict[int, dict[str, Array]]:
+    def rows_solved_again(self, results: WorkItemResults) -> dict[int, dict[str, Array]]:
         """Variables of all rows that were solved again, (...,) each, by index of the row."""
-        return _changed_rows(self.stages(results), results)
+        return _rows_solved_again(self.stages(results), results)
 
-    def lost_beyond_count(self, results: Results) -> int:
+    def count_of_curves_lost_beyond_range(self, results: WorkItemResults) -> int:
         """Number of ends at which curves were lost while they were followed beyond the range, where they may
         lead to further rows, plus the number of special points from which no such curve could be followed;
         valid as `curves`. results: arrays, (...,) each, by name and item."""
         count = 0
         for stage in self.stages(results):
-            if isinstance(stage, SpecialCurveTracer) and stage.line_axis != self.first.line_axis:
+            if (
+                isinstance(stage, SpecialCurveTracer)
+                and stage.axis_along_row != self.first_stage.axis_along_row
+            ):
                 traced = stage.curves(results)
-                ends = [end for curve in traced.curves for end in curve.ends]
+                ends = [end for curve in traced.curves for end in curve.end_reasons]
                 count += ends.count(CurveEndReason.not_followed) + traced.untraced_seed_count
         return count
 
-    def curves(self, results: Results) -> TracedCurves[SpecialPointCurve]:
+    def curves(self, results: WorkItemResults) -> TracedCurves[SpecialPointCurve]:
         """The curves of all stages, each only once; valid if the last stage is complete."""
         curves: list[SpecialPointCurve] = []
         stages = self.stages(results)
@@ -169,37 +197,46 @@ class DiagramStages:
         traced_stages = [
             stage.curves(results)
             for stage in stages
-            if isinstance(stage, SpecialCurveTracer) and stage.line_axis == self.first.line_axis
+            if isinstance(stage, SpecialCurveTracer)
+            and stage.axis_along_row == self.first_stage.axis_along_row
         ]
         for curve in (curve for stage_curves in traced_stages for curve in stage_curves.curves):
-            if not any(are_identical_curves(curve, other, self.first.line_axis) for other in curves):
+            if not any(
+                are_identical_curves(curve, other, self.first_stage.axis_along_row) for other in curves
+            ):
                 curves.append(curve)
         return TracedCurves(
             tuple(curves),
-            max(stage_curves.max_seed_distance_in_rows for stage_curves in traced_stages),
+            max(stage_curves.max_seed_distance_per_row_length for stage_curves in traced_stages),
             sum(stage_curves.untraced_seed_count for stage_curves in traced_stages),
         )
 
 
-def _changed_rows(stages: Sequence[Stage], results: Results) -> dict[int, dict[str, Array]]:
+def _rows_solved_again(
+    stages: Sequence[DiagramStage], results: WorkItemResults
+) -> dict[int, dict[str, Array]]:
     """Variables of all rows that were solved again, by index of the row; the last result of a row is
     taken."""
     variables_by_row: dict[int, dict[str, Array]] = {}
     for stage in stages:
-        if isinstance(stage, DetachedRows):
+        if isinstance(stage, RowsWithDetachedBranches):
             # A row that failed has an empty result, and keeps the variables of its earlier stage.
-            items = (item for item in range(stage.first_item, stage.end_item) if results.get(item))
-            variables_by_row |= {stage.row_of(item): results[item] for item in items}
+            items = (
+                item for item in range(stage.first_item_number, stage.end_item_number) if results.get(item)
+            )
+            variables_by_row |= {stage.row_index_of_item(item): results[item] for item in items}
     return dict(sorted(variables_by_row.items()))
 
 
-def _rows_after(tracer: SpecialCurveTracer, stages: Sequence[Stage], results: Results) -> DetachedRows | None:
+def _rows_crossed_by_curves(
+    tracer: SpecialCurveTracer, stages: Sequence[DiagramStage], results: WorkItemResults
+) -> RowsWithDetachedBranches | None:
     """The rows that the curves of `tracer` cross without a special point there; None if there are none."""
     known_crossings: dict[int, tuple[RowCrossing, ...]] = {}
     for stage in stages:
-        known_crossings |= stage.crossings if isinstance(stage, DetachedRows) else {}
+        known_crossings |= stage.crossings if isinstance(stage, RowsWithDetachedBranches) else {}
     new_crossings: dict[int, tuple[RowCrossing, ...]] = {}
-    for crossing in tracer.crossings(results):
+    for crossing in tracer.row_crossings(results):
         row = crossing.row_index
         # A row solved again starts from all points known so far, because its result replaces the earlier one.
         row_crossings = new_crossings.get(row) or known_crossings.get(row, ())
@@ -207,5 +244,7 @@ def _rows_after(tracer: SpecialCurveTracer, stages: Sequence[Stage], results: Re
             new_crossings[row] = (*row_crossings, crossing)
     if not new_crossings:
         return None
-    row_values = {row: tracer.complete_rows[row] for row in new_crossings}
-    return DetachedRows(tracer.end_item, tracer.row_axis.name, row_values, new_crossings)
+    row_values = {row: tracer.values_of_rows_with_known_branches[row] for row in new_crossings}
+    return RowsWithDetachedBranches(
+        tracer.end_item_number, tracer.row_parameter_axis.name, row_values, new_crossings
+    )

@@ -16,8 +16,8 @@ from ....arrays import Array
 from ...cycle.accuracy.settings import REFINEMENT_SETTINGS
 from ...unsolvable import Unsolvable
 from ..arc_length_step import BranchCycle, arc_length_between
-from .locating import kind_at_minus_one, special_point_between
-from .special_point import SPECIAL_POINT_SETTINGS, SpecialKind, SpecialPoint
+from .locating import kind_at_multiplier_minus_one, special_point_between
+from .special_point import SPECIAL_POINT_SETTINGS, SpecialPoint, SpecialPointKind
 
 CycleAtArcLength = Callable[[BranchCycle, float], BranchCycle]
 """Function of a cycle and an arc length that returns the cycle at this arc length ahead; raises
@@ -26,26 +26,26 @@ Unsolvable."""
 
 def unstable_multiplier_count(point: BranchCycle) -> int:
     """Number of nontrivial multipliers of a cycle, over the solved time interval, outside the unit circle."""
-    return int((np.abs(point.multipliers_over_solved_part) > 1).sum())
+    return int((np.abs(point.multipliers_over_solved_time_interval) > 1).sum())
 
 
 class DetectedKinds(NamedTuple):
-    """Kinds of the special points between two cycles. explain_count_change: whether these kinds explain the
-    change of the number of multipliers outside the unit circle."""
+    """Kinds of the special points between two cycles. explain_unstable_count_change: whether these kinds
+    explain the change of the number of multipliers outside the unit circle."""
 
-    kinds: list[SpecialKind]
-    explain_count_change: bool
+    kinds: list[SpecialPointKind]
+    explain_unstable_count_change: bool
 
 
 def special_kinds_between(start: BranchCycle, end: BranchCycle) -> DetectedKinds:
     """Kinds of the special points between the cycles `start` and `end`."""
     kinds = []
     # A fold is where the parameter turns; a multiplier near 1 is too uncertain to show it.
-    if start.parameter_rate * end.parameter_rate < 0:
-        kinds.append(SpecialKind.fold)
+    if start.parameter_per_arc_length * end.parameter_per_arc_length < 0:
+        kinds.append(SpecialPointKind.fold)
     # Two multipliers may pass -1 together or become a pair near -1; an odd difference needs a crossing.
-    if (_count_beyond_minus_one(start) - _count_beyond_minus_one(end)) % 2:
-        kinds.append(kind_at_minus_one(start.orbit))
+    if (_count_of_multipliers_below_minus_one(start) - _count_of_multipliers_below_minus_one(end)) % 2:
+        kinds.append(kind_at_multiplier_minus_one(start.orbit))
     count_change = abs(unstable_multiplier_count(end) - unstable_multiplier_count(start))
     # Near a fold a multiplier is 1 within its error; the counts at `start` and `end` may be wrong by one.
     count_tolerance = 1 if _has_multiplier_near_one(start) or _has_multiplier_near_one(end) else 0
@@ -53,29 +53,34 @@ def special_kinds_between(start: BranchCycle, end: BranchCycle) -> DetectedKinds
     if not kinds and count_change - count_tolerance > 1:
         # Two real multipliers that cross together also change the count by two, but are no torus point.
         is_pair = count_change == 2 and all(map(_has_complex_pair, (start, end)))
-        return DetectedKinds([SpecialKind.torus], is_pair)
+        return DetectedKinds([SpecialPointKind.torus], is_pair)
     # With two kinds in one step the changes may cancel, so the step is halved instead.
     return DetectedKinds(kinds, len(kinds) <= 1 and abs(count_change - len(kinds)) <= count_tolerance)
 
 
-def fold_and_breaking_between(start: BranchCycle, end: BranchCycle) -> list[SpecialKind]:
+def fold_and_breaking_between(start: BranchCycle, end: BranchCycle) -> list[SpecialPointKind]:
     """Kinds of the special points between two cycles at which further branches may begin or a branch turns
     back: fold, and symmetry breaking."""
     # Torus points are left out: no branch of cycles begins at one, and the branch does not turn.
-    kinds = [SpecialKind.fold] if start.parameter_rate * end.parameter_rate < 0 else []
-    if start.orbit.is_symmetric and (_count_beyond_minus_one(start) - _count_beyond_minus_one(end)) % 2:
-        kinds.append(SpecialKind.symmetry_breaking)
+    kinds = (
+        [SpecialPointKind.fold] if start.parameter_per_arc_length * end.parameter_per_arc_length < 0 else []
+    )
+    if (
+        start.orbit.is_symmetric
+        and (_count_of_multipliers_below_minus_one(start) - _count_of_multipliers_below_minus_one(end)) % 2
+    ):
+        kinds.append(SpecialPointKind.symmetry_breaking)
     return kinds
 
 
-def _count_beyond_minus_one(point: BranchCycle) -> int:
+def _count_of_multipliers_below_minus_one(point: BranchCycle) -> int:
     """Number of real multipliers of a cycle, over the solved time interval, that are less than -1."""
     return int((_real_multipliers(point) < -1).sum())
 
 
 def _real_multipliers(point: BranchCycle) -> Array:
     """The real multipliers of a cycle over the solved time interval, (multipliers,)."""
-    h = point.multipliers_over_solved_part
+    h = point.multipliers_over_solved_time_interval
     # Eigenvalue solvers return a real double multiplier as a pair with a tiny imaginary part.
     return h.real[np.abs(h.imag) <= SPECIAL_POINT_SETTINGS.real_multiplier_tolerance * np.abs(h)]
 
@@ -83,13 +88,14 @@ def _real_multipliers(point: BranchCycle) -> Array:
 def _has_multiplier_near_one(point: BranchCycle) -> bool:
     return bool(
         (
-            np.abs(point.multipliers_over_solved_part - 1) < SPECIAL_POINT_SETTINGS.unit_multiplier_distance
+            np.abs(point.multipliers_over_solved_time_interval - 1)
+            < SPECIAL_POINT_SETTINGS.max_distance_from_multiplier_one
         ).any()
     )
 
 
 def _has_complex_pair(point: BranchCycle) -> bool:
-    h = point.multipliers_over_solved_part
+    h = point.multipliers_over_solved_time_interval
     return bool((np.abs(h.imag) > SPECIAL_POINT_SETTINGS.real_multiplier_tolerance * np.abs(h)).any())
 
 
@@ -102,8 +108,8 @@ def lie_on_one_branch(start: BranchCycle, end: BranchCycle) -> bool:
     branches meet. If the sign is uncertain, because a multiplier is 1 within its error, the prediction error
     of `end` decides, unless nothing changes.
     """
-    has_fold = start.parameter_rate * end.parameter_rate < 0
-    change = _count_beyond_one(start) - _count_beyond_one(end)
+    has_fold = start.parameter_per_arc_length * end.parameter_per_arc_length < 0
+    change = _count_of_multipliers_above_one(start) - _count_of_multipliers_above_one(end)
     # Each fold moves one multiplier through 1, and a smooth branch has no other reason for an odd change.
     if not any(map(_has_multiplier_indistinct_from_trivial, (start, end))):
         return change % 2 == int(has_fold)
@@ -113,11 +119,11 @@ def lie_on_one_branch(start: BranchCycle, end: BranchCycle) -> bool:
 
 def _has_multiplier_indistinct_from_trivial(point: BranchCycle) -> bool:
     """Whether a nontrivial multiplier of the cycle cannot be told from the trivial one on this mesh."""
-    error = REFINEMENT_SETTINGS.multiplier_error_factor * point.cycle.trivial_multiplier_error
-    return bool((np.abs(point.multipliers_over_solved_part - 1) <= error).any())
+    error = REFINEMENT_SETTINGS.multiplier_error_per_matrix_distance * point.cycle.trivial_multiplier_error
+    return bool((np.abs(point.multipliers_over_solved_time_interval - 1) <= error).any())
 
 
-def _count_beyond_one(point: BranchCycle) -> int:
+def _count_of_multipliers_above_one(point: BranchCycle) -> int:
     """Number of real multipliers of a cycle, over the solved time interval, that are larger than 1."""
     return int((_real_multipliers(point) > 1).sum())
 
@@ -139,7 +145,7 @@ def special_points_between(
     """
     kinds, are_complete = special_kinds_between(start, end)
     points = [special_point_between(kind, start, end, accuracy) for kind in kinds] if are_complete else []
-    if halvings < SPECIAL_POINT_SETTINGS.max_halvings and (
+    if halvings < SPECIAL_POINT_SETTINGS.max_step_halvings and (
         not are_complete or any(point.message for point in points)
     ):
         try:

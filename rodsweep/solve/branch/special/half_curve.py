@@ -3,11 +3,11 @@
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
 
-from ...point_outcome import FAILURES
+from ...point_outcome import FAILURE_EXCEPTIONS
 from ...unsolvable import Unsolvable
 from .curve_problem import SpecialCurveProblem
 from .row_crossing import RowCrossing
-from .solved_curve_point import SolvedPoint
+from .solved_curve_point import SolvedCurvePoint
 from .special_curves import CURVE_IDENTITY_SETTINGS, CurvePoint, HalfCurve, TracedHalfCurve
 from .special_point import RowSpecialPoint, SpecialPoint
 
@@ -17,29 +17,32 @@ def trace_half_curve(
     special_point: RowSpecialPoint,
     located: Iterable[SpecialPoint],
     special_points: Sequence[RowSpecialPoint],
-    complete_rows: Mapping[int, float],
+    values_of_rows_with_known_branches: Mapping[int, float],
 ) -> TracedHalfCurve:
     """One half of a curve, from the point in `located` that agrees with `special_point`; the field `half` is
     None if no point agrees or after a failure. located: special points of the row, with cycles.
-    special_points: special points of all rows. complete_rows: value of the row parameter, by index, of the
-    rows whose branches are all known."""
-    row_length = abs(problem.line_axis.parameter_per_coordinate(special_point.parameter_value))
+    special_points: special points of all rows. values_of_rows_with_known_branches: value of the row
+    parameter, by index, of the rows whose branches are all known."""
+    row_length = abs(problem.axis_along_row.parameter_per_scaled_coordinate(special_point.parameter_value))
     # The stored point has no cycle; the located point that has one is recognised by its values.
     matches = [
         point
         for point in located
         if point.kind == special_point.kind
         and abs(point.parameter_value - special_point.parameter_value)
-        <= CURVE_IDENTITY_SETTINGS.max_row_distance_fraction * row_length
-        and abs(point.period / special_point.period - 1) <= CURVE_IDENTITY_SETTINGS.max_period_difference
+        <= CURVE_IDENTITY_SETTINGS.max_distance_from_curve_per_row_length * row_length
+        and abs(point.period / special_point.period - 1)
+        <= CURVE_IDENTITY_SETTINGS.max_relative_period_difference
     ]
     if not matches:
         return TracedHalfCurve(None)
     try:
-        points, end = problem.follow_from(matches[0], special_point.row_value)
-    except (*FAILURES, ValueError):  # a logarithmic axis refuses a value that is not positive
+        points, end = problem.follow_from(matches[0], special_point.row_parameter_value)
+    except (*FAILURE_EXCEPTIONS, ValueError):  # a logarithmic axis refuses a value that is not positive
         return TracedHalfCurve(None)
-    distances, crossings = _special_points_and_row_crossings(problem, points, special_points, complete_rows)
+    distances, crossings = _special_points_and_row_crossings(
+        problem, points, special_points, values_of_rows_with_known_branches
+    )
     return TracedHalfCurve(
         HalfCurve(tuple(map(CurvePoint.from_solved_point, points)), end), distances, crossings
     )
@@ -47,79 +50,83 @@ def trace_half_curve(
 
 def _special_points_and_row_crossings(
     problem: SpecialCurveProblem,
-    points: Sequence[SolvedPoint],
+    points: Sequence[SolvedCurvePoint],
     special_points: Sequence[RowSpecialPoint],
-    complete_rows: Mapping[int, float],
+    values_of_rows_with_known_branches: Mapping[int, float],
 ) -> tuple[dict[int, float], tuple[RowCrossing, ...]]:
     """Returns (distances, crossings). distances: distance along the row, in row lengths, of each special
     point that lies on the curve through `points`, by its index. crossings: crossings with complete rows at
-    which no special point lies. special_points: special points of all rows. complete_rows: value of the row
-    parameter, by index, of the rows whose branches are all known."""
+    which no special point lies. special_points: special points of all rows.
+    values_of_rows_with_known_branches: value of the row parameter, by index, of the rows whose branches are
+    all known."""
     indices_by_row: dict[int, list[int]] = {}
     for i, special_point in enumerate(special_points):
         if special_point.kind == problem.kind:
             indices_by_row.setdefault(special_point.row_index, []).append(i)
     # Rows with special points are crossed too, to recognise the points that lie on this curve.
-    rows = dict(complete_rows) | {
-        special_points[i[0]].row_index: special_points[i[0]].row_value for i in indices_by_row.values()
+    rows = dict(values_of_rows_with_known_branches) | {
+        special_points[i[0]].row_index: special_points[i[0]].row_parameter_value
+        for i in indices_by_row.values()
     }
     distances: dict[int, float] = {}
     crossings = []
     for first, second in pairwise(points):
         low, high = sorted((first.row_coordinate, second.row_coordinate))
         for index, value in rows.items():
-            row_coordinate = problem.row_axis.coordinate(value)
+            row_coordinate = problem.row_parameter_axis.scaled_coordinate(value)
             near_indices = [
                 i
                 for i in indices_by_row.get(index, ())
-                if _may_be_near(problem, first, second, special_points[i])
+                if _may_lie_on_curve_between(problem, first, second, special_points[i])
             ]
             # A crossing costs a cycle, so it is solved only where a point may be found or missed.
-            if not low <= row_coordinate <= high or not (near_indices or index in complete_rows):
+            may_matter = near_indices or index in values_of_rows_with_known_branches
+            if not low <= row_coordinate <= high or not may_matter:
                 continue
             try:
                 crossing = problem.point_on_row(first, second, row_coordinate)
             # Without this crossing a point may stay unmatched; then a further curve is traced through it.
             except Unsolvable:
                 continue
-            distances_here = _distances(problem, crossing, {i: special_points[i] for i in near_indices})
+            near_points = {i: special_points[i] for i in near_indices}
+            distances_here = _distances_along_row(problem, crossing, near_points)
             for i, distance in distances_here.items():
                 # A curve that turns may cross a row several times; the nearest crossing is at the point.
                 distances[i] = min(distance, distances.get(i, distance))
             # Only on a complete row does a crossing without a special point prove that a branch was missed.
-            if not distances_here and index in complete_rows:
+            if not distances_here and index in values_of_rows_with_known_branches:
                 # The crossing itself has no measured error; its neighbours lie within one step of it.
-                error = max(first.error, second.error)
+                error = max(first.branch_parameter_error, second.branch_parameter_error)
                 crossings.append(RowCrossing.from_solved_point(index, problem.kind, crossing, error))
     return dict(sorted(distances.items())), tuple(crossings)
 
 
-def _distances(
-    problem: SpecialCurveProblem, crossing: SolvedPoint, special_points: Mapping[int, RowSpecialPoint]
+def _distances_along_row(
+    problem: SpecialCurveProblem, crossing: SolvedCurvePoint, special_points: Mapping[int, RowSpecialPoint]
 ) -> dict[int, float]:
     """Distance along the row, in row lengths, of each point of `special_points` that agrees with the point
     `crossing` of a curve on the same row."""
-    coordinate = problem.line_axis.coordinate(crossing.parameter)
+    coordinate = problem.axis_along_row.scaled_coordinate(crossing.branch_parameter)
     distances = {
-        i: abs(coordinate - problem.line_axis.coordinate(special_point.parameter_value))
+        i: abs(coordinate - problem.axis_along_row.scaled_coordinate(special_point.parameter_value))
         for i, special_point in special_points.items()
         if abs(crossing.orbit.period / special_point.period - 1)
-        <= CURVE_IDENTITY_SETTINGS.max_period_difference
+        <= CURVE_IDENTITY_SETTINGS.max_relative_period_difference
     }
     return {
         i: distance
         for i, distance in distances.items()
-        if distance <= CURVE_IDENTITY_SETTINGS.max_row_distance_fraction
+        if distance <= CURVE_IDENTITY_SETTINGS.max_distance_from_curve_per_row_length
     }
 
 
-def _may_be_near(
-    problem: SpecialCurveProblem, a: SolvedPoint, b: SolvedPoint, special_point: RowSpecialPoint
+def _may_lie_on_curve_between(
+    problem: SpecialCurveProblem, a: SolvedCurvePoint, b: SolvedCurvePoint, special_point: RowSpecialPoint
 ) -> bool:
     """Whether the special point `special_point` may lie on a curve between its successive points `a` and
     `b`."""
-    x = problem.line_axis.coordinate(special_point.parameter_value)
-    ends = sorted(problem.line_axis.coordinate(p.parameter) for p in (a, b))
+    x = problem.axis_along_row.scaled_coordinate(special_point.parameter_value)
+    ends = sorted(problem.axis_along_row.scaled_coordinate(p.branch_parameter) for p in (a, b))
     periods = sorted(p.orbit.period for p in (a, b))
     margin = CURVE_IDENTITY_SETTINGS.max_chord_distance_per_row_length
     # The curve may bulge beyond its chord, hence a margin in the parameter and in the period.

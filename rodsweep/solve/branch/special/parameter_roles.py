@@ -17,20 +17,20 @@ from ....model.rod import Rod
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ..bordered.matrix import BorderedMatrix
 from ..bordered.scale import ArcLengthScale
-from .solved_curve_point import SolvedPoint, arc_lengths
+from .solved_curve_point import SolvedCurvePoint, arc_lengths_from_last_point
 from .special_curves import CURVE_IDENTITY_SETTINGS, lagrange_weights
-from .special_point import SpecialKind
+from .special_point import SpecialPointKind
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ParameterRoleSettings:
     """Settings for the choice of the parameter along the branch."""
 
-    max_slope: float = 0.02
+    max_slope_to_exchange_roles: float = 0.02
     """The parameters exchange their roles where the relative change of the row parameter along the curve is
     at most this number times the relative change of the parameter along a row. With larger slopes the errors
     of the parameter along a row are smaller without the exchange."""
-    min_coordinate_unit_ratio: float = 0.01
+    min_coordinate_unit_per_axis_length: float = 0.01
     """Smallest unit of a parameter coordinate, divided by the length of its axis: parameters may be 0."""
 
 
@@ -40,24 +40,25 @@ PARAMETER_ROLE_SETTINGS = ParameterRoleSettings()
 @dataclass(frozen=True, slots=True)
 class ParameterRoles:
     """The two axes of a plane, and points of a curve of special points with each of its two parameters as the
-    branch parameter. line_axis, row_axis: axes of the parameter along a row and of the row parameter. In a
-    point with exchanged roles `parameter` is a value of the row parameter, and `row_coordinate` a position on
-    `line_axis`."""
+    branch parameter. axis_along_row, row_parameter_axis: axes of the parameter along a row and of the row
+    parameter. In a point with exchanged roles `branch_parameter` is a value of the row parameter, and
+    `row_coordinate` a position on `axis_along_row`."""
 
-    kind: SpecialKind
-    line_axis: PlaneAxis
-    row_axis: PlaneAxis
+    kind: SpecialPointKind
+    """Kind of the points of the curve; parameters exchange their roles only along curves of folds."""
+    axis_along_row: PlaneAxis
+    row_parameter_axis: PlaneAxis
 
-    def are_exchanged_at(self, point: SolvedPoint) -> bool:
+    def are_exchanged_at(self, point: SolvedCurvePoint) -> bool:
         """Whether the row parameter is the branch parameter of `point`."""
-        return point.scale.parameter_name != self.line_axis.name
+        return point.scale.parameter_name != self.axis_along_row.name
 
-    def axes_of(self, point: SolvedPoint) -> tuple[PlaneAxis, PlaneAxis]:
+    def axes_of(self, point: SolvedCurvePoint) -> tuple[PlaneAxis, PlaneAxis]:
         """(axis of the branch parameter, axis of the other parameter) of `point`."""
-        axes = self.line_axis, self.row_axis
+        axes = self.axis_along_row, self.row_parameter_axis
         return axes[::-1] if self.are_exchanged_at(point) else axes
 
-    def with_roles(self, point: SolvedPoint, exchanged: bool) -> SolvedPoint:
+    def with_roles(self, point: SolvedCurvePoint, exchanged: bool) -> SolvedCurvePoint:
         """The point `point` with the row parameter (if `exchanged`) or the parameter along a row as the
         branch parameter. Derivatives and the measured error of a point whose roles change are unknown."""
         if self.are_exchanged_at(point) == exchanged:
@@ -71,85 +72,92 @@ class ParameterRoles:
             scale=ArcLengthScale.at_orbit(
                 point.orbit, branch_axis.name, point.scale.min_deflection_unit, unit
             ),
-            row_coordinate=other_axis.coordinate(point.parameter),
-            parameter=point.row_parameter,
-            row_parameter=point.parameter,
+            row_coordinate=other_axis.scaled_coordinate(point.branch_parameter),
+            branch_parameter=point.row_parameter,
+            row_parameter=point.branch_parameter,
             measured_error=None,
             secant_error=0.0,
             normal_derivatives=None,
         )
 
-    def in_plane(self, point: SolvedPoint) -> SolvedPoint:
+    def with_unexchanged_roles(self, point: SolvedCurvePoint) -> SolvedCurvePoint:
         """The point `point` with the parameter along a row as the branch parameter."""
         return self.with_roles(point, exchanged=False)
 
-    def need_exchange_between(self, first: SolvedPoint, second: SolvedPoint) -> bool:
+    def need_exchange_between(self, first: SolvedCurvePoint, second: SolvedCurvePoint) -> bool:
         """Whether the parameters exchange their roles on the chord between two points of a curve."""
         changes = (
             second.orbit.form.rod.coordinate(axis.name) - first.orbit.form.rod.coordinate(axis.name)
-            for axis in (self.line_axis, self.row_axis)
+            for axis in (self.axis_along_row, self.row_parameter_axis)
         )
-        return self._is_flat(second.orbit.form.rod, *changes)
+        return self._is_row_parameter_almost_constant(second.orbit.form.rod, *changes)
 
-    def need_exchange_beyond(self, points: Sequence[SolvedPoint], length: float) -> bool:
+    def need_exchange_beyond(self, points: Sequence[SolvedCurvePoint], length: float) -> bool:
         """Whether the parameters exchange their roles on the step of the arc length `length` beyond the last
         of `points`: on the last chord or on the predicted chord the row parameter hardly changes, or it turns
         back between these chords and the parameter along a row does not."""
         last_points = [
-            self.in_plane(point) for point in points[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
+            self.with_unexchanged_roles(point)
+            for point in points[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
         ]
         # Roles are compared in the plane, because earlier points may have exchanged roles.
         if self.need_exchange_between(*last_points[-2:]):
             return True
         rods = [point.orbit.form.rod for point in last_points]
-        names = self.line_axis.name, self.row_axis.name
+        names = self.axis_along_row.name, self.row_parameter_axis.name
         coordinates = np.array([[rod.coordinate(name) for name in names] for rod in rods])
-        predicted_change = lagrange_weights(arc_lengths(last_points), length) @ coordinates - coordinates[-1]
+        predicted_change = (
+            lagrange_weights(arc_lengths_from_last_point(last_points), length) @ coordinates - coordinates[-1]
+        )
         # A parameter that turns within the step is flat somewhere in it, even if neither chord is.
         turns = predicted_change * (coordinates[-1] - coordinates[-2]) < 0
         # If both turn, as at a cusp, the exchange gains nothing.
-        return bool(turns[1] and not turns[0]) or self._is_flat(rods[-1], *predicted_change)
+        return bool(turns[1] and not turns[0]) or self._is_row_parameter_almost_constant(
+            rods[-1], *predicted_change
+        )
 
-    def need_exchange_at(self, point: SolvedPoint, slope: float) -> bool:
+    def need_exchange_at(self, point: SolvedCurvePoint, slope: float) -> bool:
         """Whether the parameters exchange their roles on the first step from `point`, whose branch parameter
         is the parameter along a row. slope: `axis_slope_at` this point."""
         rod = point.orbit.form.rod
         changes = (
-            axis.path_variable_per_coordinate(getattr(rod, axis.name))
-            for axis in (self.line_axis, self.row_axis)
+            axis.path_variable_per_scaled_coordinate(getattr(rod, axis.name))
+            for axis in (self.axis_along_row, self.row_parameter_axis)
         )
         # At the first point no chord exists yet, so the slope of the curve comes from the matrix.
         line_change, row_change = changes
-        return self._is_flat(rod, slope * line_change, row_change)
+        return self._is_row_parameter_almost_constant(rod, slope * line_change, row_change)
 
-    def axis_slope_at(self, point: SolvedPoint, workspace: NewtonWorkspace) -> float:
+    def axis_slope_at(self, point: SolvedCurvePoint, workspace: NewtonWorkspace) -> float:
         """Derivative of the position on the axis of the branch parameter of `point` with respect to the
         position on the other axis, along the curve. workspace: memory of Newton's matrices."""
         matrix = BorderedMatrix(point.orbit, point.scale, workspace)
         rod = point.orbit.form.rod
         branch_change, other_change = (
-            axis.path_variable_per_coordinate(getattr(rod, axis.name)) for axis in self.axes_of(point)
+            axis.path_variable_per_scaled_coordinate(getattr(rod, axis.name)) for axis in self.axes_of(point)
         )
         # At a fold the parameter is stationary along the branch, so only the other one moves the fold.
-        response = matrix.derivative_by_other_parameter(self.axes_of(point)[1].name, point.branch_direction)
+        response = matrix.parameter_derivative_by_other_parameter(
+            self.axes_of(point)[1].name, point.branch_direction
+        )
         return response * other_change / branch_change
 
-    def _is_flat(self, rod: Rod, line_change: float, row_change: float) -> bool:
+    def _is_row_parameter_almost_constant(self, rod: Rod, line_change: float, row_change: float) -> bool:
         """Whether the row parameter hardly changes in comparison with the parameter along a row. rod: rod
         whose parameters are the units. line_change, row_change: changes of the coordinates of both
         parameters."""
-        if self.kind != SpecialKind.fold:
+        if self.kind != SpecialPointKind.fold:
             return False
         # Relative changes, because the two parameters may have ranges of very different size.
         line_ratio, row_ratio = (
             abs(change) / max(abs(rod.coordinate(axis.name)), self._min_coordinate_unit(axis))
-            for axis, change in ((self.line_axis, line_change), (self.row_axis, row_change))
+            for axis, change in ((self.axis_along_row, line_change), (self.row_parameter_axis, row_change))
         )
-        return row_ratio <= PARAMETER_ROLE_SETTINGS.max_slope * line_ratio
+        return row_ratio <= PARAMETER_ROLE_SETTINGS.max_slope_to_exchange_roles * line_ratio
 
     def _min_coordinate_unit(self, axis: PlaneAxis) -> float:
         """Smallest unit of the coordinate of the parameter of `axis`."""
         parameter = PARAMETERS[axis.name]
         # The limits may be values of a stiffness, whose coordinate is its inverse.
         length = abs(parameter.coordinate(axis.stop) - parameter.coordinate(axis.start))
-        return PARAMETER_ROLE_SETTINGS.min_coordinate_unit_ratio * float(length)
+        return PARAMETER_ROLE_SETTINGS.min_coordinate_unit_per_axis_length * float(length)

@@ -8,8 +8,8 @@ from numpy import array
 
 from ....arrays import Array
 from ...orbit.stored_orbit import orbit_arrays, orbit_from_arrays
-from .solved_curve_point import CURVE_SECANT_SETTINGS, SolvedPoint
-from .special_point import SpecialKind, SpecialPoint
+from .solved_curve_point import CURVE_SECANT_SETTINGS, SolvedCurvePoint
+from .special_point import SpecialPoint, SpecialPointKind
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,17 +22,17 @@ class RowCrossing:
 
     @classmethod
     def from_solved_point(
-        cls, row_index: int, kind: SpecialKind, point: SolvedPoint, error: float
+        cls, row_index: int, kind: SpecialPointKind, point: SolvedCurvePoint, error: float
     ) -> "RowCrossing":
         """The crossing at the point `point` of a curve of special points of the kind `kind`. error: absolute
         error of the parameter along a row at the neighbouring points of the curve."""
         special_point = SpecialPoint(
             kind=kind,
-            parameter_value=point.parameter,
+            parameter_value=point.branch_parameter,
             period=point.orbit.period,
             tip_y_max=point.tip_y_max,
             # By chance the error at the neighbours may be below the accuracy of the crossing.
-            error=max(error, CURVE_SECANT_SETTINGS.accuracy * abs(point.parameter)),
+            error=max(error, CURVE_SECANT_SETTINGS.accuracy * abs(point.branch_parameter)),
             orbit=point.orbit,
         )
         return cls(row_index, special_point)
@@ -59,7 +59,7 @@ class RowCrossing:
         row_index, kind, value, tip_y_max, error, is_omega_always_unknown = map(float, arrays["crossing"])
         orbit = orbit_from_arrays(arrays, bool(is_omega_always_unknown))
         point = SpecialPoint(
-            kind=SpecialKind(int(kind)),
+            kind=SpecialPointKind(int(kind)),
             parameter_value=value,
             period=orbit.period,
             tip_y_max=tip_y_max,

@@ -4,13 +4,10 @@ or two branches exchange their parts."""
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import nan, sqrt
-from typing import TYPE_CHECKING
 
-from ...point_outcome import FAILURES
-from .solved_curve_point import ALONG_BRANCH, CURVE_SECANT_SETTINGS, SolvedPoint
-
-if TYPE_CHECKING:
-    from .curve_problem import SpecialCurveProblem  # for annotations only: the module imports this one
+from ...point_outcome import FAILURE_EXCEPTIONS
+from .curve_point_solver import CurvePointSolver
+from .solved_curve_point import CURVE_SECANT_SETTINGS, SEARCH_LINE_ALONG_BRANCH, SolvedCurvePoint
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -26,31 +23,42 @@ ROW_EXTREMUM_SETTINGS = RowExtremumSettings()
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class _SlopedPoint:
+class _PointWithSlope:
     """A point of a curve with exchanged roles. slope: derivative of the position on the row axis with respect
     to the position on the axis of the parameter along a row, along the curve."""
 
-    point: SolvedPoint
+    point: SolvedCurvePoint
     slope: float
 
 
-def with_row_extrema(problem: "SpecialCurveProblem", points: Sequence[SolvedPoint]) -> list[SolvedPoint]:
+def points_with_row_parameter_extrema(
+    problem: CurvePointSolver, points: Sequence[SolvedCurvePoint]
+) -> list[SolvedCurvePoint]:
     """The points of a curve, in order, with the parameter along a row as the branch parameter, and further
-    points at the extrema of the row parameter. points: points with errors and any roles of the parameters.
-    An extremum that cannot be located is omitted; the point after it has a `row_extremum_error` of NaN."""
+    points at the extrema of the row parameter. points: points with errors and any roles of the parameters. An
+    extremum that cannot be located is omitted; the point after it has a `row_parameter_error_at_extremum` of
+    NaN."""
     sloped_points = {}
     for i, point in enumerate(points):
         # The chords to and from points with exchanged roles.
         if any(map(problem.are_exchanged_at, points[max(i - 1, 0) : i + 2])):
             exchanged = problem.with_roles(point, exchanged=True)
-            sloped_points[i] = _SlopedPoint(exchanged, problem.axis_slope_at(exchanged, problem.workspace))
-    result: list[SolvedPoint] = []
+            sloped_points[i] = _PointWithSlope(exchanged, problem.axis_slope_at(exchanged, problem.workspace))
+    result: list[SolvedCurvePoint] = []
     extremum_error = 0.0
     for i, point in enumerate(points):
         # The stored error belongs to the branch parameter, which is another one with exchanged roles.
         has_plane_error = not problem.are_exchanged_at(point)
-        error = point.error if has_plane_error else _error_along_row(problem, sloped_points, i)
-        result.append(replace(problem.in_plane(point), error=error, row_extremum_error=extremum_error))
+        error = (
+            point.branch_parameter_error if has_plane_error else _error_along_row(problem, sloped_points, i)
+        )
+        result.append(
+            replace(
+                problem.with_unexchanged_roles(point),
+                branch_parameter_error=error,
+                row_parameter_error_at_extremum=extremum_error,
+            )
+        )
         extremum_error = 0.0
         if (
             i in sloped_points
@@ -59,61 +67,68 @@ def with_row_extrema(problem: "SpecialCurveProblem", points: Sequence[SolvedPoin
         ):
             try:
                 result.append(_located_extremum(problem, sloped_points[i], sloped_points[i + 1]))
-            except FAILURES:
+            except FAILURE_EXCEPTIONS:
                 # An extremum that exists but is not located leaves the range of rows with a branch unknown.
                 extremum_error = nan
     return result
 
 
 def _error_along_row(
-    problem: "SpecialCurveProblem", sloped_points: Mapping[int, _SlopedPoint], i: int
+    problem: CurvePointSolver, sloped_points: Mapping[int, _PointWithSlope], i: int
 ) -> float:
     """Absolute error of the parameter along a row at point i, at which only the error of the row parameter is
     known."""
     sloped_point = sloped_points[i]
-    line_axis = problem.line_axis
-    row_axis = problem.row_axis
-    error = sloped_point.point.error / abs(row_axis.parameter_per_coordinate(sloped_point.point.parameter))
+    line_axis = problem.axis_along_row
+    row_axis = problem.row_parameter_axis
+    error = sloped_point.point.branch_parameter_error / abs(
+        row_axis.parameter_per_scaled_coordinate(sloped_point.point.branch_parameter)
+    )
     # Near the extremum the slope alone would give an infinite error, so the curvature limits it.
     curvature = max(
         abs(_slope_change_rate(sloped_point, sloped_points[j])) for j in (i - 1, i + 1) if j in sloped_points
     )
     # The distance d along the row at which |slope| d + curvature d^2 / 2 is the error of the row coordinate.
     distance = 2 * error / (abs(sloped_point.slope) + sqrt(sloped_point.slope**2 + 2 * curvature * error))
-    return distance * abs(line_axis.parameter_per_coordinate(sloped_point.point.row_parameter))
+    return distance * abs(line_axis.parameter_per_scaled_coordinate(sloped_point.point.row_parameter))
 
 
-def _slope_change_rate(first: _SlopedPoint, second: _SlopedPoint) -> float:
+def _slope_change_rate(first: _PointWithSlope, second: _PointWithSlope) -> float:
     """Change of the slope between two points, divided by the change of the position along a row."""
     return (second.slope - first.slope) / (second.point.row_coordinate - first.point.row_coordinate)
 
 
 def _located_extremum(
-    problem: "SpecialCurveProblem", first: _SlopedPoint, second: _SlopedPoint
-) -> SolvedPoint:
+    problem: CurvePointSolver, first: _PointWithSlope, second: _PointWithSlope
+) -> SolvedCurvePoint:
     """The extremum of the row parameter between two successive points of a curve, with the errors of both
     parameters; raises Unsolvable."""
     slopes = first.slope, second.slope
     tolerance = ROW_EXTREMUM_SETTINGS.relative_slope_tolerance * abs(second.slope - first.slope)
 
-    def slope(point: SolvedPoint) -> float:
+    def slope(point: SolvedCurvePoint) -> float:
         return problem.axis_slope_at(point, problem.workspace)
 
-    point = problem.zero_between(first.point, second.point, slope, slopes, tolerance)
-    family = problem.family(point)
+    point = problem.point_at_zero_between(first.point, second.point, slope, slopes, tolerance)
+    family = problem.cycle_family_at(point)
     finer_mesh = family.finer_mesh_than(point)
     # The row on the finer mesh is compared at the same place along the row, where it is stationary.
     fine = family.corrected_point(
-        finer_mesh.interpolated_orbit(point.orbit), point.row_coordinate, ALONG_BRANCH
+        finer_mesh.interpolated_orbit(point.orbit), point.row_coordinate, SEARCH_LINE_ALONG_BRANCH
     )
-    slope_error = CURVE_SECANT_SETTINGS.error_factor * abs(slope(fine) - slope(point)) + tolerance
-    line_axis = problem.line_axis
+    slope_error = (
+        CURVE_SECANT_SETTINGS.error_per_mesh_difference * abs(slope(fine) - slope(point)) + tolerance
+    )
+    line_axis = problem.axis_along_row
     # An extremum is displaced by the error of the slope over its rate of change.
     distance = slope_error / abs(_slope_change_rate(first, second))
-    # With exchanged roles `parameter` is the row parameter.
-    difference = CURVE_SECANT_SETTINGS.error_factor * abs(fine.parameter - point.parameter)
+    # With exchanged roles `branch_parameter` is the row parameter.
+    difference = CURVE_SECANT_SETTINGS.error_per_mesh_difference * abs(
+        fine.branch_parameter - point.branch_parameter
+    )
     return replace(
-        problem.in_plane(point),
-        error=distance * abs(line_axis.parameter_per_coordinate(point.row_parameter)),
-        row_extremum_error=difference + CURVE_SECANT_SETTINGS.min_error * abs(point.parameter),
+        problem.with_unexchanged_roles(point),
+        branch_parameter_error=distance * abs(line_axis.parameter_per_scaled_coordinate(point.row_parameter)),
+        row_parameter_error_at_extremum=difference
+        + CURVE_SECANT_SETTINGS.min_relative_error * abs(point.branch_parameter),
     )

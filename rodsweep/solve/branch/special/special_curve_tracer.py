@@ -9,7 +9,7 @@ from typing import ClassVar
 from ....determinant.parameter_plane import PlaneAxis
 from ...continuation.curve_search import CurveTracingState, TracedCurves, trace_all_curves
 from ...orbit.matrix.workspace import NewtonWorkspace
-from .curve_ends import END_SETTINGS, are_identical_curves, leaves_range
+from .curve_ends import SPECIAL_CURVE_END_SETTINGS, are_identical_curves, leaves_range_of_rows
 from .curve_problem import SpecialCurveProblem
 from .half_curve import trace_half_curve
 from .row_crossing import RowCrossing
@@ -20,131 +20,137 @@ from .special_curves import (
     SpecialPointCurve,
     TracedHalfCurve,
 )
-from .special_point import RowSpecialPoint, SpecialKind, SpecialPoint
+from .special_point import RowSpecialPoint, SpecialPoint, SpecialPointKind
 
-FOLLOWED_KINDS = {SpecialKind.fold: "folds", SpecialKind.torus: "torus points"}
+FOLLOWED_KIND_NOUNS = {SpecialPointKind.fold: "folds", SpecialPointKind.torus: "torus points"}
 """Kinds of special points that are followed as curves, with the plural noun for messages."""
 
 
 @dataclass(frozen=True, slots=True)
 class SpecialCurveTracer:
     """Curves through all folds and torus points of the rows of a parameter plane, traced as half curves.
-    line_axis, row_axis: axes of the parameter along a row and of the row parameter. special_points: points
-    through which curves are traced. Half curve (work item) `first_item` + 2 i leads from special point i to
-    larger values of the row parameter, `first_item` + 2 i + 1 to smaller values."""
+    axis_along_row, row_parameter_axis: axes of the parameter along a row and of the row parameter.
+    special_points: points through which curves are traced. Half curve (work item) `first_item_number` + 2 i
+    leads from special point i to larger values of the row parameter, `first_item_number` + 2 i + 1 to smaller
+    values."""
 
-    outcome: ClassVar[str] = "piece of curves of folds and torus points followed"
+    done_item_phrase: ClassVar[str] = "piece of curves of folds and torus points followed"
     progress_noun: ClassVar[str] = "pieces of curves"
+    """Plural noun for the half curves in the progress display."""
 
-    line_axis: PlaneAxis
-    row_axis: PlaneAxis
+    axis_along_row: PlaneAxis
+    row_parameter_axis: PlaneAxis
     special_points: Sequence[RowSpecialPoint]
-    complete_rows: Mapping[int, float] = field(default_factory=dict)
+    values_of_rows_with_known_branches: Mapping[int, float] = field(default_factory=dict)
     """Value of the row parameter, by index, of the rows whose branches are all known."""
     special_points_not_to_trace: Sequence[RowSpecialPoint] = ()
     """Further special points of the rows, through which no curve is traced."""
-    starts_by_row: Mapping[int, tuple[SpecialPoint, ...]] = field(default_factory=dict)
+    branch_starts_by_row: Mapping[int, tuple[SpecialPoint, ...]] = field(default_factory=dict)
     """Special points from which branches of a row are followed in addition to its branches from Hopf points,
     by index of the row."""
-    first_item: int = 0
+    first_item_number: int = 0
 
     @property
-    def end_item(self) -> int:
-        """Number of half curves plus `first_item`."""
-        return self.first_item + 2 * len(self.special_points)
+    def end_item_number(self) -> int:
+        """Number of half curves plus `first_item_number`."""
+        return self.first_item_number + 2 * len(self.special_points)
 
     def items_to_solve(self, results: Mapping[int, HalfCurveArrays]) -> list[int]:
         """Numbers of the half curves needed now, then of half curves that may be needed later; empty if all
         curves are complete. results: results of half curves, by number."""
         needed_items: list[int] = []
         possible_items: list[int] = []
-        for curves, search in self._searches(results):
+        for curves, search in self._tracing_states_by_kind(results):
             needed_items += search.missing_items
             possible_items += curves.possible_items(search)
         # Possible items keep ranks busy that would wait; they are never worth a stage of their own.
-        return [self.first_item + item for item in needed_items + possible_items] if needed_items else []
+        items = needed_items + possible_items if needed_items else []
+        return [self.first_item_number + item for item in items]
 
-    def crossings(self, results: Mapping[int, HalfCurveArrays]) -> list[RowCrossing]:
+    def row_crossings(self, results: Mapping[int, HalfCurveArrays]) -> list[RowCrossing]:
         """Crossings of all curves with complete rows at which no special point lies; valid if
         `items_to_solve(results)` is empty."""
         return [
             crossing
-            for _, search in self._searches(results)
+            for _, search in self._tracing_states_by_kind(results)
             for traced in search.curves
             for crossing in traced.crossings
         ]
 
-    def point_of_each_leaving_curve(self, results: Mapping[int, HalfCurveArrays]) -> list[RowSpecialPoint]:
+    def point_of_each_curve_leaving_range(
+        self, results: Mapping[int, HalfCurveArrays]
+    ) -> list[RowSpecialPoint]:
         """A special point of each curve that leaves the range of the parameter along the rows; valid if
         `items_to_solve(results)` is empty."""
         return [
             # Any point of the curve would do; the smallest index makes the choice the same in each run.
-            self.special_points[min(traced.distances)]
-            for _, search in self._searches(results)
+            self.special_points[min(traced.distances_along_row)]
+            for _, search in self._tracing_states_by_kind(results)
             for traced in search.curves
-            if traced.distances and leaves_range(traced.curve, self.line_axis)
+            if traced.distances_along_row and leaves_range_of_rows(traced.curve, self.axis_along_row)
         ]
 
     def curves(self, results: Mapping[int, HalfCurveArrays]) -> TracedCurves[SpecialPointCurve]:
         """All curves, from the results of the half curves; valid if `items_to_solve(results)` is empty."""
-        traced_searches = [search.traced_curves for _, search in self._searches(results)]
+        traced_searches = [search.traced_curves for _, search in self._tracing_states_by_kind(results)]
         curves = tuple(traced.curve for traced_search in traced_searches for traced in traced_search.curves)
         return TracedCurves(
             curves,
-            max(traced_search.max_seed_distance_in_rows for traced_search in traced_searches),
+            max(traced_search.max_seed_distance_per_row_length for traced_search in traced_searches),
             sum(traced_search.untraced_seed_count for traced_search in traced_searches),
         )
 
-    def _searches(
+    def _tracing_states_by_kind(
         self, results: Mapping[int, HalfCurveArrays]
     ) -> "Iterator[tuple[_CurvesOfKind, CurveTracingState[_TracedCurve]]]":
         """Yields (curves with `results`, state of the search for these curves) for each kind of points."""
         # Numbers run through all stages, but the seeds of this stage are counted from 0.
-        own_results = {number - self.first_item: result for number, result in results.items()}
-        for kind in FOLLOWED_KINDS:
+        own_results = {number - self.first_item_number: result for number, result in results.items()}
+        max_distance = CURVE_IDENTITY_SETTINGS.max_distance_from_curve_per_row_length
+        for kind in FOLLOWED_KIND_NOUNS:
             curves = _CurvesOfKind(kind, self, own_results)
             seeds = (i for i, point in enumerate(self.special_points) if point.kind == kind)
-            yield curves, trace_all_curves(curves, seeds, CURVE_IDENTITY_SETTINGS.max_row_distance_fraction)
+            yield curves, trace_all_curves(curves, seeds, max_distance)
 
     def solve(
         self, item: int, located: Callable[[int], Iterable[SpecialPoint]], workspace: NewtonWorkspace
     ) -> HalfCurveArrays:
         """The result of half curve number `item`, as `TracedHalfCurve.arrays`. located: function that returns
         the special points, with cycles, of the row with a given index. workspace: memory of matrices."""
-        index, is_backward = divmod(item - self.first_item, 2)
+        index, is_backward = divmod(item - self.first_item_number, 2)
         point = self.special_points[index]
-        problem = SpecialCurveProblem(
-            point.kind, self.line_axis, self.row_axis, workspace, -1.0 if is_backward else 1.0
-        )
+        axes = self.axis_along_row, self.row_parameter_axis
+        problem = SpecialCurveProblem(point.kind, *axes, workspace, -1.0 if is_backward else 1.0)
         special_points = (*self.special_points, *self.special_points_not_to_trace)
         return trace_half_curve(
-            problem, point, located(point.row_index), special_points, self.complete_rows
+            problem, point, located(point.row_index), special_points, self.values_of_rows_with_known_branches
         ).arrays()
 
-    def row_of(self, item: int) -> int:
+    def row_index_of_item(self, item: int) -> int:
         """Index of the row on which half curve number `item` starts."""
-        return self.special_points[(item - self.first_item) // 2].row_index
+        return self.special_points[(item - self.first_item_number) // 2].row_index
 
     def branch_starts_of_row(self, row: int) -> tuple[SpecialPoint, ...]:
-        """Special points of `starts_by_row` for the row with the index `row`."""
-        return self.starts_by_row.get(row, ())
+        """Special points of `branch_starts_by_row` for the row with the index `row`."""
+        return self.branch_starts_by_row.get(row, ())
 
     def item_label(self, item: int) -> str:
         """Text for half curve `item` in the progress display: kind of curve, starting row, direction."""
-        index, is_backward = divmod(item - self.first_item, 2)
+        index, is_backward = divmod(item - self.first_item_number, 2)
         point = self.special_points[index]
-        start = f"{self.row_axis.name} = {point.row_value:.5g}"
+        start = f"{self.row_parameter_axis.name} = {point.row_parameter_value:.5g}"
         direction = "smaller" if is_backward else "larger"
-        return f"curve of {FOLLOWED_KINDS[point.kind]} from {start} to {direction} values"
+        return f"curve of {FOLLOWED_KIND_NOUNS[point.kind]} from {start} to {direction} values"
 
 
 @dataclass(frozen=True, slots=True)
 class _TracedCurve:
-    """Curve of two halves. distances: distances of nearby special points in row lengths, by point index.
-    crossings: crossings with complete rows at which no special point lies."""
+    """Curve of two halves. distances_along_row: distances of nearby special points in row lengths, by point
+    index. crossings: crossings with complete rows at which no special point lies."""
 
     curve: SpecialPointCurve
-    distances: Mapping[int, float]
+    """The curve, joined from its two halves."""
+    distances_along_row: Mapping[int, float]
     crossings: tuple[RowCrossing, ...]
 
 
@@ -153,7 +159,7 @@ class _CurvesOfKind:
     """Curves of one kind as a problem of `trace_all_curves`. tracer: axes of the plane, and special points
     through which curves are traced. results: arrays of half curves, by number."""
 
-    kind: SpecialKind
+    kind: SpecialPointKind
     tracer: SpecialCurveTracer
     results: Mapping[int, HalfCurveArrays]
 
@@ -162,86 +168,83 @@ class _CurvesOfKind:
         lengths."""
         return sorted(untraced, key=self._sort_key)[len(untraced) // 2]
 
-    def missing_items(self, seed: int) -> list[int]:
+    def missing_work_items(self, seed: int) -> list[int]:
         """Numbers of the half curves missing for the curve through special point `seed`; [] if complete."""
         forward_item = 2 * seed
         backward_item = 2 * seed + 1
         # Both halves are asked for at once, because the second is needed unless the first closes.
         if forward_item not in self.results:
             return [item for item in (forward_item, backward_item) if item not in self.results]
-        half = TracedHalfCurve.from_arrays(self.results[forward_item]).half
+        half = TracedHalfCurve.from_arrays(self.results[forward_item]).half_curve
         # A closed curve has no second half; if the first half failed, the second is not needed.
-        needs_backward = half is not None and half.end is not CurveEndReason.closed
+        needs_backward = half is not None and half.end_reason is not CurveEndReason.closed
         return [backward_item] if needs_backward and backward_item not in self.results else []
 
     def possible_items(self, search: "CurveTracingState[_TracedCurve]") -> list[int]:
         """Numbers of half curves that may be needed later: from special points on no curve yet, on the rows
         where the half curves needed now start."""
-        rows = {self.tracer.special_points[item // 2].row_value for item in search.missing_items}
+        rows = {self.tracer.special_points[item // 2].row_parameter_value for item in search.missing_items}
         # On these rows the cycles are solved again for the needed half curves anyway.
         candidates = sorted(
-            (i for i in search.untried_seeds if self.tracer.special_points[i].row_value in rows),
+            (i for i in search.untried_seeds if self.tracer.special_points[i].row_parameter_value in rows),
             key=self._sort_key,
         )
-        return [item for i in candidates for item in self.missing_items(i)]
+        return [item for i in candidates for item in self.missing_work_items(i)]
 
     def curve(self, seed: int) -> _TracedCurve | None:
         """The curve through special point `seed`, joined from two halves; None if a half was not followed."""
         forward = TracedHalfCurve.from_arrays(self.results[2 * seed])
-        if forward.half is None:
+        if forward.half_curve is None:
             return None
-        is_closed = forward.half.end is CurveEndReason.closed
+        is_closed = forward.half_curve.end_reason is CurveEndReason.closed
         backward = (
             TracedHalfCurve(None) if is_closed else TracedHalfCurve.from_arrays(self.results[2 * seed + 1])
         )
         # Half a curve would look like a curve that ends on a row.
-        if backward.half is None and not is_closed:
+        if backward.half_curve is None and not is_closed:
             return None
-        curve = SpecialPointCurve.joined(self.kind, forward.half, backward.half)
-        distances = dict(forward.distances)
-        for i, distance in backward.distances.items():
+        curve = SpecialPointCurve.joined(self.kind, forward.half_curve, backward.half_curve)
+        distances = dict(forward.distances_along_row)
+        for i, distance in backward.distances_along_row.items():
             distances[i] = min(distance, distances.get(i, math.inf))
         return _TracedCurve(curve, distances, forward.crossings + backward.crossings)
 
-    def distance(self, curve: _TracedCurve, seed: int) -> float:
+    def distance_along_row(self, curve: _TracedCurve, seed: int) -> float:
         """Distance of the special point `seed` from a curve along the row, in row lengths; inf if the point
         is not near, 0 if the point lies on the curve's extrapolation to a Hopf point."""
-        distance = curve.distances.get(seed, math.inf)
-        is_off_curve = distance > CURVE_IDENTITY_SETTINGS.max_row_distance_fraction
+        distance = curve.distances_along_row.get(seed, math.inf)
+        is_off_curve = distance > CURVE_IDENTITY_SETTINGS.max_distance_from_curve_per_row_length
         # Between its last cycle and the Hopf point a curve is extrapolated: no cycle is solved there.
-        return (
-            0.0
-            if is_off_curve and self._lies_on_extrapolation(curve.curve, self.tracer.special_points[seed])
-            else distance
-        )
+        point = self.tracer.special_points[seed]
+        return 0.0 if is_off_curve and self._lies_on_extrapolation(curve.curve, point) else distance
 
     def are_identical(self, first: _TracedCurve, second: _TracedCurve) -> bool:
         """Whether two curves are identical: their ends coincide within a tolerance."""
-        return are_identical_curves(first.curve, second.curve, self.tracer.line_axis)
+        return are_identical_curves(first.curve, second.curve, self.tracer.axis_along_row)
 
     def _sort_key(self, i: int) -> tuple[float, float]:
         """Sort key of special point i: (value of the row parameter, value of the parameter along the row)."""
-        return self.tracer.special_points[i].row_value, self.tracer.special_points[i].parameter_value
+        point = self.tracer.special_points[i]
+        return point.row_parameter_value, point.parameter_value
 
     def _lies_on_extrapolation(self, curve: SpecialPointCurve, special_point: RowSpecialPoint) -> bool:
         """Whether the special point `special_point` lies on the extrapolation of a curve to a Hopf point."""
         # Larger cycles lie on the part of the curve that was solved.
-        if special_point.tip_y_max >= END_SETTINGS.min_amplitude:
+        if special_point.tip_y_max >= SPECIAL_CURVE_END_SETTINGS.min_amplitude:
             return False
+        x_axis = self.tracer.axis_along_row
+        y_axis = self.tracer.row_parameter_axis
+        max_distance = CURVE_IDENTITY_SETTINGS.max_last_chord_distance_per_row_length
         for end, last_point in zip(curve.hopf_ends, (curve.points[0], curve.points[-1]), strict=True):
             if end is None:
                 continue
-            x = self.tracer.line_axis.coordinate(end.parameter_value)
-            y = self.tracer.row_axis.coordinate(end.row_value)
+            x = x_axis.scaled_coordinate(end.parameter_value)
+            y = y_axis.scaled_coordinate(end.row_parameter_value)
             # On the straight chord from the Hopf point to the last cycle.
-            fraction = (self.tracer.row_axis.coordinate(special_point.row_value) - y) / (
-                last_point.row_coordinate - y
-            )
-            chord = x + fraction * (self.tracer.line_axis.coordinate(last_point.parameter_value) - x)
-            distance = abs(chord - self.tracer.line_axis.coordinate(special_point.parameter_value))
-            if (
-                0 <= fraction <= 1
-                and distance <= CURVE_IDENTITY_SETTINGS.max_last_chord_distance_per_row_length
-            ):
+            height = y_axis.scaled_coordinate(special_point.row_parameter_value) - y
+            fraction = height / (last_point.row_coordinate - y)
+            chord = x + fraction * (x_axis.scaled_coordinate(last_point.parameter_value) - x)
+            distance = abs(chord - x_axis.scaled_coordinate(special_point.parameter_value))
+            if 0 <= fraction <= 1 and distance <= max_distance:
                 return True
         return False

@@ -12,8 +12,8 @@ from ....determinant.parameter_plane import ParameterPlane
 from ...hopf.bautin_points import BautinPoint
 from ...orbit.normalised_orbit import extrapolated_change_weights
 from .row_crossing import RowCrossing, crossings_from_arrays, numbered_arrays
-from .solved_curve_point import SolvedPoint
-from .special_point import SpecialKind
+from .solved_curve_point import SolvedCurvePoint
+from .special_point import SpecialPointKind
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -21,7 +21,7 @@ class CurveIdentitySettings:
     """Settings of two tests: whether a special point lies on a curve, and whether two curves are
     identical."""
 
-    max_row_distance_fraction: float = 1e-6
+    max_distance_from_curve_per_row_length: float = 1e-6
     """A special point of a row lies on a curve if its distance from the curve is at most this fraction of the
     length of a row."""
     max_chord_distance_per_row_length: float = 0.1
@@ -30,7 +30,7 @@ class CurveIdentitySettings:
     period_interval_extension: float = 0.1
     """A special point can lie on the arc between two points of a curve only if its period is within the
     interval of the two points' periods, extended by this fraction."""
-    max_period_difference: float = 1e-4
+    max_relative_period_difference: float = 1e-4
     """Largest relative difference between the periods of two solutions for the same cycle."""
     max_end_distance: float = 1e-4
     """Two curves are identical if the coordinates of their ends differ by at most this number; each axis has
@@ -45,7 +45,7 @@ class CurveIdentitySettings:
     extrapolation_safety_factor: float = 10.0
     """Safety factor on the error of an extrapolated Hopf point. The errors of the points do not include the
     displacement of the Hopf point along the curve that is caused by the mesh."""
-    max_hopf_distance: float = 0.01
+    max_hopf_to_generalised_hopf_distance: float = 0.01
     """An extrapolated Hopf point is identical to a generalised Hopf point of a Hopf curve if their two
     coordinates differ by at most this number; each axis has length 1."""
 
@@ -79,12 +79,13 @@ class CurveEndReason(IntEnum):
 class HopfEnd:
     """A Hopf point at which a curve of special points ends because the cycles vanish.
 
-    parameter_value: value of the parameter along a row, with the absolute error `error`. row_value: value of
-    the row parameter. period: period of the vanishing cycles, in tau2. tip_y_max: their largest tip y, 0.
+    parameter_value: value of the parameter along a row, with the absolute error `error`.
+    row_parameter_value: value of the row parameter. period: period of the vanishing cycles, in tau2.
+    tip_y_max: their largest tip y, 0.
     """
 
     parameter_value: float
-    row_value: float
+    row_parameter_value: float
     error: float
     period: float
     tip_y_max: float = 0.0
@@ -94,31 +95,32 @@ class HopfEnd:
 class CurvePoint:
     """Stored quantities of a point of a curve of special points.
 
-    parameter_value: value of the parameter along a row, with the absolute error `error`. row_value: value of
-    the row parameter. row_coordinate: position of `row_value` on its axis, from 0 to 1. period: in tau2.
-    tip_y_max: largest tip y, in L. row_extremum_error: absolute error of `row_value` where it is extremal
-    along the curve, NaN at the point after an extremum that could not be located, 0 elsewhere.
+    parameter_value: value of the parameter along a row, with the absolute error `error`.
+    row_parameter_value: value of the row parameter. row_coordinate: position of `row_parameter_value` on its
+    axis, from 0 to 1. period: in tau2. tip_y_max: largest tip y, in L. row_parameter_error_at_extremum:
+    absolute error of `row_parameter_value` where it is extremal along the curve, NaN at the point after an
+    extremum that could not be located, 0 elsewhere.
     """
 
     parameter_value: float
-    row_value: float
+    row_parameter_value: float
     row_coordinate: float
     error: float
     period: float
     tip_y_max: float
-    row_extremum_error: float = 0.0
+    row_parameter_error_at_extremum: float = 0.0
 
     @classmethod
-    def from_solved_point(cls, point: SolvedPoint) -> "CurvePoint":
+    def from_solved_point(cls, point: SolvedCurvePoint) -> "CurvePoint":
         """The stored quantities of a solved point of a curve."""
         return cls(
-            parameter_value=point.parameter,
-            row_value=point.row_parameter,
+            parameter_value=point.branch_parameter,
+            row_parameter_value=point.row_parameter,
             row_coordinate=point.row_coordinate,
-            error=point.error,
+            error=point.branch_parameter_error,
             period=point.orbit.period,
             tip_y_max=point.tip_y_max,
-            row_extremum_error=point.row_extremum_error,
+            row_parameter_error_at_extremum=point.row_parameter_error_at_extremum,
         )
 
 
@@ -128,33 +130,30 @@ class HalfCurve:
     curve."""
 
     points: tuple[CurvePoint, ...]
-    end: CurveEndReason
+    end_reason: CurveEndReason
 
 
 @dataclass(frozen=True, slots=True)
 class TracedHalfCurve:
-    """Result of following one half of a curve of special points. half: None if the half could not be
-    followed.
+    """Result of following one half of a curve of special points. half_curve: None if the half could not be
+    followed. distances_along_row: distances of nearby special points from this half, in units of the length
+    of a row, by the index of the special point in the list of all special points. crossings: crossings of
+    this half with rows without a special point there."""
 
-    distances: distances of nearby special points from this half, in units of the length of a row, by the
-    index of the special point in the list of all special points. crossings: crossings of this half with rows
-    without a special point there.
-    """
-
-    half: HalfCurve | None
-    distances: dict[int, float] = field(default_factory=dict)
+    half_curve: HalfCurve | None
+    distances_along_row: dict[int, float] = field(default_factory=dict)
     crossings: tuple[RowCrossing, ...] = ()
 
     def arrays(self) -> HalfCurveArrays:
         """The result as named arrays: points (points, 7), the fields of `CurvePoint`; end (1,), the value of
-        the `CurveEndReason`, 0 if `half` is None; distances (near, 2), index and distance of each
+        the `CurveEndReason`, 0 if `half_curve` is None; distances (near, 2), index and distance of each
         nearby special point; and the arrays of `numbered_arrays` for the crossings."""
-        points = [] if self.half is None else list(map(astuple, self.half.points))
+        points = [] if self.half_curve is None else list(map(astuple, self.half_curve.points))
         return {
             # A half without points still has columns, so that all results can be read alike.
             "points": np.array(points, dtype=float).reshape(-1, len(CurvePoint.__slots__)),
-            "end": np.array([0.0 if self.half is None else float(self.half.end)]),
-            "distances": np.array(list(self.distances.items()), dtype=float).reshape(-1, 2),
+            "end": np.array([0.0 if self.half_curve is None else float(self.half_curve.end_reason)]),
+            "distances": np.array(list(self.distances_along_row.items()), dtype=float).reshape(-1, 2),
         } | numbered_arrays(self.crossings)
 
     @classmethod
@@ -172,25 +171,28 @@ class SpecialPointCurve:
     hopf_ends: for each end the Hopf point at which the cycles vanish; None for an end with another
     reason, or on a curve with too few points for the extrapolation."""
 
-    kind: SpecialKind
+    kind: SpecialPointKind
+    """Kind of all points of the curve: fold or torus point."""
     points: tuple[CurvePoint, ...]
-    ends: tuple[CurveEndReason, CurveEndReason]
+    end_reasons: tuple[CurveEndReason, CurveEndReason]
     hopf_ends: tuple[HopfEnd | None, HopfEnd | None]
 
     @classmethod
-    def joined(cls, kind: SpecialKind, forward: HalfCurve, backward: HalfCurve | None) -> "SpecialPointCurve":
+    def joined(
+        cls, kind: SpecialPointKind, forward: HalfCurve, backward: HalfCurve | None
+    ) -> "SpecialPointCurve":
         """The curve joined from the halves `forward` and `backward`, which start at the same point; backward:
         None for a closed curve."""
         # A closed curve has one half only, and its second end has the same reason.
-        first_half = backward or HalfCurve(forward.points[:1], forward.end)
+        first_half = backward or HalfCurve(forward.points[:1], forward.end_reason)
         # The first point belongs to both halves, so the slice leaves it out of one.
         points = (*first_half.points[:0:-1], *forward.points)
         hopf_ends = [
             extrapolated_hopf_end(side) if end is CurveEndReason.hopf else None
             # Extrapolation takes its last points, so the first end needs the curve in reverse.
-            for end, side in ((first_half.end, points[::-1]), (forward.end, points))
+            for end, side in ((first_half.end_reason, points[::-1]), (forward.end_reason, points))
         ]
-        return cls(kind, points, (first_half.end, forward.end), (hopf_ends[0], hopf_ends[1]))
+        return cls(kind, points, (first_half.end_reason, forward.end_reason), (hopf_ends[0], hopf_ends[1]))
 
 
 def with_bautin_ends(
@@ -198,19 +200,19 @@ def with_bautin_ends(
 ) -> SpecialPointCurve:
     """The curve of folds with each extrapolated end replaced by the identical generalised Hopf point in
     `known_points`, which is more accurate than the extrapolation. A curve of torus points, and an end without
-    an identical point, are unchanged.
-    """
+    an identical point, are unchanged."""
+    max_distance = CURVE_IDENTITY_SETTINGS.max_hopf_to_generalised_hopf_distance
 
     def at_generalised_hopf(end: HopfEnd | None) -> HopfEnd | None:
-        if end is None or curve.kind != SpecialKind.fold:
+        if end is None or curve.kind != SpecialPointKind.fold:
             return end
+        values = end.parameter_value, end.row_parameter_value
         for point in known_points:
-            pairs = zip(plane.axes, point.values, (end.parameter_value, end.row_value), strict=True)
-            if all(
-                abs(axis.coordinate(a) - axis.coordinate(b)) <= CURVE_IDENTITY_SETTINGS.max_hopf_distance
-                for axis, a, b in pairs
-            ):
-                return HopfEnd(*point.values, point.errors[0], 2 * np.pi / point.frequency)
+            pairs = zip(plane.axes, point.parameter_values, values, strict=True)
+            distances = [abs(axis.scaled_coordinate(a) - axis.scaled_coordinate(b)) for axis, a, b in pairs]
+            if all(distance <= max_distance for distance in distances):
+                period = 2 * np.pi / point.frequency
+                return HopfEnd(*point.parameter_values, point.parameter_errors[0], period)
         return end
 
     first, last = map(at_generalised_hopf, curve.hopf_ends)
@@ -236,7 +238,7 @@ def extrapolated_hopf_end(points: Sequence[CurvePoint]) -> HopfEnd | None:
         return None
     # Parameters and period are even in the amplitude, so polynomials in its square converge.
     squared_amplitudes = np.array([point.tip_y_max**2 for point in last_points])
-    quantities = np.array([[point.parameter_value, point.row_value, point.period] for point in last_points])
+    quantities = np.array([[p.parameter_value, p.row_parameter_value, p.period] for p in last_points])
     # The error estimate is the difference between the polynomials with and without the first point.
     values, values_of_lower_order = (
         np.dot(lagrange_weights(squared_amplitudes[i:], 0.0), quantities[i:]) for i in (0, 1)

@@ -36,12 +36,12 @@ class SpecialPointSettings:
     times the relative tolerance of the cycles."""
     max_secant_steps: int = 12
     """Maximum number of secant steps."""
-    converging_step_ratio: float = 0.5
+    min_stagnant_step_ratio: float = 0.5
     """A small secant step, or a small change of a test function, of more than this number times its
     predecessor is rounding error."""
     max_stalled_step_per_branch_step: float = 1e-6
     """The secant method stops if its step, divided by the step of the branch, is at most this number and more
-    than `converging_step_ratio` times the previous step."""
+    than `min_stagnant_step_ratio` times the previous step."""
     max_last_secant_step_per_branch_step: float = 1e-6
     """Longest last secant step, divided by the step of the branch. After the last step the cycle is moved
     along its tangent, not solved again."""
@@ -51,7 +51,7 @@ class SpecialPointSettings:
     relative_slope_error: float = 0.01
     """Relative error of the slope, and thus of the last secant step. The slope may come from the prediction
     or from a coarser mesh; at 91 special points of random rods it had errors of up to 0.0025."""
-    max_matrix_distance: float = 1e-3
+    max_distance_from_matrix_orbit: float = 1e-3
     """Largest relative distance between a cycle and the orbit whose matrix factors correct the test function
     of the cycle; at this distance each correction gains at least two digits."""
     bracket_tolerance: float = 1e-3
@@ -59,36 +59,37 @@ class SpecialPointSettings:
     ends; for the arc length, divided by the step."""
     max_mesh_comparisons: int = 4
     """Maximum number of comparisons of a special point on two successive meshes."""
-    min_order_increase: int = 2
+    min_element_order_increase: int = 2
     """Smallest increase of the order of the elements on the next finer mesh."""
-    max_order_increase: int = 8
+    max_element_order_increase: int = 8
     """Largest increase of the order of the elements on the next finer mesh."""
-    space_decay: float = 0.8
+    log_space_error_decay_per_order: float = 0.8
     """Assumed decrease of the natural logarithm of the error in space when the order of the elements grows by
     1, measured at a torus point."""
-    min_interval_ratio: float = 1.2
+    min_time_interval_count_ratio: float = 1.2
     """Smallest ratio of the number of time intervals of the next finer mesh to the number of the current
     mesh."""
-    max_interval_ratio: float = 2.0
+    max_time_interval_count_ratio: float = 2.0
     """Largest ratio of the number of time intervals of the next finer mesh to the number of the current mesh.
     """
     time_order_per_stage: float = 1.5
     """Order in time assumed for the error of a special point, divided by the number of stages; the orders
     measured are larger than assumed."""
-    time_order_per_stage_in_errors: float = 2.0
+    time_order_per_stage_of_remaining_error: float = 2.0
     """Order in time assumed for the error that is left on the finer of two meshes, divided by the number of
-    stages. With this number, and with the measured decay in space of at least `space_decay`, the errors of
-    90 special points of random rods were at most 1.1 times the assumed ones, and 0.4 times in the median."""
-    min_difference_ratio: float = 0.02
+    stages. With this number, and with the measured decay in space of at least
+    `log_space_error_decay_per_order`, the errors of 90 special points of random rods were at most 1.1 times
+    the assumed ones, and 0.4 times in the median."""
+    min_mesh_difference_per_accuracy: float = 0.02
     """Smallest difference between special points on two meshes from which errors are estimated, divided by
     the accuracy: a tenth of `first_mesh_accuracy_ratio`. Where errors change their sign, a smaller difference
     is a coincidence."""
-    error_factor: float = 3.0
+    error_safety_factor: float = 3.0
     """Safety factor of the error estimate, on the difference between the special points on two meshes and on
     the error that is assumed to be left."""
-    rounding_error: float = 1e-13
+    relative_rounding_error: float = 1e-13
     """Relative rounding error of the parameter, the period and the largest tip y of a special point."""
-    unit_multiplier_distance: float = 3e-3
+    max_distance_from_multiplier_one: float = 3e-3
     """A multiplier m with |m - 1| below this number may lie on either side of the unit circle, because of
     errors. Near a fold two multipliers are close to 1."""
     max_prediction_error_without_fold: float = 1e-4
@@ -96,12 +97,12 @@ class SpecialPointSettings:
     within their errors, the cycles are taken as cycles of one branch only if the prediction error of the
     second cycle is at most this number: a fifth of the usual error, so that one halving of the step suffices.
     Between small cycles of two Hopf points close together, errors of 8e-3 were seen."""
-    max_relocation_parameter_change: float = 1e-6
+    max_parameter_change_if_located_twice: float = 1e-6
     """Two special points of a rod are the same point only if the relative difference of their parameters,
     less their errors, is at most this number; a point on a curve over two parameters has an error of 1e-7."""
-    max_relocation_period_change: float = 1e-4
+    max_period_change_if_located_twice: float = 1e-4
     """Largest relative difference between the periods of the same special point located twice."""
-    max_halvings: int = 7
+    max_step_halvings: int = 7
     """Maximum number of halvings of a step that has several special points, or a special point that cannot be
     located."""
 
@@ -109,7 +110,7 @@ class SpecialPointSettings:
 SPECIAL_POINT_SETTINGS = SpecialPointSettings()
 
 
-class SpecialKind(IntEnum):
+class SpecialPointKind(IntEnum):
     """Kind of a special point of a branch; the result file stores the value. left_the_model: h1 = 0 at a
     position on the rod. end: end of the branch."""
 
@@ -127,7 +128,8 @@ class SpecialPoint:
     """A special point of a branch. parameter_value: value of the continuation parameter. period: period of
     the cycle, in tau2. tip_y_max: largest tip y of the cycle, in L."""
 
-    kind: SpecialKind
+    kind: SpecialPointKind
+    """Kind of the special point, such as a fold or a Hopf point."""
     parameter_value: float
     period: float
     tip_y_max: float
@@ -139,7 +141,7 @@ class SpecialPoint:
     """Relative difference of the largest tip y from its value at the exact special point."""
     index_of_cycle_before: int = -1
     """Index of the last cycle of the branch before the special point; -1 if no cycle precedes the point."""
-    reason: BranchEndReason | None = None
+    end_reason: BranchEndReason | None = None
     """Reason for the end of the branch at this point; None if the branch does not end here."""
     message: str = ""
     """Reason for a failure: why no cycle was found, or why the point was not located."""
@@ -148,39 +150,39 @@ class SpecialPoint:
     amplitude_coefficient: float = nan
     """At a Hopf point the coefficient a of the branch, in L: the tip reaches y = a sqrt(|p/p_H - 1|) at
     parameter values p near the Hopf point p_H; NaN at other points."""
-    relative_coefficient_error: float = nan
+    relative_amplitude_coefficient_error: float = nan
     """Relative error of `amplitude_coefficient`."""
 
     @property
     def is_unlocated(self) -> bool:
         """Whether the point was not located: it has the values of a cycle beside it."""
-        return bool(self.message) and self.kind not in (SpecialKind.hopf, SpecialKind.end)
+        return bool(self.message) and self.kind not in (SpecialPointKind.hopf, SpecialPointKind.end)
 
     def is_same_as(self, other: "SpecialPoint") -> bool:
         """Whether this point and `other` are the same special point of a rod, or mirror images, located
         twice: kind, parameter and period agree."""
-        return _are_near(self, other, self.error + other.error)
+        return _agree_within_error(self, other, self.error + other.error)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RowSpecialPoint:
-    """A special point as the result file stores it. row_index: index of the row. row_value: value of the row
-    parameter. kind: kind of the point. parameter_value: value of the parameter along the row. period: in
-    tau2. tip_y_max: in L."""
+    """A special point as the result file stores it. row_index: index of the row. row_parameter_value: value
+    of the row parameter. kind: kind of the point. parameter_value: value of the parameter along the row.
+    period: in tau2. tip_y_max: in L."""
 
     row_index: int
-    row_value: float
-    kind: SpecialKind
+    row_parameter_value: float
+    kind: SpecialPointKind
     parameter_value: float
     period: float
     tip_y_max: float
 
     def is_same_as(self, other: "RowSpecialPoint | SpecialPoint") -> bool:
         """Whether this point and `other`, of the same row, are the same special point located twice."""
-        return _are_near(self, other, 0.0)
+        return _agree_within_error(self, other, 0.0)
 
 
-def _are_near(
+def _agree_within_error(
     first: SpecialPoint | RowSpecialPoint, second: SpecialPoint | RowSpecialPoint, error: float
 ) -> bool:
     """Whether kind, parameter and period of two special points agree. error: sum of the absolute errors of
@@ -190,6 +192,6 @@ def _are_near(
     return (
         first.kind == second.kind
         and excess_distance
-        <= SPECIAL_POINT_SETTINGS.max_relocation_parameter_change * abs(first.parameter_value)
-        and abs(first.period / second.period - 1) <= SPECIAL_POINT_SETTINGS.max_relocation_period_change
+        <= SPECIAL_POINT_SETTINGS.max_parameter_change_if_located_twice * abs(first.parameter_value)
+        and abs(first.period / second.period - 1) <= SPECIAL_POINT_SETTINGS.max_period_change_if_located_twice
     )

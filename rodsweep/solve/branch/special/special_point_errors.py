@@ -11,34 +11,34 @@ from ....arrays import Array
 from ...orbit.measures import CycleMotion
 from ...orbit.mesh_choice import cheapest_stage_count
 from ...orbit.orbit import Orbit
-from ...orbit.orbit_mesh import OrbitMesh, mesh_of
-from ...orbit.path_differences import PERIOD_INDEX
+from ...orbit.orbit_mesh import OrbitMesh, mesh_of_orbit
+from ...orbit.tip_path_differences import PERIOD_INDEX
 from ..arc_length_step import BranchCycle
-from ..branch_error_measurement import motion_ahead
-from ..branch_errors import BranchCalibration
+from ..branch_error_measurement import motion_along_tangent
+from ..branch_errors import BranchErrorCalibration
 from ..settings import BRANCH_ERROR_SETTINGS
 from .branch_segment import BranchSegment
-from .special_point import SPECIAL_POINT_SETTINGS, SpecialKind, SpecialPoint
+from .special_point import SPECIAL_POINT_SETTINGS, SpecialPoint, SpecialPointKind
 
 
-class ZeroOnMesh(NamedTuple):
-    """Zero of a test function on a mesh, by the secant method. length: arc length of the zero on its segment.
-    orbit: cycle at the zero. slope: slope of the test function. last_step: length of the last secant step,
-    over which the cycle is moved along its tangent."""
+class TestFunctionZero(NamedTuple):
+    """Zero of a test function on a mesh, by the secant method. arc_length: arc length of the zero on its
+    segment. orbit: cycle at the zero. test_function_slope: slope of the test function. last_secant_step:
+    length of the last secant step, over which the cycle is moved along its tangent."""
 
-    length: float
+    arc_length: float
     orbit: Orbit
-    slope: float
-    last_step: float
+    test_function_slope: float
+    last_secant_step: float
 
 
-def special_point_at(kind: SpecialKind, zero: ZeroOnMesh, parameter_name: str) -> SpecialPoint:
+def special_point_at(kind: SpecialPointKind, zero: TestFunctionZero, parameter_name: str) -> SpecialPoint:
     """The special point of a kind at a zero, without errors, along the parameter `parameter_name`."""
     return SpecialPoint(
         kind=kind,
         parameter_value=getattr(zero.orbit.form.rod, parameter_name),
         period=zero.orbit.period,
-        tip_y_max=CycleMotion(zero.orbit).extrema["tip_y_max"],
+        tip_y_max=CycleMotion(zero.orbit).tip_extrema["tip_y_max"],
         error=nan,
         orbit=zero.orbit,
     )
@@ -48,47 +48,51 @@ def parameter_difference(point: SpecialPoint, coarser_point: SpecialPoint) -> fl
     """Difference between the parameters of a special point on two meshes, with a safety factor and the
     rounding error."""
     difference = abs(point.parameter_value - coarser_point.parameter_value)
-    rounding_error = SPECIAL_POINT_SETTINGS.rounding_error * abs(point.parameter_value)
-    return SPECIAL_POINT_SETTINGS.error_factor * difference + rounding_error
+    rounding_error = SPECIAL_POINT_SETTINGS.relative_rounding_error * abs(point.parameter_value)
+    return SPECIAL_POINT_SETTINGS.error_safety_factor * difference + rounding_error
 
 
 def with_mesh_errors(
     point: SpecialPoint,
     coarser_point: SpecialPoint,
-    zeros: tuple[ZeroOnMesh, ZeroOnMesh],
+    zeros: tuple[TestFunctionZero, TestFunctionZero],
     segment: BranchSegment,
     accuracy: float,
 ) -> SpecialPoint:
     """The special point with errors: the error of the mesh, from the differences from `coarser_point`, the
     same point on a coarser mesh; except for the parameter at a fold, also the error of the zero on this mesh.
     zeros: zeros on both meshes, the coarser first. accuracy: relative accuracy of the parameter. Only if both
-    meshes agree within it, the errors are assumed to decrease as `_remaining_error_factor` says."""
+    meshes agree within it, the errors are assumed to decrease as `_remaining_error_per_mesh_difference`
+    says."""
     coarser_zero, zero = zeros
     values, coarser_values = (
         np.array([each.parameter_value, each.period, each.tip_y_max]) for each in (point, coarser_point)
     )
-    rates = np.abs(_numbers_ahead(zero, segment) - values) / BRANCH_ERROR_SETTINGS.sensitivity_arc_length
-    if point.kind is SpecialKind.fold:
+    rates = (
+        np.abs(_parameter_period_and_tip_y_ahead(zero, segment) - values)
+        / BRANCH_ERROR_SETTINGS.sensitivity_arc_length
+    )
+    if point.kind is SpecialPointKind.fold:
         rates[0] = 0.0
     # Numbers of two meshes may agree by coincidence, although the cycles at the special point differ.
     differences = np.max(
         [
             np.abs(values - coarser_values),
-            rates * abs(zero.length - coarser_zero.length),
-            SPECIAL_POINT_SETTINGS.min_difference_ratio * accuracy * np.abs(values),
+            rates * abs(zero.arc_length - coarser_zero.arc_length),
+            SPECIAL_POINT_SETTINGS.min_mesh_difference_per_accuracy * accuracy * np.abs(values),
         ],
         axis=0,
     )
     is_accurate = parameter_difference(point, coarser_point) <= accuracy * abs(point.parameter_value)
-    factor = _remaining_error_factor(coarser_zero, zero, segment) if is_accurate else 1.0
+    factor = _remaining_error_per_mesh_difference(coarser_zero, zero, segment) if is_accurate else 1.0
     # The slope of a secant between two nearby cycles may be rounding error; on two meshes it hardly is.
-    slope = min(abs(zero.slope), abs(coarser_zero.slope))
+    slope = min(abs(zero.test_function_slope), abs(coarser_zero.test_function_slope))
     zero_error = (
-        SPECIAL_POINT_SETTINGS.relative_slope_error * abs(zero.last_step)
+        SPECIAL_POINT_SETTINGS.relative_slope_error * abs(zero.last_secant_step)
         + _test_function_error(point) / slope
     )
-    errors = SPECIAL_POINT_SETTINGS.error_factor * (factor * differences + rates * zero_error)
-    errors += SPECIAL_POINT_SETTINGS.rounding_error * np.abs(values)
+    errors = SPECIAL_POINT_SETTINGS.error_safety_factor * (factor * differences + rates * zero_error)
+    errors += SPECIAL_POINT_SETTINGS.relative_rounding_error * np.abs(values)
     return replace(
         point,
         error=float(errors[0]),
@@ -100,30 +104,34 @@ def with_mesh_errors(
 def _test_function_error(point: SpecialPoint) -> float:
     """Error of the test function of a special point at a cycle."""
     settings = SPECIAL_POINT_SETTINGS
-    if point.kind is SpecialKind.fold:
+    if point.kind is SpecialPointKind.fold:
         growth = settings.tip_y_of_doubled_fold_error / point.tip_y_max
         return settings.test_function_change_tolerance * (1 + growth)
     # Of the others, only the test function of torus points is corrected by iteration.
-    is_corrected = point.kind is SpecialKind.torus
+    is_corrected = point.kind is SpecialPointKind.torus
     return settings.test_function_change_tolerance if is_corrected else settings.test_function_rounding_error
 
 
-def _numbers_ahead(zero: ZeroOnMesh, segment: BranchSegment) -> Array:
+def _parameter_period_and_tip_y_ahead(zero: TestFunctionZero, segment: BranchSegment) -> Array:
     """Parameter, period and largest tip y, (3,), of a cycle beside the zero that was found last on `segment`,
     at the distance `sensitivity_arc_length` along its tangent."""
     name = segment.start.scale.parameter_name
-    motion = motion_ahead(zero.orbit, name, segment.last_solved_cycle[2])
+    motion = motion_along_tangent(zero.orbit, name, segment.last_solved_cycle[2])
     value = getattr(motion.orbit.form.rod, name)
-    return np.array([value, motion.orbit.period, motion.extrema["tip_y_max"]])
+    return np.array([value, motion.orbit.period, motion.tip_extrema["tip_y_max"]])
 
 
-def _remaining_error_factor(coarser_zero: ZeroOnMesh, zero: ZeroOnMesh, segment: BranchSegment) -> float:
+def _remaining_error_per_mesh_difference(
+    coarser_zero: TestFunctionZero, zero: TestFunctionZero, segment: BranchSegment
+) -> float:
     """Assumed error on the finer mesh, divided by the difference between both meshes: q/(1 - q), q: ratio of
     the errors on the two meshes, in space or in time, whichever is larger."""
-    coarser_mesh, mesh = mesh_of(coarser_zero.orbit), mesh_of(zero.orbit)
-    measured_decay = float(segment.end.calibration.at_equal_parameter.space_decay[PERIOD_INDEX])
-    decay = max(measured_decay, SPECIAL_POINT_SETTINGS.space_decay)
-    order = SPECIAL_POINT_SETTINGS.time_order_per_stage_in_errors * mesh.stage_count
+    coarser_mesh, mesh = mesh_of_orbit(coarser_zero.orbit), mesh_of_orbit(zero.orbit)
+    measured_decay = float(
+        segment.end.calibration.errors_at_equal_parameter.log_space_error_decay_per_order[PERIOD_INDEX]
+    )
+    decay = max(measured_decay, SPECIAL_POINT_SETTINGS.log_space_error_decay_per_order)
+    order = SPECIAL_POINT_SETTINGS.time_order_per_stage_of_remaining_error * mesh.stage_count
     ratio = max(
         exp(decay * (coarser_mesh.order - mesh.order)),
         (coarser_mesh.interval_count / mesh.interval_count) ** order,
@@ -131,7 +139,9 @@ def _remaining_error_factor(coarser_zero: ZeroOnMesh, zero: ZeroOnMesh, segment:
     return ratio / (1 - ratio)
 
 
-def unlocated_point(kind: SpecialKind, start: BranchCycle, end: BranchCycle, message: str) -> SpecialPoint:
+def unlocated_point(
+    kind: SpecialPointKind, start: BranchCycle, end: BranchCycle, message: str
+) -> SpecialPoint:
     """A special point that is not located: values at the cycle `end`, with the differences between `start`
     and `end` as errors. A fold may lie beyond the two cycles, because rounding turns the parameter back where
     it is nearly constant, as near a generalised Hopf point: the error of the largest tip y is then at least
@@ -142,7 +152,7 @@ def unlocated_point(kind: SpecialKind, start: BranchCycle, end: BranchCycle, mes
     end_value, start_value = (getattr(point.orbit.form.rod, name) for point in (end, start))
     tip_y_max_error = abs(start_measures.tip_y_max / measures.tip_y_max - 1)
     period_error = abs(start_measures.period / measures.period - 1)
-    if kind is SpecialKind.fold and 0 < tip_y_max_error < 1:
+    if kind is SpecialPointKind.fold and 0 < tip_y_max_error < 1:
         period_error /= tip_y_max_error
         tip_y_max_error = 1.0
     return SpecialPoint(
@@ -158,14 +168,15 @@ def unlocated_point(kind: SpecialKind, start: BranchCycle, end: BranchCycle, mes
     )
 
 
-def first_mesh(calibration: BranchCalibration, accuracy: float) -> OrbitMesh:
+def first_mesh_for_special_point(calibration: BranchErrorCalibration, accuracy: float) -> OrbitMesh:
     """The first mesh for a special point of the relative accuracy `accuracy`. calibration: errors of the
     cycle after the special point.
 
     The number of stages is at least the number with the smallest cost at this accuracy. With s' instead of s
-    stages an error e in time becomes about e^(s'/s) on the same intervals, as in `mesh_from_tails`. The
-    intervals are therefore chosen for the larger error that s stages may have: with the intervals that s
-    stages need, the first mesh of a cone had 3.8 times the necessary number, and 2.3 GB of factors.
+    stages an error e in time becomes about e^(s'/s) on the same intervals, as in
+    `mesh_from_coefficient_tails`. The intervals are therefore chosen for the larger error that s stages may
+    have: with the intervals that s stages need, the first mesh of a cone had 3.8 times the necessary number,
+    and 2.3 GB of factors.
     """
     target_accuracy = SPECIAL_POINT_SETTINGS.first_mesh_accuracy_ratio * accuracy
     mesh = calibration.cheapest_mesh_for_parameter(target_accuracy)
@@ -182,21 +193,22 @@ def first_mesh(calibration: BranchCalibration, accuracy: float) -> OrbitMesh:
     )
 
 
-def next_mesh(mesh: OrbitMesh, error_ratio: float) -> OrbitMesh:
+def next_finer_mesh(mesh: OrbitMesh, error_ratio: float) -> OrbitMesh:
     """The next finer mesh. error_ratio: ratio of the error on `mesh` to the accuracy; 1 gives the smallest
     refinement."""
     # The error is assumed proportional to intervals^-p, p: `time_order_per_stage` times the number of stages.
     growth = error_ratio ** (1 / (SPECIAL_POINT_SETTINGS.time_order_per_stage * mesh.stage_count))
     # Without growth the two meshes would share their error, and their difference would not show it.
     growth = min(
-        max(growth, SPECIAL_POINT_SETTINGS.min_interval_ratio), SPECIAL_POINT_SETTINGS.max_interval_ratio
+        max(growth, SPECIAL_POINT_SETTINGS.min_time_interval_count_ratio),
+        SPECIAL_POINT_SETTINGS.max_time_interval_count_ratio,
     )
     order_increase = min(
         max(
-            ceil(log(error_ratio) / SPECIAL_POINT_SETTINGS.space_decay),
-            SPECIAL_POINT_SETTINGS.min_order_increase,
+            ceil(log(error_ratio) / SPECIAL_POINT_SETTINGS.log_space_error_decay_per_order),
+            SPECIAL_POINT_SETTINGS.min_element_order_increase,
         ),
-        SPECIAL_POINT_SETTINGS.max_order_increase,
+        SPECIAL_POINT_SETTINGS.max_element_order_increase,
     )
     return replace(
         mesh.with_order(mesh.order + order_increase), interval_count=ceil(growth * mesh.interval_count)

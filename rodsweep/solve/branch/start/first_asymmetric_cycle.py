@@ -11,11 +11,11 @@ from math import sqrt
 import numpy as np
 
 from ....arrays import Array
-from ...cycle.accuracy.refinement import allowed_matrix_distance
+from ...cycle.accuracy.newton_tolerances import allowed_distance_from_matrix_orbit
 from ...cycle.accuracy.settings import REFINEMENT_SETTINGS
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.measures import CycleMotion
-from ...orbit.mesh_choice import cheapest_stage_count, mesh_from_tails
+from ...orbit.mesh_choice import cheapest_stage_count, mesh_from_coefficient_tails
 from ...orbit.newton import relative_change
 from ...orbit.orbit import Orbit
 from ...unsolvable import Unsolvable
@@ -23,11 +23,11 @@ from ..arc_length_step import BranchCycle, branch_derivatives, tangent_at
 from ..bordered.condition import BorderCondition, moved_orbit
 from ..bordered.corrected_linearisation import linearisation_of
 from ..bordered.matrix import BorderedMatrix
-from ..bordered.scale import ArcLengthScale, deflection_of
+from ..bordered.scale import ArcLengthScale, deflection_at_time_zero
 from ..branch_errors import branch_newton_tolerance
-from ..branch_mesh_choice import first_measured_cycle
+from ..branch_mesh_choice import first_cycle_with_measured_errors
 from ..settings import BRANCH_END_SETTINGS
-from ..symmetry_breaking import SymmetryBreaking, asymmetry, extended_to_whole_period
+from ..symmetry_breaking import SymmetryBreaking, bending_moment_asymmetry, extended_to_whole_period
 from .first_cycle import DEFLECTION_UNIT_VECTOR
 
 
@@ -42,14 +42,14 @@ class AsymmetricStartSettings:
     """Largest relative accuracy of asymmetric cycles: a coarser mesh does not separate asymmetric cycles from
     the symmetric cycles nearby. At an accuracy of 1e-3 Newton's method converges to symmetric cycles for 4 of
     6 rods, at 3e-4 for none."""
-    parameter_rate_newton_tolerance: float = 1e-9
+    newton_tolerance_for_fold_search: float = 1e-9
     """Tolerance of Newton's method for the cycles whose parameter rates show a fold before the first
     cycle."""
     max_accuracy_beside_fold: float = 1e-6
     """Largest relative accuracy of the cycles of a branch with a fold before the first cycle. On a coarser
     mesh the fold may be missing: at an accuracy of 1e-5, a fold at a relative distance of 7e-7 from the
     symmetry breaking was missing."""
-    asymmetry_to_fold_ratio: float = 0.5
+    asymmetry_per_asymmetry_at_fold: float = 0.5
     """If the branch has a fold before the first cycle, the asymmetry of the first cycle is reduced to this
     fraction of the asymmetry at the fold."""
 
@@ -82,7 +82,7 @@ def first_asymmetric_cycle(
     # depend on the sign of the null vector.
     directions = [_AsymmetricCycles(full_orbit, matrix, sign * null_vector, accuracy) for sign in (1, -1)]
     cycles = max(
-        directions, key=lambda one: CycleMotion(one.predicted_orbit(first_distance)).extrema["tip_y_max"]
+        directions, key=lambda one: CycleMotion(one.predicted_orbit(first_distance)).tip_extrema["tip_y_max"]
     )
     for distance in ASYMMETRIC_START_SETTINGS.first_cycle_relative_distances:
         try:
@@ -99,14 +99,14 @@ def first_asymmetric_cycle(
 
 def _require_asymmetry(orbit: Orbit, predicted: Orbit) -> None:
     """Raises Unsolvable if the asymmetry of an orbit is far from the asymmetry of its prediction."""
-    expected_asymmetry = asymmetry(predicted)
+    expected_asymmetry = bending_moment_asymmetry(predicted)
     # Asymmetries are compared node by node, so both must have one mesh in space.
     orbit_on_mesh = orbit.on_mesh(predicted.form.mesh, orbit.interval_count, orbit.stage_count)
-    ratio = float(asymmetry(orbit_on_mesh) @ expected_asymmetry) / float(
+    ratio = float(bending_moment_asymmetry(orbit_on_mesh) @ expected_asymmetry) / float(
         expected_asymmetry @ expected_asymmetry
     )
     # A ratio near 0 is the symmetric cycle itself, which solves the same equations.
-    min_ratio, max_ratio = BRANCH_END_SETTINGS.allowed_asymmetry_ratios
+    min_ratio, max_ratio = BRANCH_END_SETTINGS.allowed_asymmetry_to_prediction_ratios
     if not min_ratio < ratio < max_ratio:
         raise Unsolvable("Newton's method converged to a cycle whose asymmetry is not the predicted one")
 
@@ -116,7 +116,7 @@ class _AsymmetricCycles:
     """One half of a branch of asymmetric cycles, near the symmetric cycle at its symmetry breaking. A cycle
     is identified by its relative distance from the symmetric cycle."""
 
-    symmetric: Orbit
+    symmetric_orbit: Orbit
     """The symmetric cycle at the symmetry breaking, over the whole period."""
     matrix: BorderedMatrix
     """Bordered matrix of the symmetric cycle, with the units of arc length."""
@@ -128,58 +128,67 @@ class _AsymmetricCycles:
 
     def predicted_orbit(self, distance: float) -> Orbit:
         """The prediction of the cycle at a relative distance; raises Unsolvable."""
-        return moved_orbit(self.symmetric, self.matrix.scale.parameter_name, distance * self.null_vector)
+        return moved_orbit(
+            self.symmetric_orbit, self.matrix.scale.parameter_name, distance * self.null_vector
+        )
 
     def distance_before_fold(self, distance: float) -> float:
         """`distance`, or a smaller relative distance from the symmetric cycle if the branch has a fold
         between the symmetric cycle and the cycle at `distance`; raises Unsolvable."""
         # The parameter is p0 + A t^2 + B t^4 with t = 1 at `distance`; its derivatives give A and B.
-        parameter_rate = self._parameter_rate(distance)
-        half_distance_rate = self._parameter_rate(distance / 2)
+        parameter_rate = self._parameter_per_arc_length(distance)
+        half_distance_rate = self._parameter_per_arc_length(distance / 2)
         # From p' = 2 A t + 4 B t^3 at t = 1 and t = 1/2; only the ratio A/B matters, not the scale.
         A = (8 * half_distance_rate - parameter_rate) / 6
         B = (parameter_rate - 2 * A) / 4
         # The parameter still moves as it started, so no fold lies between.
         if A * parameter_rate >= 0:
             return distance
-        return distance * ASYMMETRIC_START_SETTINGS.asymmetry_to_fold_ratio * sqrt(-A / (2 * B))
+        return distance * ASYMMETRIC_START_SETTINGS.asymmetry_per_asymmetry_at_fold * sqrt(-A / (2 * B))
 
-    def _parameter_rate(self, distance: float) -> float:
+    def _parameter_per_arc_length(self, distance: float) -> float:
         """Derivative of the scaled parameter coordinate with respect to arc length at the cycle at a relative
         distance; raises Unsolvable."""
         solved = self._predicted_deflection_condition(distance).solve_cycle(
             self.predicted_orbit(distance),
-            ASYMMETRIC_START_SETTINGS.parameter_rate_newton_tolerance,
+            ASYMMETRIC_START_SETTINGS.newton_tolerance_for_fold_search,
             self.matrix.workspace,
         )
         scale = self.matrix.scale
         tangent = tangent_at(solved.orbit, scale, self._border(distance), linearisation_of(solved))
-        return branch_derivatives(solved, scale, tangent).parameter_rate
+        return branch_derivatives(solved, scale, tangent).parameter_per_arc_length
 
     def first_cycle(self, distance: float) -> BranchCycle:
         """The cycle at a relative distance, as the first cycle of a branch; raises Unsolvable."""
         start = self.predicted_orbit(distance)
         condition = self._predicted_deflection_condition(distance)
         solved = condition.solve_cycle(
-            start, REFINEMENT_SETTINGS.nearby_orbit_tolerance, self.matrix.workspace
+            start, REFINEMENT_SETTINGS.nearby_orbit_newton_tolerance, self.matrix.workspace
         )
         near_orbit = solved.orbit
         _require_asymmetry(near_orbit, start)
         mesh_accuracy = max(self.accuracy, REFINEMENT_SETTINGS.min_first_mesh_accuracy)
-        mesh = mesh_from_tails(near_orbit, mesh_accuracy, cheapest_stage_count(self.accuracy))
+        mesh = mesh_from_coefficient_tails(near_orbit, mesh_accuracy, cheapest_stage_count(self.accuracy))
         first = condition.solve_on_mesh(
-            mesh, solved, branch_newton_tolerance(self.accuracy), allowed_matrix_distance(self.accuracy)
+            mesh,
+            solved,
+            branch_newton_tolerance(self.accuracy),
+            allowed_distance_from_matrix_orbit(self.accuracy),
         )
         scale = self.matrix.scale
         arc_from_start = abs(self._predicted_deflection_change(distance)) / scale.deflection_unit
-        cycle = first_measured_cycle(first, scale, self._border(distance), arc_from_start, self.accuracy)
+        cycle = first_cycle_with_measured_errors(
+            first, scale, self._border(distance), arc_from_start, self.accuracy
+        )
         # Again, because the correction on the final mesh may still fall onto the symmetric cycle.
         _require_asymmetry(cycle.orbit, start)
         return cycle
 
     def _predicted_deflection_change(self, distance: float) -> float:
         """Deflection of the prediction at a relative distance minus deflection of the symmetric cycle."""
-        return deflection_of(self.predicted_orbit(distance)) - deflection_of(self.symmetric)
+        return deflection_at_time_zero(self.predicted_orbit(distance)) - deflection_at_time_zero(
+            self.symmetric_orbit
+        )
 
     def _border(self, distance: float) -> Array:
         return np.asarray(np.sign(self._predicted_deflection_change(distance)) * DEFLECTION_UNIT_VECTOR)

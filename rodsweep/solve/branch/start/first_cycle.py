@@ -10,21 +10,21 @@ from collections.abc import Sequence
 import numpy as np
 
 from ....discretization.stress.form import StressForm
-from ...cycle.accuracy.refinement import allowed_matrix_distance
+from ...cycle.accuracy.newton_tolerances import allowed_distance_from_matrix_orbit
 from ...cycle.accuracy.settings import REFINEMENT_SETTINGS
 from ...cycle.hopf_start import orbit_of_amplitude
 from ...orbit.matrix.workspace import NewtonWorkspace
-from ...orbit.mesh_choice import cheapest_stage_count, mesh_from_tails
+from ...orbit.mesh_choice import cheapest_stage_count, mesh_from_coefficient_tails
 from ...orbit.orbit import Orbit
 from ...unsolvable import Unsolvable
 from ..arc_length_step import BranchCycle
 from ..bordered.condition import BorderCondition
-from ..bordered.scale import ArcLengthScale, deflection_of
+from ..bordered.scale import ArcLengthScale, deflection_at_time_zero
 from ..branch_errors import branch_newton_tolerance
-from ..branch_mesh_choice import first_measured_cycle
+from ..branch_mesh_choice import first_cycle_with_measured_errors
 from ..settings import BRANCH_START_SETTINGS
 from .hopf_point import HopfBranchStart
-from .near_hopf_points import max_first_amplitude
+from .neighbouring_hopf_points import max_first_amplitude
 
 DEFLECTION_UNIT_VECTOR = np.array([1.0, 0.0, 0.0])
 """Unit vector along the deflection, (3,), in components (deflection, log period, parameter)."""
@@ -45,7 +45,7 @@ def first_cycle(
     # The parameter moves against the normal form: the branch has a fold before this cycle.
     while (
         # With direction 0, where the sign of Re c is unknown, no fold can be inferred.
-        first.parameter_rate * hopf.direction < 0
+        first.parameter_per_arc_length * hopf.parameter_direction < 0
         and amplitude > BRANCH_START_SETTINGS.min_amplitude_before_fold
     ):
         amplitude /= 2
@@ -70,7 +70,9 @@ def _cycle_near_hopf_point(
         (REFINEMENT_SETTINGS.min_first_mesh_accuracy, True),
     ):
         for fraction in BRANCH_START_SETTINGS.first_amplitudes:
-            amplitude = min(fraction, BRANCH_START_SETTINGS.max_amplitude_per_coefficient * a, max_amplitude)
+            amplitude = min(
+                fraction, BRANCH_START_SETTINGS.max_amplitude_per_amplitude_coefficient * a, max_amplitude
+            )
             try:
                 return _cycle_of_amplitude(
                     hopf, amplitude, mesh_accuracy, is_finer_start, accuracy, workspace
@@ -95,39 +97,41 @@ def _cycle_of_amplitude(
     is_finer_start: whether the starting mesh is chosen for `mesh_accuracy` too; otherwise the starting mesh
     is the coarser mesh of the normal form.
     """
-    start = predicted_cycle(hopf, amplitude)
+    start = cycle_of_normal_form(hopf, amplitude)
     if is_finer_start:
-        start = mesh_from_tails(start, mesh_accuracy, cheapest_stage_count(mesh_accuracy)).interpolated_orbit(
-            start
-        )
+        start = mesh_from_coefficient_tails(
+            start, mesh_accuracy, cheapest_stage_count(mesh_accuracy)
+        ).interpolated_orbit(start)
     min_deflection_unit = (
-        abs(deflection_of(start)) * BRANCH_START_SETTINGS.min_amplitude_of_deflection_unit / amplitude
+        abs(deflection_at_time_zero(start))
+        * BRANCH_START_SETTINGS.amplitude_of_min_deflection_unit
+        / amplitude
     )
     scale = ArcLengthScale.at_orbit(start, hopf.parameter_name, min_deflection_unit, hopf.min_coordinate_unit)
     # With the deflection prescribed, not the parameter, the cycle cannot collapse onto the straight rod.
-    border = np.sign(deflection_of(start)) * DEFLECTION_UNIT_VECTOR
+    border = np.sign(deflection_at_time_zero(start)) * DEFLECTION_UNIT_VECTOR
     condition = BorderCondition.at_arc_length(scale, border, start)
-    rough_orbit = condition.solve_cycle(start, REFINEMENT_SETTINGS.nearby_orbit_tolerance, workspace)
+    rough_orbit = condition.solve_cycle(start, REFINEMENT_SETTINGS.nearby_orbit_newton_tolerance, workspace)
     near_orbit = rough_orbit.orbit
     # The phase condition puts the largest y of the tip at t = 0.
     tip_y = float(near_orbit.form.tip_coordinates(near_orbit.start_state)[1])
     # A different cycle with the same deflection would have an amplitude far from the normal form's.
-    least_ratio, largest_ratio = BRANCH_START_SETTINGS.allowed_amplitude_ratios
+    least_ratio, largest_ratio = BRANCH_START_SETTINGS.allowed_amplitude_to_prediction_ratios
     if not least_ratio < tip_y / amplitude < largest_ratio:
         raise Unsolvable("Newton's method converged far from the cycle that the normal form predicts")
-    mesh = mesh_from_tails(near_orbit, mesh_accuracy, cheapest_stage_count(accuracy))
+    mesh = mesh_from_coefficient_tails(near_orbit, mesh_accuracy, cheapest_stage_count(accuracy))
     first = condition.solve_on_mesh(
-        mesh, rough_orbit, branch_newton_tolerance(accuracy), allowed_matrix_distance(accuracy)
+        mesh, rough_orbit, branch_newton_tolerance(accuracy), allowed_distance_from_matrix_orbit(accuracy)
     )
-    arc_from_start = abs(deflection_of(first.orbit)) / scale.deflection_unit
-    return first_measured_cycle(first, scale, border, arc_from_start, accuracy)
+    arc_from_start = abs(deflection_at_time_zero(first.orbit)) / scale.deflection_unit
+    return first_cycle_with_measured_errors(first, scale, border, arc_from_start, accuracy)
 
 
-def predicted_cycle(hopf: HopfBranchStart, amplitude: float) -> Orbit:
+def cycle_of_normal_form(hopf: HopfBranchStart, amplitude: float) -> Orbit:
     """The cycle that the normal form predicts for the largest tip y `amplitude`, in L, on the normal form's
     mesh in space and a coarse mesh in time; raises Unsolvable."""
     change, frequency = hopf.parameter_change_and_frequency(amplitude)
-    form = StressForm(hopf.rod, hopf.normal_form.form.mesh, hopf.is_omega_always_unknown)
+    form = StressForm(hopf.rod, hopf.normal_form.mixed_form.mesh, hopf.is_omega_always_unknown)
     try:
         form = form.with_coordinate(hopf.parameter_name, hopf.parameter_coordinate + change)
     except (ValueError, ZeroDivisionError) as error:

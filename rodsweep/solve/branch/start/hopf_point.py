@@ -14,7 +14,7 @@ from ...hopf.hopf_coefficients import HopfCoefficients, hopf_coefficients
 from ...hopf.normal_form import NormalForm, normal_form_by_mesh_rule
 from ...unsolvable import Unsolvable
 from ..settings import BRANCH_START_SETTINGS
-from ..special.special_point import SpecialKind, SpecialPoint
+from ..special.special_point import SpecialPoint, SpecialPointKind
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -28,11 +28,11 @@ class HopfBranchStart:
     parameter_name: str
     parameter_coordinate: float
     """Coordinate of the parameter at the Hopf point: 1/k for a stiffness k, otherwise the value itself."""
-    growth_slope: complex
+    eigenvalue_slope: complex
     """Derivative dw/d(coordinate) of the critical eigenvalue w at the Hopf point; w in 1/tau2."""
     normal_form: NormalForm
     """Normal form on a mesh that suffices for the prediction of the first cycle."""
-    coefficients: HopfCoefficients
+    normal_form_coefficients: HopfCoefficients
     """Coefficients of the normal form with error estimates, from a comparison of meshes."""
     is_omega_always_unknown: bool = False
     """Whether the angular velocity Omega is an unknown for all cycles of the branch, see `StressForm`."""
@@ -57,18 +57,21 @@ class HopfBranchStart:
         # 0 = Re slope dp + Re c a^2, so a^2 = -Re slope p/Re c per relative change of p; a negative value
         # means cycles at smaller p.
         squared_amplitude = (
-            -sign * self.growth_slope.real * self.parameter_coordinate / self.coefficients.landau.real
+            -sign
+            * self.eigenvalue_slope.real
+            * self.parameter_coordinate
+            / self.normal_form_coefficients.landau.real
         )
         return float(np.copysign(abs(squared_amplitude) ** 0.5, squared_amplitude))
 
     @property
-    def relative_coefficient_error(self) -> float:
+    def relative_amplitude_coefficient_error(self) -> float:
         """Relative error of the amplitude coefficient: half the sum of the relative errors of Re c, of
         Re(slope) and of the parameter at the Hopf point."""
-        c = self.coefficients.landau
-        slope = self.growth_slope
-        landau_error = self.coefficients.landau_error * abs(c) / abs(c.real)
-        slope_error = self.coefficients.growth_slope_error * abs(slope) / abs(slope.real)
+        c = self.normal_form_coefficients.landau
+        slope = self.eigenvalue_slope
+        landau_error = self.normal_form_coefficients.landau_error * abs(c) / abs(c.real)
+        slope_error = self.normal_form_coefficients.growth_slope_error * abs(slope) / abs(slope.real)
         # Half, because a is a square root.
         return (landau_error + slope_error + self.crossing.error / abs(self.crossing.value)) / 2
 
@@ -78,36 +81,36 @@ class HopfBranchStart:
         error at the Hopf point, plus the rounding error."""
         parameter_error = self.crossing.error / abs(self.crossing.value) * abs(self.parameter_coordinate)
         return (
-            abs(self.growth_slope) * parameter_error / self.crossing.frequency
-            + BRANCH_START_SETTINGS.frequency_rounding
+            abs(self.eigenvalue_slope) * parameter_error / self.crossing.frequency
+            + BRANCH_START_SETTINGS.relative_frequency_rounding_error
         )
 
     @property
-    def direction(self) -> int:
+    def parameter_direction(self) -> int:
         """Sign of the change of the parameter coordinate along the branch at the Hopf point; 0 if the error
         of Re c exceeds |Re c|."""
-        c = self.coefficients.landau
+        c = self.normal_form_coefficients.landau
         # Negated, so that a nan coefficient gives no direction.
-        if not abs(c.real) > self.coefficients.landau_error * abs(c):
+        if not abs(c.real) > self.normal_form_coefficients.landau_error * abs(c):
             return 0
-        return int(np.sign(-c.real / self.growth_slope.real))
+        return int(np.sign(-c.real / self.eigenvalue_slope.real))
 
     def parameter_change_and_frequency(self, amplitude: float) -> tuple[float, float]:
         """Returns (change of the parameter coordinate from the Hopf point, frequency in 1/tau2), by the
         normal form, of the cycle whose largest tip y is `amplitude`, in L."""
         c = self.normal_form.landau
         # The growth rate of the cycle vanishes: Re slope dp + Re c a^2 = 0.
-        change = -c.real * amplitude**2 / self.growth_slope.real
-        return change, self.crossing.frequency + self.growth_slope.imag * change + c.imag * amplitude**2
+        change = -c.real * amplitude**2 / self.eigenvalue_slope.real
+        return change, self.crossing.frequency + self.eigenvalue_slope.imag * change + c.imag * amplitude**2
 
     def period_and_amplitude_at(self, coordinate: float) -> tuple[float, float]:
         """(period in tau2, largest tip y in L), by the normal form, of the cycle at the parameter coordinate
         `coordinate` on the side of the Hopf point where the cycles exist; amplitude 0 on the other side."""
-        c = self.coefficients.landau
+        c = self.normal_form_coefficients.landau
         change = coordinate - self.parameter_coordinate
         # A negative square means that no cycle exists on this side.
-        squared = max(-self.growth_slope.real * change / c.real, 0.0)
-        frequency = self.crossing.frequency + self.growth_slope.imag * change + c.imag * squared
+        squared = max(-self.eigenvalue_slope.real * change / c.real, 0.0)
+        frequency = self.crossing.frequency + self.eigenvalue_slope.imag * change + c.imag * squared
         return 2 * np.pi / frequency, squared**0.5
 
 
@@ -124,17 +127,17 @@ def hopf_branch_start(
     w = complex(0.0, crossing.frequency)
     rod = path.rod_at(path.coordinate(crossing.value))
     # Started at the located frequency, so the same eigenvalue is found again, now with its slope.
-    _, slope, _ = path_problem(path).eigenvalue(w, path.coordinate(crossing.value))
+    _, slope, _ = path_problem(path).eigenvalue_with_slope_and_error(w, path.coordinate(crossing.value))
     normal = normal_form_by_mesh_rule(rod, w, normal_form_accuracy(rod))
     return HopfBranchStart(
         crossing=crossing,
         rod=rod,
         parameter_name=path.name,
         parameter_coordinate=path.coordinate(crossing.value),
-        growth_slope=complex(slope),
+        eigenvalue_slope=complex(slope),
         normal_form=normal,
         # Two meshes give these coefficients with their errors; one mesh suffices for the start of the branch.
-        coefficients=_accurate_coefficients(rod, crossing),
+        normal_form_coefficients=_accurate_coefficients(rod, crossing),
         is_omega_always_unknown=is_omega_always_unknown,
         min_coordinate_unit=min_coordinate_unit,
     )
@@ -142,9 +145,9 @@ def hopf_branch_start(
 
 def _accurate_coefficients(rod: Rod, crossing: Threshold) -> HopfCoefficients:
     """The coefficients of the normal form at the Hopf point `crossing`, to the first possible one of
-    `coefficient_accuracies`; raises Unsolvable. rod: the rod at the Hopf point."""
+    `landau_coefficient_accuracies`; raises Unsolvable. rod: the rod at the Hopf point."""
     reason = Unsolvable()
-    for accuracy in BRANCH_START_SETTINGS.coefficient_accuracies:
+    for accuracy in BRANCH_START_SETTINGS.landau_coefficient_accuracies:
         try:
             return hopf_coefficients(rod, crossing, accuracy)
         except Unsolvable as error:
@@ -157,9 +160,9 @@ def accuracy_near_hopf_points(hopfs: Sequence[HopfBranchStart], accuracy: float)
     smaller number if a Hopf point is close to a generalised Hopf point."""
     max_coefficient = max((abs(hopf.amplitude_coefficient) for hopf in hopfs), default=0.0)
     # Negated, so that a nan coefficient does not set the accuracy.
-    if not max_coefficient > BRANCH_START_SETTINGS.max_harmless_amplitude_coefficient:
+    if not max_coefficient > BRANCH_START_SETTINGS.max_nondegenerate_amplitude_coefficient:
         return accuracy
-    ratio = (BRANCH_START_SETTINGS.max_harmless_amplitude_coefficient / max_coefficient) ** 2
+    ratio = (BRANCH_START_SETTINGS.max_nondegenerate_amplitude_coefficient / max_coefficient) ** 2
     required_accuracy = BRANCH_START_SETTINGS.max_accuracy_if_degenerate * ratio
     return min(accuracy, max(required_accuracy, BRANCH_START_SETTINGS.min_accuracy_if_degenerate))
 
@@ -167,7 +170,7 @@ def accuracy_near_hopf_points(hopfs: Sequence[HopfBranchStart], accuracy: float)
 def hopf_as_special_point(hopf: HopfBranchStart) -> SpecialPoint:
     """The Hopf point as a special point, for the start or the end of a branch."""
     return SpecialPoint(
-        kind=SpecialKind.hopf,
+        kind=SpecialPointKind.hopf,
         parameter_value=hopf.crossing.value,
         period=hopf.period,
         tip_y_max=0.0,
@@ -175,5 +178,5 @@ def hopf_as_special_point(hopf: HopfBranchStart) -> SpecialPoint:
         period_error=hopf.period_error,
         tip_y_max_error=0.0,
         amplitude_coefficient=hopf.amplitude_coefficient,
-        relative_coefficient_error=hopf.relative_coefficient_error,
+        relative_amplitude_coefficient_error=hopf.relative_amplitude_coefficient_error,
     )

@@ -13,7 +13,7 @@ import numpy as np
 from ...unsolvable import Unsolvable
 from ..search_range import IntervalQueue, SearchEnd
 from ..threshold_kinds import Threshold, crossing_kind
-from .axis_modes import ArmModes, ModesAlongPath, next_count_interval_fraction
+from .imaginary_axis_modes import ArmModes, ModesAlongPath, interval_fraction_of_next_count
 from .path import ArmPath
 
 
@@ -21,36 +21,36 @@ from .path import ArmPath
 class ArmCrossingSettings:
     """Settings of the search for crossings along a path of arms."""
 
-    max_expected_pairs_per_max_crossings: float = 2.0
+    max_growing_pairs_per_max_crossings: float = 2.0
     """Largest number of pairs expected to grow at the right end of an interval, divided by the maximum number
     of crossings; with more pairs the interval is halved before its search."""
     min_halved_interval_fraction: float = 1e-3
     """Intervals shorter than this fraction of the path are searched without being halved."""
-    max_pairs_at_once: int = 6
+    max_pairs_searched_at_once: int = 6
     """Where many modes grow, all crossings between two counted arms are searched at once if their counts
     differ by at most this many pairs."""
     max_frequency_per_largest_modulus: float = 4.0
     """Modes near the axis at a crossing are searched for |Im w| up to this multiple of the largest |w|."""
-    max_distance_in_errors: float = 10.0
+    max_same_crossing_distance_in_errors: float = 10.0
     """Two crossings may be equal if their values differ by at most this multiple of their summed errors."""
-    frequency_tolerance: float = 1e-6
-    """Two crossings that may be equal by `max_distance_in_errors` are equal if the relative difference of
-    their frequencies is at most this number."""
+    same_crossing_frequency_tolerance: float = 1e-6
+    """Two crossings that may be equal by `max_same_crossing_distance_in_errors` are equal if the relative
+    difference of their frequencies is at most this number."""
     min_interval_fraction: float = 1e-6
     """Intervals shorter than this fraction of the path are not divided, but stored as gaps."""
     min_relative_interval_length: float = 1e-12
     """The search fails at an interval without located crossings whose length, divided by the larger modulus
     of its ends, is at most this number: some thousand rounding errors."""
-    count_distance_path_fraction: float = 1e-5
+    count_to_crossing_path_fraction: float = 1e-5
     """Distance from a crossing, as a fraction of the path, at which the modes are counted on both sides."""
-    max_steps: int = 20
+    max_newton_steps: int = 20
     """Maximum number of Newton steps for one crossing."""
     converged_step_in_errors: float = 4.0
     """Newton's method for a crossing stops when the step is at most this multiple of the error of p."""
-    max_frequency_error: float = 1e-2
+    max_relative_frequency_error: float = 1e-2
     """A crossing with a larger relative error of its frequency is not located: from a poor guess, Newton's
     method for w may stop far from all roots of D, where errors are at least 0.16 (83 such stops)."""
-    rounding_error: float = 4e-16
+    relative_rounding_error: float = 4e-16
     """Relative rounding error of the path variable: two units in the last place."""
 
 
@@ -67,7 +67,9 @@ class CrossingSearch:
         self.crossings_by_p: dict[float, Threshold] = {}
         self.gaps: list[tuple[float, float]] = []
 
-    def crossings(self, edges: list[float], max_crossings: float) -> tuple[list[Threshold], SearchEnd]:
+    def crossings_and_search_end(
+        self, edges: list[float], max_crossings: float
+    ) -> tuple[list[Threshold], SearchEnd]:
         """Returns (crossings, end). crossings: all crossings from the first of `edges` to the end of the
         search, in increasing order of p. end: end of the search.
 
@@ -75,12 +77,10 @@ class CrossingSearch:
         further crossing takes longer than all earlier ones. Raises Unsolvable if the search ends at the first
         edge."""
         intervals = IntervalQueue(edges)
-        count_distance = ARM_CROSSING_SETTINGS.count_distance_path_fraction * intervals.length
-        self.axis_modes.outside_p_by_end = {
-            edges[0]: edges[0] - count_distance,
-            edges[-1]: edges[-1] + count_distance,
-        }
-        self.axis_modes.modes_at(edges[0])
+        count_distance = ARM_CROSSING_SETTINGS.count_to_crossing_path_fraction * intervals.length
+        first, last = edges[0], edges[-1]
+        self.axis_modes.outside_p_by_end = {first: first - count_distance, last: last + count_distance}
+        self.axis_modes.modes_at(first)
         for a, b in intervals:
             if sum(p < a for p in self.crossings_by_p) > max_crossings:
                 intervals.stop_at(a, f"more than {max_crossings:g} crossings; raise the option crossings")
@@ -91,10 +91,10 @@ class CrossingSearch:
             try:
                 self._search_interval(a, b, intervals)
             except Unsolvable as reason:
-                intervals.limit_search_below((a, b), str(reason))
+                intervals.retry_left_half_only((a, b), str(reason))
                 self.crossings_by_p = {p: crossing for p, crossing in self.crossings_by_p.items() if p <= a}
         ordered = [self.crossings_by_p[p] for p in sorted(self.crossings_by_p)]
-        return [c for c in ordered if self._may_lie_within(c, edges[0], edges[-1])], intervals.end
+        return [c for c in ordered if self._may_lie_within(c, first, last)], intervals.end
 
     def _may_lie_within(self, crossing: Threshold, low: float, high: float) -> bool:
         """Whether path variables from `low` to `high` lie within the error of `crossing`."""
@@ -109,8 +109,9 @@ class CrossingSearch:
         is_short = b - a < ARM_CROSSING_SETTINGS.min_halved_interval_fraction * length
         if is_short or b in self.axis_modes.modes_by_p:
             return False
-        max_pairs = ARM_CROSSING_SETTINGS.max_expected_pairs_per_max_crossings * 2 * max_crossings
-        return self.axis_modes.has_many_modes(b) and self.problem.expected_unstable_count(b) > max_pairs
+        max_pairs = ARM_CROSSING_SETTINGS.max_growing_pairs_per_max_crossings * 2 * max_crossings
+        has_many_modes = self.axis_modes.computes_only_near_imaginary_axis(b)
+        return has_many_modes and self.problem.expected_unstable_count(b) > max_pairs
 
     def _search_interval(self, a: float, b: float, intervals: IntervalQueue) -> None:
         """Searches the interval (a, b) of p: stores the crossings found, or divides the interval, or stores
@@ -119,7 +120,7 @@ class CrossingSearch:
         right_modes = self.axis_modes.modes_at(b)
         # Equal counts leave room for a pair that crosses and returns.
         if left_modes.unstable_count == right_modes.unstable_count:
-            fraction = next_count_interval_fraction(left_modes, right_modes)
+            fraction = interval_fraction_of_next_count(left_modes, right_modes)
             if fraction == 0.0:
                 return
             if b - a <= ARM_CROSSING_SETTINGS.min_interval_fraction * intervals.length:
@@ -131,9 +132,7 @@ class CrossingSearch:
             length = intervals.length
             parts = self._intervals_between_crossings(crossings, left_modes, right_modes, length)
             if crossings and parts is not None:
-                self.crossings_by_p.update(
-                    (self.problem.path.coordinate(crossing.value), crossing) for crossing in crossings
-                )
+                self.crossings_by_p.update((self.problem.path.coordinate(c.value), c) for c in crossings)
                 intervals.add_subintervals(*parts)
                 return
             if b - a <= ARM_CROSSING_SETTINGS.min_relative_interval_length * max(abs(a), abs(b)):
@@ -150,24 +149,21 @@ class CrossingSearch:
         settings = ARM_CROSSING_SETTINGS
         intervals: list[tuple[float, float]] = []
         start = left.p
-        max_frequency = settings.max_frequency_per_largest_modulus * max(
-            left.largest_modulus, right.largest_modulus
-        )
+        largest_modulus = max(left.largest_modulus, right.largest_modulus)
+        max_frequency = settings.max_frequency_per_largest_modulus * largest_modulus
         for crossing in crossings:
             p = self.problem.path.coordinate(crossing.value)
-            p_before = max(start, p - settings.count_distance_path_fraction * length)
-            p_after = min(right.p, p + settings.count_distance_path_fraction * length)
+            p_before = max(start, p - settings.count_to_crossing_path_fraction * length)
+            p_after = min(right.p, p + settings.count_to_crossing_path_fraction * length)
             guesses = None
-            if self.axis_modes.has_many_modes(p_before):
-                guesses = self.axis_modes.eigenvalues_near_axis(
-                    p, max_frequency, np.array([1j * crossing.frequency])
-                )
-            count_change = (
-                self.axis_modes.modes_at(p_after, guesses).unstable_count
-                - self.axis_modes.modes_at(p_before, guesses).unstable_count
-            )
+            if self.axis_modes.computes_only_near_imaginary_axis(p_before):
+                w = np.array([1j * crossing.frequency])
+                guesses = self.axis_modes.eigenvalues_near_imaginary_axis(p, max_frequency, w)
+            count_after = self.axis_modes.modes_at(p_after, guesses).unstable_count
+            count_change = count_after - self.axis_modes.modes_at(p_before, guesses).unstable_count
             # With a large error, another crossing may explain the counts.
-            is_located = crossing.frequency_error <= settings.max_frequency_error * crossing.frequency
+            max_error = settings.max_relative_frequency_error * crossing.frequency
+            is_located = crossing.frequency_error <= max_error
             if not is_located or count_change != (2 if right.unstable_count > left.unstable_count else -2):
                 return None
             intervals.append((start, p_before))
@@ -179,12 +175,13 @@ class CrossingSearch:
         explain the change of the number of unstable modes; empty if a crossing is not found or the change is
         too large for one search."""
         pair_count_change = (right.unstable_count - left.unstable_count) // 2
-        has_many_modes = self.axis_modes.has_many_modes(right.p)
+        has_many_modes = self.axis_modes.computes_only_near_imaginary_axis(right.p)
         # Where modes are followed, bisection first separates several crossings.
-        if abs(pair_count_change) > (ARM_CROSSING_SETTINGS.max_pairs_at_once if has_many_modes else 1):
+        max_pairs = ARM_CROSSING_SETTINGS.max_pairs_searched_at_once if has_many_modes else 1
+        if abs(pair_count_change) > max_pairs:
             return []
         if has_many_modes:
-            self.problem.ensure_family(left.p, right.p, max(left.largest_modulus, right.largest_modulus))
+            self.problem.ensure_arm_family(left.p, right.p, max(left.largest_modulus, right.largest_modulus))
         becomes_unstable = pair_count_change > 0
         crossings_by_p: dict[float, Threshold] = {}
         # The pairs that cross are stable on one side and unstable on the other; pairs near the axis are
@@ -211,7 +208,7 @@ class CrossingSearch:
         w = complex(start.w[i])
         slope = complex(start.slopes[i])
         settings = ARM_CROSSING_SETTINGS
-        for _ in range(settings.max_steps):
+        for _ in range(settings.max_newton_steps):
             if slope.real == 0 or not math.isfinite(slope.real):
                 return None
             step = -w.real / slope.real
@@ -219,11 +216,11 @@ class CrossingSearch:
             guess = w + slope * step
             if not p_ends[0] <= p <= p_ends[1]:
                 return None
-            w, slope, error = self.problem.eigenvalue(guess, p)
-            p_error = error / abs(slope.real) + settings.rounding_error * abs(p)
+            w, slope, error = self.problem.eigenvalue_with_slope_and_error(guess, p)
+            p_error = error / abs(slope.real) + settings.relative_rounding_error * abs(p)
             if abs(w.real / slope.real) <= settings.converged_step_in_errors * p_error:
-                max_error = settings.count_distance_path_fraction * (p_ends[1] - p_ends[0])
-                if self.axis_modes.has_many_modes(p) and not p_error <= max_error:
+                max_error = settings.count_to_crossing_path_fraction * (p_ends[1] - p_ends[0])
+                if self.axis_modes.computes_only_near_imaginary_axis(p) and not p_error <= max_error:
                     return None  # no root of D is resolved
                 return self._crossing_at(p, w, slope, p_error, grows)
         return None
@@ -237,14 +234,14 @@ class CrossingSearch:
             return None
         kind = crossing_kind(self.problem.path, grows)
         total_p_error = p_error + abs(w.real / slope.real)
-        value, error = self.problem.path.value(p, total_p_error)
+        value, error = self.problem.path.value_and_error(p, total_p_error)
         frequency_error = (abs(slope.real) + abs(slope.imag)) * total_p_error  # by the errors of w and p
         return Threshold(value, kind, w.imag, 0.0, error, frequency_error=frequency_error)
 
 
 def _are_same_crossing(first: Threshold, second: Threshold) -> bool:
     """Whether two crossings are equal within the errors of the parameter and of the frequency."""
-    max_distance = ARM_CROSSING_SETTINGS.max_distance_in_errors * (first.error + second.error)
-    max_difference = ARM_CROSSING_SETTINGS.frequency_tolerance * first.frequency
+    max_distance = ARM_CROSSING_SETTINGS.max_same_crossing_distance_in_errors * (first.error + second.error)
+    max_difference = ARM_CROSSING_SETTINGS.same_crossing_frequency_tolerance * first.frequency
     is_near = abs(first.value - second.value) <= max_distance
     return is_near and abs(first.frequency - second.frequency) <= max_difference

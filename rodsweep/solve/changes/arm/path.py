@@ -15,8 +15,8 @@ from ....determinant.certificate.winding_number import EigenvalueCount
 from ....determinant.parameter_path import ParameterPath
 from ....determinant.roots.newton import LocatedEigenvalue
 from ....model.dispersion import expected_unstable_count
+from ...spectrum.path.eigenvalue_prediction import KnownRoots
 from ...spectrum.path.followed_arms import FollowedArms
-from ...spectrum.path.prediction import KnownRoots
 from ...spectrum.problem import ArmProblem
 from ...spectrum.search import Spectrum, SpectrumRequest
 from ...spectrum.status import SpectrumStatus
@@ -42,7 +42,7 @@ class ArmPathSettings:
     max_expected_growing_modes: float = 16.0
     """No modes are followed where the estimate `expected_unstable_count` exceeds this number: at most 13
     modes can be followed, and the estimate is 0.9 to 1.9 times the true number."""
-    w_bound_ratio: float = 4.0
+    family_W_over_max_abs_eigenvalue: float = 4.0
     """Bound W of |w| of a family of arms for crossings, divided by the largest known |w|; twice the known |w|
     suffices for the eigenvalues."""
     max_count_distance_fraction: float = 0.25
@@ -66,9 +66,9 @@ class ArmPath(PathProblem):
         self._unstable_counts: dict[float, int] = {}
         """Proved numbers of unstable modes, by p."""
         self._families: list[ArmFamily] = []
-        self._determinant_along_path = ArmAlongPath(path, self._family_at)
+        self._determinant_along_path = ArmAlongPath(path, self._arm_family_at)
 
-    def _family_at(self, p: float) -> ArmFamily | None:
+    def _arm_family_at(self, p: float) -> ArmFamily | None:
         """The family of arms whose interval contains p; None if there is no family."""
         family = next(
             (candidate for candidate in self._families if candidate.p_low <= p <= candidate.p_high), None
@@ -78,13 +78,13 @@ class ArmPath(PathProblem):
             and self._followed_arms is not None
             and self.expected_unstable_count(p) <= ARM_PATH_SETTINGS.max_expected_growing_modes
         ):
-            return self._followed_arms.family_at(p)
+            return self._followed_arms.arm_family_at(p)
         return family
 
-    def ensure_family(self, low: float, high: float, largest_modulus: float) -> None:
+    def ensure_arm_family(self, low: float, high: float, largest_modulus: float) -> None:
         """Creates a family of arms from `low` to `high` for eigenvalues up to |w| = `largest_modulus`, if
         possible and if no stored family suffices."""
-        W = ARM_PATH_SETTINGS.w_bound_ratio * largest_modulus
+        W = ARM_PATH_SETTINGS.family_W_over_max_abs_eigenvalue * largest_modulus
         if any(
             # A family serves eigenvalues up to half of its W, so that Newton's iterates stay within W.
             stored.p_low <= low and high <= stored.p_high and largest_modulus * 2 <= stored.largest_w
@@ -133,7 +133,7 @@ class ArmPath(PathProblem):
         """The leading eigenvalues at p: followed, taken from an earlier request, or solved."""
         key = p, request
         if key not in self._spectra:
-            spectrum = self.followed_spectrum(p, request.modes)
+            spectrum = self.followed_spectrum(p, request.mode_count)
             if spectrum is None:
                 spectrum = self._solved_spectrum(p, request)
             self._spectra[key] = spectrum
@@ -149,26 +149,26 @@ class ArmPath(PathProblem):
         # A few modes more at first save a second solve where the next request needs one pair more.
         if (
             stored_spectrum is None
-            or len(stored_spectrum.eigenvalues) < request.modes
+            or len(stored_spectrum.eigenvalues) < request.mode_count
             or stored_spectrum.status != SpectrumStatus.ok
         ):
             spare = (
                 ARM_PATH_SETTINGS.spare_mode_count
-                if request.modes > ARM_PATH_SETTINGS.followed_count_beyond_unstable
+                if request.mode_count > ARM_PATH_SETTINGS.followed_count_beyond_unstable
                 else 0
             )
-            stored_spectrum = super().spectrum(p, replace(request, modes=request.modes + spare))
+            stored_spectrum = super().spectrum(p, replace(request, mode_count=request.mode_count + spare))
             # The additional modes may be harder to solve; they must not spoil the requested modes.
             if spare and stored_spectrum.status != SpectrumStatus.ok:
                 stored_spectrum = super().spectrum(p, request)
             self._solved_spectra[p] = stored_spectrum
         return replace(
             stored_spectrum,
-            eigenvalues=stored_spectrum.eigenvalues[: request.modes],
-            error_estimate=stored_spectrum.error_estimate[: request.modes],
+            eigenvalues=stored_spectrum.eigenvalues[: request.mode_count],
+            error_estimate=stored_spectrum.error_estimate[: request.mode_count],
         )
 
-    def known_count_near_middle(self, low: float, high: float) -> int | None:
+    def known_unstable_count_near_middle(self, low: float, high: float) -> int | None:
         known_p = [
             p
             for p in self._unstable_counts
@@ -177,9 +177,11 @@ class ArmPath(PathProblem):
         nearest_p = min(known_p, key=lambda p: abs(p - (low + high) / 2), default=None)
         return None if nearest_p is None else self._unstable_counts[nearest_p]
 
-    def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
+    def eigenvalue_with_slope_and_error(self, guess: complex, p: float) -> tuple[complex, complex, float]:
         slope_and_error = (
-            self._followed_arms.eigenvalue_slope(guess, p) if self._followed_arms is not None else None
+            self._followed_arms.slope_and_error_of_eigenvalue(guess, p)
+            if self._followed_arms is not None
+            else None
         )
         if slope_and_error is None:
             return self._determinant_along_path.eigenvalue(guess, p)
@@ -204,21 +206,21 @@ class ArmPath(PathProblem):
             ):
                 return EigenvalueCount(spectrum.unstable_count, 0)
         followed_roots = self._followed_arms.followed_roots(p) if self._followed_arms is not None else None
-        return ArmProblem(self.path.rod_at(p)).count(line, followed_roots)
+        return ArmProblem(self.path.rod_at(p)).count_right_of(line, followed_roots)
 
-    def counted_unstable_modes(self, p: float, known_w: Complex, known_error: Array) -> int | None:
+    def unstable_mode_count(self, p: float, known_w: Complex, known_error: Array) -> int | None:
         """Number of unstable modes at p, known already or by a count; None if the count is undecided.
         known_w: eigenvalues near the imaginary axis, (n,), one of each pair, which make the count faster.
         known_error: errors of these eigenvalues, (n,)."""
         if p not in self._unstable_counts:
             roots = KnownRoots(np.append(known_w, known_w.conj()), np.append(known_error, known_error))
-            count = ArmProblem(self.path.rod_at(p)).count(0.0, roots).number
+            count = ArmProblem(self.path.rod_at(p)).count_right_of(0.0, roots).number
             if count is None:
                 return None
             self._unstable_counts[p] = count
         return self._unstable_counts[p]
 
-    def eigenvalues_near_axis(self, p: float, max_frequency: float, known_w: Complex) -> Complex:
+    def eigenvalues_near_imaginary_axis(self, p: float, max_frequency: float, known_w: Complex) -> Complex:
         """Eigenvalues at p near the imaginary axis with |Im w| up to `max_frequency`, (n,), one of each pair.
         known_w: some of these eigenvalues, (k,), which come first. Raises FloatingPointError if no elements
         resolve the arm."""

@@ -29,10 +29,10 @@ class BoundaryAssignmentSettings:
     the second parameter differ by less than this number, relatively."""
     max_secant_steps: int = 20
     """Maximum number of secant steps to the point of a curve at a given value of the second parameter."""
-    max_end_distance: float = 1e-6
+    max_distance_of_identical_curve_ends: float = 1e-6
     """Two curves are identical if an end of the first and an end of the second (coordinates and log
     |eigenvalue|) are closer than this number, because curves do not cross."""
-    max_threshold_distance: float = 1e-7
+    max_distance_of_threshold_on_curve: float = 1e-7
     """A threshold closer to a curve than this lies on the curve; both axes have length 1."""
     max_distance_beyond_chord: float = 0.1
     """A chord of a curve is searched for a threshold only if the threshold lies at most this far beyond the
@@ -46,18 +46,18 @@ BOUNDARY_ASSIGNMENT_SETTINGS = BoundaryAssignmentSettings()
 class BoundarySeed:
     """A threshold on a row, at which a curve may start: values of both parameters, and the eigenvalue."""
 
-    values: tuple[float, float]
-    eigenvalue_sign: float
+    parameter_values: tuple[float, float]
+    double_eigenvalue_sign: float
     """0 for a Hopf point, else the sign of the double eigenvalue."""
-    eigenvalue: float
+    frequency_or_double_eigenvalue: float
     """The frequency of a Hopf point, or the double eigenvalue."""
 
 
 def seed_of(
     values: tuple[float, float], kind: int, frequency: float, growth_rate: float
 ) -> BoundarySeed | None:
-    """The seed at a threshold with the given `values` of both parameters; None for an overtaking of a real
-    eigenvalue and a pair, because no boundary consists of overtakings. kind: value of `ThresholdKind`.
+    """The seed at a threshold with the given `parameter_values` of both parameters; None for an overtaking of
+    a real eigenvalue and a pair, because no boundary consists of overtakings. kind: value of `ThresholdKind`.
     frequency, growth_rate: Im and Re of the eigenvalue, in 1/tau2."""
     if kind in (ThresholdKind.hopf, ThresholdKind.hopf_reverse, ThresholdKind.restabilization):
         return BoundarySeed(values, 0.0, frequency)
@@ -71,35 +71,42 @@ class _BoundaryTracingProblem:
     """The boundary curves through the thresholds of all rows, as a problem for `trace_all_curves`."""
 
     plane: ParameterPlane
+    """Plane of the two parameters in which the curves are traced."""
     seeds: list[BoundarySeed]
+    """Thresholds of all rows at which a curve may start."""
 
     def next_seed(self, untraced: Sequence[int]) -> int:
         """Index of the threshold at which the next curve starts: the first of `untraced`, which lie on no
         curve."""
         return untraced[0]
 
-    def missing_items(self, seed: int) -> list[int]:
+    def missing_work_items(self, seed: int) -> list[int]:
         """No work items for the threshold with index `seed`: its curve is traced at once, in milliseconds."""
         return []
 
     def curve(self, seed: int) -> BoundaryCurve | None:
         """The curve through the threshold with index `seed`; None if no curve is found."""
         threshold = self.seeds[seed]
-        x, y = (a.coordinate(v) for a, v in zip(self.plane.axes, threshold.values, strict=True))
-        return trace_boundary(threshold.eigenvalue_sign, self.plane, (x, y), threshold.eigenvalue)
+        x, y = (
+            a.scaled_coordinate(v) for a, v in zip(self.plane.axes, threshold.parameter_values, strict=True)
+        )
+        return trace_boundary(
+            threshold.double_eigenvalue_sign, self.plane, (x, y), threshold.frequency_or_double_eigenvalue
+        )
 
-    def distance(self, curve: BoundaryCurve, seed: int) -> float:
+    def distance_along_row(self, curve: BoundaryCurve, seed: int) -> float:
         """Distance of the threshold with index `seed` from `curve` along the first axis, in the scaled
         coordinate of this axis; inf if no point near the threshold has nearly its eigenvalue."""
         return _distance_along_first_axis(self.plane, curve, self.seeds[seed])
 
     def are_identical(self, first: BoundaryCurve, second: BoundaryCurve) -> bool:
-        """Whether two curves are identical: they have the same `eigenvalue_sign` and share an end. The test
-        is needed near a crushed rod, where a threshold may not be found on its own curve."""
+        """Whether two curves are identical: they have the same `double_eigenvalue_sign` and share an end. The
+        test is needed near a crushed rod, where a threshold may not be found on its own curve."""
         ends = first.scaled_points[[0, -1], None] - second.scaled_points[None, [0, -1]]
         return (
-            first.eigenvalue_sign == second.eigenvalue_sign
-            and float(np.abs(ends).max(axis=-1).min()) < BOUNDARY_ASSIGNMENT_SETTINGS.max_end_distance
+            first.double_eigenvalue_sign == second.double_eigenvalue_sign
+            and float(np.abs(ends).max(axis=-1).min())
+            < BOUNDARY_ASSIGNMENT_SETTINGS.max_distance_of_identical_curve_ends
         )
 
 
@@ -108,18 +115,18 @@ def boundary_curves_through(plane: ParameterPlane, seeds: list[BoundarySeed]) ->
     curve."""
     problem = _BoundaryTracingProblem(plane, seeds)
     return trace_all_curves(
-        problem, range(len(seeds)), BOUNDARY_ASSIGNMENT_SETTINGS.max_threshold_distance
+        problem, range(len(seeds)), BOUNDARY_ASSIGNMENT_SETTINGS.max_distance_of_threshold_on_curve
     ).traced_curves
 
 
 def _distance_along_first_axis(plane: ParameterPlane, curve: BoundaryCurve, seed: BoundarySeed) -> float:
     """Distance of a threshold from the curve along the first axis, at the threshold's value on the second
-    axis, in the scaled coordinate of the first axis; inf if the curve has another `eigenvalue_sign`, or no
-    point at this value with nearly the eigenvalue of the threshold."""
+    axis, in the scaled coordinate of the first axis; inf if the curve has another `double_eigenvalue_sign`,
+    or no point at this value with nearly the eigenvalue of the threshold."""
     settings = BOUNDARY_ASSIGNMENT_SETTINGS
-    if curve.eigenvalue_sign != seed.eigenvalue_sign:
+    if curve.double_eigenvalue_sign != seed.double_eigenvalue_sign:
         return math.inf
-    x, y = (a.coordinate(v) for a, v in zip(plane.axes, seed.values, strict=True))
+    x, y = (a.scaled_coordinate(v) for a, v in zip(plane.axes, seed.parameter_values, strict=True))
     points = curve.scaled_points
     distances_in_y = points[:, 1] - y
     # A threshold on a point of the curve must not fall between two chords by rounding.
@@ -127,7 +134,7 @@ def _distance_along_first_axis(plane: ParameterPlane, curve: BoundaryCurve, seed
     if len(points) == 1:
         return (
             float(abs(points[0, 0] - x))
-            if abs(distances_in_y[0]) < settings.max_threshold_distance
+            if abs(distances_in_y[0]) < settings.max_distance_of_threshold_on_curve
             else math.inf
         )
     distance = math.inf
@@ -137,10 +144,11 @@ def _distance_along_first_axis(plane: ParameterPlane, curve: BoundaryCurve, seed
         chord_distance = max(min(a[0], b[0]) - x, x - max(a[0], b[0]))
         if chord_distance > settings.max_distance_beyond_chord:
             continue
-        point = _point_at_second_coordinate(StabilityBoundary(plane, curve.eigenvalue_sign), a, b, y)
+        point = _point_at_second_coordinate(StabilityBoundary(plane, curve.double_eigenvalue_sign), a, b, y)
         if (
             point is not None
-            and abs(point[2] - math.log(abs(seed.eigenvalue))) < settings.relative_eigenvalue_tolerance
+            and abs(point[2] - math.log(abs(seed.frequency_or_double_eigenvalue)))
+            < settings.relative_eigenvalue_tolerance
         ):
             distance = min(distance, float(abs(point[0] - x)))
     return distance

@@ -14,7 +14,7 @@ from ....arrays import Array
 from ....determinant.parameter_plane import ParameterPlane
 from ....determinant.stability_boundary import BoundarySolution, StabilityBoundary
 from ....solve_progress import report
-from ...continuation.curve import StopReason, follow_curve, zero_along_step
+from ...continuation.curve import StopReason, follow_curve, step_length_to_zero
 from ...unsolvable import Unsolvable
 from .boundary_problem import (
     BOUNDARY_CURVE_SETTINGS,
@@ -31,51 +31,54 @@ class CurveFold:
     eigenvalue at the extremum."""
 
     axis: int
-    values: tuple[float, float]
+    parameter_values: tuple[float, float]
     frequency: float
+    """Imaginary part of the eigenvalue at the extremum, in 1/tau2; 0 for a double real eigenvalue."""
     growth_rate: float
-    errors: tuple[float, float]
+    """Real part of the eigenvalue at the extremum, in 1/tau2; 0 at a Hopf point."""
+    parameter_errors: tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
 class BoundaryCurve:
     """A curve of Hopf points, or of double real eigenvalues.
 
-    eigenvalue_sign: 0 on a curve of Hopf points, else the sign of the double eigenvalue.
+    double_eigenvalue_sign: 0 on a curve of Hopf points, else the sign of the double eigenvalue.
 
-    values: both parameters of each point, (points, 2). frequency, growth_rate: Im and Re of the eigenvalue,
-    in 1/tau2, (points,). end_reasons: reasons for the ends at the first and at the last point.
+    parameter_values: both parameters of each point, (points, 2). frequency, growth_rate: Im and Re of the
+    eigenvalue, in 1/tau2, (points,). end_reasons: reasons for the ends at the first and at the last point.
     """
 
-    eigenvalue_sign: float
-    values: Array
+    double_eigenvalue_sign: float
+    parameter_values: Array
     frequency: Array
     growth_rate: Array
     folds: tuple[CurveFold, ...]
+    """Extrema of the first parameter, then of the second, each in their order along the curve."""
     end_reasons: tuple[BoundaryEndReason, BoundaryEndReason]
     scaled_points: Array
     """Scaled coordinates x, y and h = log|eigenvalue| of each point, (points, 3)."""
 
     @property
     def consists_of_hopf_points(self) -> bool:
-        return self.eigenvalue_sign == 0
+        return self.double_eigenvalue_sign == 0
 
 
 def trace_boundary(
-    eigenvalue_sign: float, plane: ParameterPlane, start: tuple[float, float], eigenvalue: float
+    double_eigenvalue_sign: float, plane: ParameterPlane, start: tuple[float, float], eigenvalue: float
 ) -> BoundaryCurve | None:
     """The boundary curve through `start` (scaled coordinates) and |w| = |eigenvalue|; None if no point of a
-    curve is found there. eigenvalue_sign: 0 for a curve of Hopf points, else the sign of the double
+    curve is found there. double_eigenvalue_sign: 0 for a curve of Hopf points, else the sign of the double
     eigenvalue.
 
     The curve is followed in both directions until it leaves the plane, closes, reaches a crushed rod, or
     cannot be followed further.
     """
-    problem = BoundaryCurveProblem(StabilityBoundary(plane, eigenvalue_sign))
+    problem = BoundaryCurveProblem(StabilityBoundary(plane, double_eigenvalue_sign))
     guess = np.array([*start, math.log(abs(eigenvalue))])
     try:
         tangent = problem.boundary.tangent(guess)
-        first_point = BoundaryPoint.oriented(problem.boundary_point_near(guess, tangent), tangent)
+        first_point = BoundaryPoint.with_tangent_along(problem.boundary_point_near(guess, tangent), tangent)
     except (ValueError, ArithmeticError, Unsolvable):
         return None
     forward = follow_curve(problem, first_point, BOUNDARY_STEP_CONTROL, lambda _: report())
@@ -84,13 +87,13 @@ def trace_boundary(
     if forward.end_reason is not StopReason.closed:
         backward = follow_curve(
             problem,
-            BoundaryPoint(first_point.v, -first_point.tangent),
+            BoundaryPoint(first_point.scaled_point, -first_point.tangent),
             BOUNDARY_STEP_CONTROL,
             lambda _: report(),
         )
         # The first point is common to both directions.
         solutions = [*backward.solutions[:0:-1], *solutions]
-    points = np.array([point.v for point in solutions])
+    points = np.array([point.scaled_point for point in solutions])
     # The chord of coincident points, as on an edge, has no direction.
     are_distinct = np.abs(np.diff(points, axis=0)).max(axis=1) > BOUNDARY_CURVE_SETTINGS.max_merged_distance
     return _curve_with_folds(
@@ -124,7 +127,7 @@ def _curve_with_folds(
     axes = boundary.plane.axes
     values = np.array([[axis.value(x) for axis, x in zip(axes, v[:2], strict=True)] for v in points])
     return BoundaryCurve(
-        boundary.eigenvalue_sign, values, frequency, growth_rate, tuple(folds), end_reasons, points
+        boundary.double_eigenvalue_sign, values, frequency, growth_rate, tuple(folds), end_reasons, points
     )
 
 
@@ -134,18 +137,18 @@ def _fold_between(
     """The fold between the points a and b, where the tangent is normal to `axis`; None if not found."""
     boundary = problem.boundary
     tangent_error = _tangent_error(problem.boundary)
-    chord = b.v - a.v
+    chord = b.scaled_point - a.scaled_point
     solutions = dict[float, BoundarySolution]()
     size = float(np.linalg.norm(chord))
 
     def component(length: float) -> float:
         # Kept, so that the solution at the zero need not be computed again.
-        solutions[length] = problem.boundary_point_near(a.v + length / size * chord, chord / size)
-        return float(BoundaryPoint.oriented(solutions[length], chord).tangent[axis])
+        solutions[length] = problem.boundary_point_near(a.scaled_point + length / size * chord, chord / size)
+        return float(BoundaryPoint.with_tangent_along(solutions[length], chord).tangent[axis])
 
     end_components = float(a.tangent[axis]), float(b.tangent[axis])
     try:
-        length = zero_along_step(
+        length = step_length_to_zero(
             component,
             end_components,
             size,
@@ -166,7 +169,11 @@ def _tangent_error(boundary: StabilityBoundary) -> float:
     settings = BOUNDARY_CURVE_SETTINGS
     if not boundary.plane.are_rods_uniform_and_linear:
         return settings.arm_tangent_error
-    return settings.double_tangent_error if boundary.eigenvalue_sign else settings.hopf_tangent_error
+    return (
+        settings.double_eigenvalue_tangent_error
+        if boundary.double_eigenvalue_sign
+        else settings.hopf_tangent_error
+    )
 
 
 def _fold_at(
@@ -176,7 +183,7 @@ def _fold_at(
     curve."""
     axes = boundary.plane.axes
     first, second = (a.value(float(x)) for a, x in zip(axes, solution.v[:2], strict=True))
-    units = [abs(a.parameter_per_coordinate(x)) for a, x in zip(axes, (first, second), strict=True)]
+    units = [abs(a.parameter_per_scaled_coordinate(x)) for a, x in zip(axes, (first, second), strict=True)]
     # Along the curve the extremal coordinate is stationary at the fold, the other coordinate is not.
     errors = [
         unit * (solution.error if i == axis else solution.error + curve_error) for i, unit in enumerate(units)

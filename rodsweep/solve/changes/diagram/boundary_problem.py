@@ -43,7 +43,7 @@ class BoundaryCurveSettings:
     """Tolerance at a fold: largest component of the tangent, and smallest bracket over the step."""
     hopf_tangent_error: float = 1e-12
     """Rounding error of the unit tangent to a curve of Hopf points."""
-    double_tangent_error: float = 1e-11
+    double_eigenvalue_tangent_error: float = 1e-11
     """Error of the unit tangent to a curve of double eigenvalues, from differences in the Jacobian of D_w."""
     arm_tangent_error: float = 3e-10
     """Error of the unit tangent to a curve of arms, from differences of D, which deviate from the closed form
@@ -74,11 +74,11 @@ class BoundaryPoint(NamedTuple):
     """A point v = (x, y, h) of a curve, (3,), and the unit tangent in the direction of the curve, (3,). x, y:
     scaled parameters. h: log |eigenvalue|."""
 
-    v: Array
+    scaled_point: Array
     tangent: Array
 
     @classmethod
-    def oriented(cls, solution: BoundarySolution, direction: Array) -> "BoundaryPoint":
+    def with_tangent_along(cls, solution: BoundarySolution, direction: Array) -> "BoundaryPoint":
         """The point `solution` of a boundary; its tangent points along `direction`, (3,)."""
         tangent = solution.tangent
         return cls(solution.v, tangent if tangent @ direction > 0 else -tangent)
@@ -94,7 +94,9 @@ class BoundaryCurveProblem:
         """One continuation step: predicts a point at distance `length` along the last tangent and corrects it
         to the curve. previous: points so far. Raises Unsolvable."""
         v, tangent = previous[-1]
-        point = BoundaryPoint.oriented(self.boundary_point_near(v + length * tangent, tangent), tangent)
+        point = BoundaryPoint.with_tangent_along(
+            self.boundary_point_near(v + length * tangent, tangent), tangent
+        )
         # The turn of the tangent alone controls the step length.
         return StepResult(point, 0.0, float(point.tangent @ tangent))
 
@@ -106,15 +108,15 @@ class BoundaryCurveProblem:
             raise Unsolvable("Newton's method finds no point of the curve near the prediction")
         return solution
 
-    def margins(self, point: BoundaryPoint) -> Array:
+    def margins_to_curve_end(self, point: BoundaryPoint) -> Array:
         """Distances of a point from the four edges, and -1 for a crushed rod in the plane, else 1; (5,)."""
-        x, y = map(float, point.v[:2])
+        x, y = map(float, point.scaled_point[:2])
         is_in_plane = 0 <= x <= 1 and 0 <= y <= 1
         # Outside the plane the parameters may be outside their allowed ranges.
         uncrushed_sign = 1.0 if not is_in_plane or self.boundary.plane.is_uncrushed_at(x, y) else -1.0
         return np.array([x, 1 - x, y, 1 - y, uncrushed_sign])
 
-    def located_zero(
+    def point_at_zero_margin(
         self, previous: Sequence[BoundaryPoint], outer: BoundaryPoint, margin: int
     ) -> BoundaryPoint | None:
         """The point on the edge `margin` crossed by the step from the last of `previous` to `outer`; None for
@@ -123,21 +125,21 @@ class BoundaryCurveProblem:
             return None
         # The margins are x, 1 - x, y and 1 - y: the quotient is the axis, the remainder the edge.
         axis, limit = divmod(margin, 2)
-        inner = previous[-1].v
-        fraction = (limit - inner[axis]) / (outer.v[axis] - inner[axis])
-        solution = self.boundary.point_near(inner + fraction * (outer.v - inner), np.eye(3)[axis])
+        inner = previous[-1].scaled_point
+        fraction = (limit - inner[axis]) / (outer.scaled_point[axis] - inner[axis])
+        solution = self.boundary.point_near(inner + fraction * (outer.scaled_point - inner), np.eye(3)[axis])
         tolerance = BOUNDARY_CURVE_SETTINGS.max_distance_beyond_edge
         if solution is None or not -tolerance <= solution.v[1 - axis] <= 1 + tolerance:
             raise Unsolvable("no point of the curve was found on the edge of the diagram")
-        return BoundaryPoint.oriented(solution, previous[-1].tangent)
+        return BoundaryPoint.with_tangent_along(solution, previous[-1].tangent)
 
     def is_closed_by(self, previous: Sequence[BoundaryPoint], point: BoundaryPoint) -> bool:
         """Whether the curve has at least `min_loop_points` points and passes its first point, in the same
         direction, within the step from the last of `previous` to `point`."""
         first = previous[0]
         last = previous[-1]
-        step_length = float(np.linalg.norm(point.v - last.v))
-        is_near = float(np.linalg.norm(point.v - first.v)) < step_length
+        step_length = float(np.linalg.norm(point.scaled_point - last.scaled_point))
+        is_near = float(np.linalg.norm(point.scaled_point - first.scaled_point)) < step_length
         return (
             len(previous) >= BOUNDARY_CURVE_SETTINGS.min_loop_points
             and is_near
@@ -158,10 +160,10 @@ class BoundaryCurveProblem:
             return BoundaryEndReason.edge
         v, tangent = curve.solutions[-1]
         if (
-            self.margins(curve.solutions[-1])[:CRUSHED_MARGIN_INDEX].min()
+            self.margins_to_curve_end(curve.solutions[-1])[:CRUSHED_MARGIN_INDEX].min()
             <= BOUNDARY_CURVE_SETTINGS.max_distance_beyond_edge
         ):
             return BoundaryEndReason.edge
         next_point = BoundaryPoint(v + 2 * BOUNDARY_STEP_CONTROL.min_length * tangent, tangent)
-        is_crushed = self.margins(next_point)[CRUSHED_MARGIN_INDEX] < 0
+        is_crushed = self.margins_to_curve_end(next_point)[CRUSHED_MARGIN_INDEX] < 0
         return BoundaryEndReason.crushed if is_crushed else BoundaryEndReason.not_followed

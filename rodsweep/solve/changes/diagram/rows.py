@@ -22,7 +22,7 @@ from ..thresholds_along_path import ThresholdSearchResult
 from .solvable_part import thresholds_of_solvable_part
 
 
-class RodClass(IntEnum):
+class StabilityClass(IntEnum):
     """Evolution of a small deflection of the straight rod.
 
     monotone, oscillatory: stable; the slowest mode decays without or with oscillations. flutter: at least one
@@ -43,7 +43,8 @@ class RowRequest:
     whether the list of thresholds must be proved complete."""
 
     parameter_name: str
-    values: Array
+    """Name of the parameter that varies along a row."""
+    parameter_values: Array
     accuracy: float
     """Relative accuracy of the thresholds."""
     certify: bool
@@ -57,10 +58,11 @@ class RowRequest:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DiagramRow:
-    """One row: class (`RodClass`) and number of unstable modes at each value, (values,), and all thresholds
-    along the row. unstable_count: -1 where unknown or crushed. seconds: time of the row."""
+    """One row: class (`StabilityClass`) and number of unstable modes at each value, (values,), and all
+    thresholds along the row. unstable_count: -1 where unknown or crushed. seconds: time of the row."""
 
-    rod_class: NDArray[np.int8]
+    stability_class: NDArray[np.int8]
+    """Value of `StabilityClass` at each value of the row's parameter, (values,)."""
     unstable_count: NDArray[np.int32]
     thresholds: Thresholds
     seconds: float = 0.0
@@ -79,42 +81,47 @@ def solve_row(rod: Rod, request: RowRequest) -> DiagramRow:
     never raised."""
 
     def failed(cause: str) -> DiagramRow:
-        return _row_of_one_class(ThresholdStatus.failed, request.values, RodClass.undecided, cause)
+        return _row_of_one_class(
+            ThresholdStatus.failed, request.parameter_values, StabilityClass.undecided, cause
+        )
 
     # ValueError: the search needs a rod whose parameters are outside the allowed range.
     return outcome_or_failure(lambda: _search_row(rod, request), failed, more_failures=(ValueError,))
 
 
 def crushed_row(values: Array) -> DiagramRow:
-    """A row in which the force crushes the rod at all `values`, (values,), of the parameter."""
-    return _row_of_one_class(ThresholdStatus.ok, values, RodClass.crushed)
+    """A row in which the force crushes the rod at all `parameter_values`, (values,), of the parameter."""
+    return _row_of_one_class(ThresholdStatus.ok, values, StabilityClass.crushed)
 
 
 def _search_row(rod: Rod, request: RowRequest) -> DiagramRow:
     """The row, searched over the values at which the rod is not crushed and, along F or k1, on to the
     crushing force; a row of crushed rods is not searched."""
     name = request.parameter_name
-    values = request.values
+    values = request.parameter_values
     F = values if name == "F" else np.full(len(values), rod.F)
     k1 = values if name == "k1" else np.full(len(values), rod.k1)
     relative_crushing_force = rod.material.relative_crushing_force(rod.taper)
     crushing_force = k1 * relative_crushing_force
-    is_uncrushed = crushing_force * (1 - CRUSHING_END_SETTINGS.crushing_margin) > F
-    is_crushed = crushing_force * (1 - CRUSHING_END_SETTINGS.crushing_tolerance) <= F
+    is_uncrushed = crushing_force * (1 - CRUSHING_END_SETTINGS.relative_crushing_margin) > F
+    is_crushed = crushing_force * (1 - CRUSHING_END_SETTINGS.relative_crushing_tolerance) <= F
     is_nearly_crushed = ~is_uncrushed & ~is_crushed
     if not is_uncrushed.any():
         row = crushed_row(values)
         return replace(
-            row, rod_class=np.where(is_crushed, RodClass.crushed, RodClass.undecided).astype(np.int8)
+            row,
+            stability_class=np.where(is_crushed, StabilityClass.crushed, StabilityClass.undecided).astype(
+                np.int8
+            ),
         )
     start = float(values[is_uncrushed][0])
     stop = float(values[is_uncrushed][-1])
     # Thresholds may lie between the last value that is not crushed and the crushing force.
     if name == "F" and not is_uncrushed.all():
-        stop = rod.crushing_force * (1 - CRUSHING_END_SETTINGS.crushing_margin)
+        stop = rod.crushing_force * (1 - CRUSHING_END_SETTINGS.relative_crushing_margin)
     if name == "k1" and not is_uncrushed.all():
         start = (
-            rod.F / (relative_crushing_force * (1 - CRUSHING_END_SETTINGS.crushing_margin))
+            rod.F / (relative_crushing_force * (1 - CRUSHING_END_SETTINGS.relative_crushing_margin))
             if rod.F > 0
             else start
         )
@@ -123,22 +130,22 @@ def _search_row(rod: Rod, request: RowRequest) -> DiagramRow:
     )
     classes, unstable_counts = classes_and_unstable_counts(result, values)
     # Nearly crushed rods lie outside the searched range.
-    classes[is_crushed] = RodClass.crushed
+    classes[is_crushed] = StabilityClass.crushed
     unstable_counts[is_crushed] = -1
-    classes[is_nearly_crushed] = RodClass.undecided
+    classes[is_nearly_crushed] = StabilityClass.undecided
     unstable_counts[is_nearly_crushed] = -1
     thresholds = thresholds_with_status(
         name, result, request.accuracy, request.certify, request.max_thresholds
     )
-    return DiagramRow(rod_class=classes, unstable_count=unstable_counts, thresholds=thresholds)
+    return DiagramRow(stability_class=classes, unstable_count=unstable_counts, thresholds=thresholds)
 
 
 def _row_of_one_class(
-    status: ThresholdStatus, values: Array, rod_class: RodClass, message: str = ""
+    status: ThresholdStatus, values: Array, rod_class: StabilityClass, message: str = ""
 ) -> DiagramRow:
     """A row without thresholds, with the same class at all values."""
     return DiagramRow(
-        rod_class=np.full(len(values), rod_class, dtype=np.int8),
+        stability_class=np.full(len(values), rod_class, dtype=np.int8),
         unstable_count=np.full(len(values), -1, dtype=np.int32),
         thresholds=empty_thresholds(status, float(values[-1]), message),
     )
@@ -167,9 +174,9 @@ def classes_and_unstable_counts(
         is_undecided |= (values >= low) & (values <= high)
         # Crossings in the open range are unknown; behind this range the count at the end applies.
         unstable_counts[values > max([high, *(c.value for c in result.thresholds)])] = result.unstable_at_end
-    classes = np.where(oscillates, RodClass.oscillatory, RodClass.monotone).astype(np.int8)
-    classes[unstable_counts > 0] = RodClass.flutter
+    classes = np.where(oscillates, StabilityClass.oscillatory, StabilityClass.monotone).astype(np.int8)
+    classes[unstable_counts > 0] = StabilityClass.flutter
     is_undecided |= unstable_counts < 0
-    classes[is_undecided] = RodClass.undecided
+    classes[is_undecided] = StabilityClass.undecided
     unstable_counts[is_undecided] = -1
     return classes, unstable_counts

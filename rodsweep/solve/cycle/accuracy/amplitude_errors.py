@@ -15,30 +15,33 @@ from ...orbit.measures import CycleMeasures
 from ...orbit.newton import ConvergedOrbit
 from .cycle_errors import CYCLE_ERROR_SETTINGS, CycleErrors
 
-MIN_MULTIPLIER_DISTANCE = 2e-16
+MIN_MULTIPLIER_DISTANCE_FROM_ONE = 2e-16
 """Smallest distance of a multiplier from 1: smaller distances are rounding errors of the multiplier."""
 
 
-def relative_y_rounding(solved: ConvergedOrbit) -> float:
-    """Relative error of the largest y of an orbit on any mesh, due to rounding: `rounding_error` divided by
-    the distance of the nearest nontrivial multiplier from 1; 0 if there is no nontrivial multiplier."""
-    multipliers = solved.matrix.multipliers_over_solved_part
+def relative_largest_y_rounding_error(solved: ConvergedOrbit) -> float:
+    """Relative error of the largest y of an orbit on any mesh, due to rounding: `relative_rounding_error`
+    divided by the distance of the nearest nontrivial multiplier from 1; 0 if there is no nontrivial
+    multiplier."""
+    multipliers = solved.matrix.multipliers_over_solved_time_interval
     if len(multipliers) < 2:
         return 0.0
     # The multiplier nearest to 1 is the trivial multiplier.
-    distance = max(float(np.sort(np.abs(multipliers - 1))[1]), MIN_MULTIPLIER_DISTANCE)
+    distance = max(float(np.sort(np.abs(multipliers - 1))[1]), MIN_MULTIPLIER_DISTANCE_FROM_ONE)
     # A multiplier m over half of the period is m^2 over the period, twice as far from 1.
     period_parts = 2 if solved.orbit.is_symmetric else 1
-    return CYCLE_ERROR_SETTINGS.rounding_error / (period_parts * distance)
+    return CYCLE_ERROR_SETTINGS.relative_rounding_error / (period_parts * distance)
 
 
-def with_y_rounding(errors: CycleErrors, solved: ConvergedOrbit, measures: CycleMeasures) -> CycleErrors:
+def with_largest_y_rounding_error(
+    errors: CycleErrors, solved: ConvergedOrbit, measures: CycleMeasures
+) -> CycleErrors:
     """`errors`, in which the errors of the extrema are at least the effect of rounding,
-    `relative_y_rounding`.
+    `relative_largest_y_rounding_error`.
 
     Two meshes of a comparison share no rounding errors, but may agree by coincidence.
     """
-    height_error = relative_y_rounding(solved)
+    height_error = relative_largest_y_rounding_error(solved)
     extrema_error = height_error * max(1.0, measures.tip_theta_max / measures.tip_y_max)
     return replace(
         errors,
@@ -47,7 +50,7 @@ def with_y_rounding(errors: CycleErrors, solved: ConvergedOrbit, measures: Cycle
     )
 
 
-def multiplier_per_relative_exponent(multipliers: Complex) -> float:
+def multiplier_change_per_relative_exponent(multipliers: Complex) -> float:
     """Change of the largest nontrivial multiplier mu per relative change of its exponent ln |mu|: |mu ln
     |mu||; 0 if there is no multiplier. multipliers: nontrivial, by descending modulus, (m,).
 

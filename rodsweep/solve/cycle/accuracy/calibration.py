@@ -14,33 +14,33 @@ import numpy as np
 
 from ....arrays import Array, list_of
 from ....determinant.exponents import EXPONENT_SETTINGS
+from ...orbit.coefficient_tails import coefficient_tails_of
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh
-from ...orbit.tails import tails_of
 from .cycle_errors import CycleErrors, errors_with_safety_factors
 from .error_indicators import (
     LAST_HARMONICS_INDEX,
+    coefficient_tails_and_orbit_size,
     error_growth_factors,
     squared_tail_growth,
-    tails_and_size,
 )
-from .settings import CALIBRATION_SETTINGS
+from .settings import MESH_ERROR_CALIBRATION_SETTINGS
 
 ERROR_COUNT = 5
-"""Length of the error arrays: the errors of `path_differences`, and the error of the multiplier."""
+"""Length of the error arrays: the errors of `tip_path_differences`, and the error of the multiplier."""
 
 CHECKPOINT_FIELDS = dict(
     errors="mesh_errors",
-    fall="space_decay",
-    power="time_order",
-    tails="tails_and_size",
-    indicators="indicators",
+    fall="log_space_error_decay_per_order",
+    power="time_convergence_order",
+    tails="coefficient_tails_and_orbit_size",
+    indicators="error_indicators",
 )
-"""Fields of `Calibration` by the names of their arrays in a checkpoint."""
+"""Fields of `MeshErrorCalibration` by the names of their arrays in a checkpoint."""
 
 
 @dataclass(frozen=True, eq=False)
-class Calibration:
+class MeshErrorCalibration:
     """Measured errors of a mesh at an orbit, with convergence rates. mesh_errors: errors due to the elements
     and errors due to the time intervals, (2, 5): relative errors of the period, of the largest y, of the
     extremum with the largest error and of the tip's path, and the absolute error of the largest nontrivial
@@ -48,17 +48,17 @@ class Calibration:
 
     mesh: OrbitMesh
     mesh_errors: Array
-    space_decay: Array
+    log_space_error_decay_per_order: Array
     """Decrease of ln(error) in space if the order of the elements increases by 1, (5,)."""
-    time_order: Array
+    time_convergence_order: Array
     """Order of convergence of the errors in time, (5,)."""
-    tails_and_size: Array
+    coefficient_tails_and_orbit_size: Array
     """Coefficient tails in space, of each element, and in time, and size of the measured orbit, (elements +
-    2,), from `error_indicators.tails_and_size`."""
+    2,), from `error_indicators.coefficient_tails_and_orbit_size`."""
     relative_parameter_change: float
     """Sum of the relative changes of the parameter since the measurement; inf if the errors no longer
     apply."""
-    indicators: Array = field(default_factory=lambda: np.full(3, inf))
+    error_indicators: Array = field(default_factory=lambda: np.full(3, inf))
     """`error_indicators` of the measured orbit, (3,); inf if unknown."""
     space_time_error_growth: Array = field(default_factory=lambda: np.ones(2))
     """Estimated growth factors of the errors in space and in time since the measurement, (2,)."""
@@ -72,41 +72,45 @@ class Calibration:
         return errors | scalars
 
     @classmethod
-    def from_arrays(cls, arrays: dict[str, Array]) -> "Calibration":
-        """The calibration from the named arrays that `Calibration.arrays` returns."""
+    def from_arrays(cls, arrays: dict[str, Array]) -> "MeshErrorCalibration":
+        """The calibration from the named arrays that `MeshErrorCalibration.arrays` returns."""
         mesh = OrbitMesh.from_array(arrays["calibrated_mesh"])
         errors: dict[str, Any] = {field: arrays[name] for name, field in CHECKPOINT_FIELDS.items()}
         return cls(mesh=mesh, relative_parameter_change=float(arrays["reach"]), **errors)
 
-    def scaled_on_chain(self, orbit: Orbit, change: float, indicators: Array) -> "Calibration":
+    def with_errors_scaled_on_chain(
+        self, orbit: Orbit, change: float, indicators: Array
+    ) -> "MeshErrorCalibration":
         """This calibration with the errors scaled to a later orbit of a chain; `relative_parameter_change` is
         inf if the orbit has shrunk too much. change: relative change of the parameter since the previous
         orbit. indicators: `error_indicators` of the later orbit, (3,)."""
-        tails = tails_and_size(orbit)
+        tails = coefficient_tails_and_orbit_size(orbit)
         # Errors are relative to the size of the orbit; at a much smaller cycle they are measured again.
-        has_shrunk = tails[-1] < CALIBRATION_SETTINGS.min_size_ratio * self.tails_and_size[-1]
-        growth = error_growth_factors(self.tails_and_size, tails)
+        measured_tails = self.coefficient_tails_and_orbit_size
+        has_shrunk = tails[-1] < MESH_ERROR_CALIBRATION_SETTINGS.min_orbit_size_ratio * measured_tails[-1]
+        growth = error_growth_factors(measured_tails, tails)
         # The tail in time may belong to a field on which the cycle hardly depends; the lost energy is a sum.
-        indicator_growth = (indicators / self.indicators)[:LAST_HARMONICS_INDEX].max()
+        indicator_growth = (indicators / self.error_indicators)[:LAST_HARMONICS_INDEX].max()
         growth[1] = max(growth[1], float(indicator_growth))
         relative_parameter_change = inf if has_shrunk else self.relative_parameter_change + change
         return replace(
             self,
             space_time_error_growth=growth,
-            last_harmonics_change=float((indicators - self.indicators)[LAST_HARMONICS_INDEX]),
+            last_harmonics_change=float((indicators - self.error_indicators)[LAST_HARMONICS_INDEX]),
             relative_parameter_change=relative_parameter_change,
         )
 
-    def scaled_on_branch(self, orbit: Orbit) -> "Calibration":
+    def with_errors_scaled_on_branch(self, orbit: Orbit) -> "MeshErrorCalibration":
         """This calibration with the errors scaled to a later orbit of a branch. The size of this orbit is
         ignored: a branch is followed by arc length, and errors do not grow as orbits shrink."""
         # The size of the earlier orbit replaces that of the later one, so that only the tails count.
-        present_tails = tails_and_size(orbit)
-        present_tails[-1] = self.tails_and_size[-1]
-        return replace(self, space_time_error_growth=error_growth_factors(self.tails_and_size, present_tails))
+        present_tails = coefficient_tails_and_orbit_size(orbit)
+        present_tails[-1] = self.coefficient_tails_and_orbit_size[-1]
+        growth = error_growth_factors(self.coefficient_tails_and_orbit_size, present_tails)
+        return replace(self, space_time_error_growth=growth)
 
     @property
-    def with_outdated_errors(self) -> "Calibration":
+    def with_outdated_errors(self) -> "MeshErrorCalibration":
         """This calibration with an infinite `relative_parameter_change`: its errors no longer apply, its
         rates still do."""
         return replace(self, relative_parameter_change=inf)
@@ -115,8 +119,9 @@ class Calibration:
     def is_valid(self) -> bool:
         """Whether the scaled errors apply: `relative_parameter_change` and `space_time_error_growth` are
         within their limits."""
-        is_near = self.relative_parameter_change <= CALIBRATION_SETTINGS.max_relative_parameter_change
-        return is_near and float(self.space_time_error_growth.max()) <= CALIBRATION_SETTINGS.max_error_growth
+        settings = MESH_ERROR_CALIBRATION_SETTINGS
+        is_near = self.relative_parameter_change <= settings.max_relative_parameter_change
+        return is_near and float(self.space_time_error_growth.max()) <= settings.max_error_growth
 
     @property
     def is_measured_at_orbit(self) -> bool:
@@ -127,7 +132,7 @@ class Calibration:
         )
 
     @property
-    def keeps_space_errors(self) -> bool:
+    def can_reuse_space_errors(self) -> bool:
         """Whether the scaled errors in space apply to a new measurement on the same mesh: a mesh of several
         elements needs a higher order of every element to be finer in space, so that a comparison with such a
         mesh costs more than a comparison with a mesh finer in time."""
@@ -135,25 +140,35 @@ class Calibration:
 
     @property
     def scaled_space_errors(self) -> Array:
-        """Errors in space, (5,), scaled to the orbit as `errors` scales them."""
+        """Errors in space, (5,), scaled to the orbit as `estimated_cycle_errors` scales them."""
         growth = np.full(ERROR_COUNT, self.space_time_error_growth.max())
         growth[:2] = self.space_time_error_growth[0]
         scaled: Array = self.mesh_errors[0] * growth
         return scaled
 
-    def is_valid_after(self, change: float) -> bool:
+    def is_valid_after_parameter_change(self, change: float) -> bool:
         """Whether the errors may still apply after a further relative change `change` of the parameter."""
-        return self.relative_parameter_change + change <= CALIBRATION_SETTINGS.max_relative_parameter_change
+        return (
+            self.relative_parameter_change + change
+            <= MESH_ERROR_CALIBRATION_SETTINGS.max_relative_parameter_change
+        )
 
     def min_remeasured_errors(self, orbit: Orbit) -> Array:
         """Lower limits of errors in space and in time, (2, 5), that are measured again at `orbit` on this
         mesh. These limits are fractions of the current errors, reduced as the coefficient tails have
         decreased."""
-        shrinkage = np.minimum(squared_tail_growth(self.tails_and_size, tails_and_size(orbit)), 1.0)
-        limits: Array = (CALIBRATION_SETTINGS.min_remeasured_ratio * shrinkage)[:, None] * self.mesh_errors
+        shrinkage = np.minimum(
+            squared_tail_growth(
+                self.coefficient_tails_and_orbit_size, coefficient_tails_and_orbit_size(orbit)
+            ),
+            1.0,
+        )
+        limits: Array = (MESH_ERROR_CALIBRATION_SETTINGS.min_remeasured_error_ratio * shrinkage)[
+            :, None
+        ] * self.mesh_errors
         return limits
 
-    def errors(self, accuracy: float) -> CycleErrors:
+    def estimated_cycle_errors(self, accuracy: float) -> CycleErrors:
         """Error estimates of the orbit to which this calibration is scaled, not below a fraction of the
         requested relative accuracy `accuracy`. For the multiplier and the other extrema, errors in space and
         in time are scaled by the larger of the two growth factors, because an error was once seen to grow 2.7
@@ -164,41 +179,48 @@ class Calibration:
         space_errors, time_errors = self.mesh_errors * growth.max()
         errors[2:] = errors_with_safety_factors(space_errors, time_errors, accuracy)[2:]
         # Extrema other than the largest y lie between time nodes, where harmonics are cut off.
-        errors[2] += CALIBRATION_SETTINGS.extrema_error_per_last_harmonics * max(
+        errors[2] += MESH_ERROR_CALIBRATION_SETTINGS.extrema_error_per_last_harmonics * max(
             self.last_harmonics_change, 0.0
         )
         return CycleErrors(*list_of(errors))
 
 
-def calibration_of(mesh: OrbitMesh, errors: Array, orbit: Orbit, nearby: Calibration | None) -> Calibration:
-    """Calibration of a mesh from its measured errors in space and in time, (2, 5), with convergence rates.
-    orbit: the measured orbit. nearby: calibration at a nearby orbit, on any mesh. If the mesh of `nearby` has
-    the same elements but another order, the errors on both meshes give the rate in space; if the number of
-    intervals differs, the order in time. Otherwise the rates of `nearby` are kept. If `nearby` is None, the
-    rates are estimated from the orbit's coefficients and the number of stages."""
-    tails = tails_and_size(orbit)
+def mesh_error_calibration(
+    mesh: OrbitMesh, errors: Array, orbit: Orbit, nearby: MeshErrorCalibration | None
+) -> MeshErrorCalibration:
+    """Calibration of a mesh from its measured errors in space and in time, (2, 5), with convergence
+    rates. orbit: the measured orbit. nearby: calibration at a nearby orbit, on any mesh. If the mesh of
+    `nearby` has the same elements but another order, the errors on both meshes give the rate in space; if the
+    number of intervals differs, the order in time. Otherwise the rates of `nearby` are kept. If `nearby` is
+    None, the rates are estimated from the orbit's coefficients and the number of stages."""
+    tails = coefficient_tails_and_orbit_size(orbit)
     if nearby is None:
-        decay = CALIBRATION_SETTINGS.error_to_coefficient_decay_ratio * tails_of(orbit).space_decay
-        space_decay = _limited_space_decay(np.full(ERROR_COUNT, decay))
-        time_order: Array = np.full(
-            ERROR_COUNT, CALIBRATION_SETTINGS.time_order_per_stage * orbit.stage_count
+        decay = (
+            MESH_ERROR_CALIBRATION_SETTINGS.error_to_coefficient_decay_ratio
+            * coefficient_tails_of(orbit).log_coefficient_decay_per_order
         )
-        return Calibration(mesh, errors, space_decay, time_order, tails, 0.0)
+        space_decay = _limited_log_space_error_decay(np.full(ERROR_COUNT, decay))
+        time_convergence_order: Array = np.full(
+            ERROR_COUNT, MESH_ERROR_CALIBRATION_SETTINGS.time_order_per_stage * orbit.stage_count
+        )
+        return MeshErrorCalibration(mesh, errors, space_decay, time_convergence_order, tails, 0.0)
     previous_mesh = nearby.mesh
-    space_decay = nearby.space_decay
-    time_order = nearby.time_order
+    space_decay = nearby.log_space_error_decay_per_order
+    time_convergence_order = nearby.time_convergence_order
     if previous_mesh.order != mesh.order and previous_mesh.has_same_edges_and_order_ratios(mesh):
         log_ratio = _log_ratio(nearby.mesh_errors[0], errors[0])
-        space_decay = _limited_space_decay(log_ratio / (mesh.order - previous_mesh.order))
+        space_decay = _limited_log_space_error_decay(log_ratio / (mesh.order - previous_mesh.order))
     if previous_mesh.interval_count != mesh.interval_count and previous_mesh.grading == mesh.grading:
-        time_order = _measured_time_order(nearby.mesh_errors[1], errors[1], previous_mesh, mesh)
-    return Calibration(mesh, errors, space_decay, time_order, tails, 0.0)
+        time_convergence_order = _measured_time_order(nearby.mesh_errors[1], errors[1], previous_mesh, mesh)
+    return MeshErrorCalibration(mesh, errors, space_decay, time_convergence_order, tails, 0.0)
 
 
-def _limited_space_decay(decay: Array) -> Array:
+def _limited_log_space_error_decay(decay: Array) -> Array:
     """Decreases `decay` of ln(error) per order, (5,), limited to the allowed range."""
-    settings = CALIBRATION_SETTINGS
-    limited_decay: Array = np.clip(decay, settings.min_space_decay, settings.max_space_decay)
+    settings = MESH_ERROR_CALIBRATION_SETTINGS
+    limited_decay: Array = np.clip(
+        decay, settings.min_log_space_error_decay_per_order, settings.max_log_space_error_decay_per_order
+    )
     return limited_decay
 
 
@@ -210,7 +232,7 @@ def _measured_time_order(
     # Radau IIA has the order 2 stages - 1, which stiff problems may reduce to stages + 1.
     min_order = mesh.stage_count + 1
     log_interval_ratio = np.log(mesh.full_length_interval_count / previous.full_length_interval_count)
-    max_order = CALIBRATION_SETTINGS.max_time_order_ratio * min_order
+    max_order = MESH_ERROR_CALIBRATION_SETTINGS.max_time_order_per_smallest_order * min_order
     order: Array = np.clip(_log_ratio(first_errors, second_errors) / log_interval_ratio, min_order, max_order)
     return order
 

@@ -13,16 +13,16 @@ from math import ceil
 import numpy as np
 
 from ....arrays import Array
+from ...orbit.coefficient_tails import coefficient_tails_of
 from ...orbit.matrix.workspace import NewtonWorkspace
-from ...orbit.newton import error_of_largest_multiplier, newton
+from ...orbit.newton import error_of_largest_multiplier, solve_by_newton
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import ORBIT_MESH_SETTINGS, OrbitMesh
-from ...orbit.path_differences import PERIOD_INDEX, Y_INDEX, path_differences
-from ...orbit.tails import tails_of
-from .amplitude_errors import relative_y_rounding
-from .calibration import Calibration, calibration_of
+from ...orbit.tip_path_differences import PERIOD_INDEX, Y_INDEX, tip_path_differences
+from .amplitude_errors import relative_largest_y_rounding_error
+from .calibration import MeshErrorCalibration, mesh_error_calibration
 from .finer_meshes import FINER_MESH_SETTINGS, ComparedCycle
-from .settings import CALIBRATION_SETTINGS
+from .settings import MESH_ERROR_CALIBRATION_SETTINGS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,13 +39,13 @@ class CoarserMeshSettings:
     coefficients decay slowly, errors oscillate with the order, and meshes of nearly the same order may agree
     by coincidence. With a difference of 2 orders, 16 of 112 errors of slender cones exceeded their estimates,
     by factors up to 2.2. With this decrease no error exceeded 0.4 times its estimate."""
-    added_interval_fraction: float = 0.4
+    added_time_interval_fraction: float = 0.4
     """Additional time intervals of the fine mesh, as a fraction of the number of intervals of the coarse
     mesh."""
     max_order_above_intended_mesh: int = 2
     """A coarse mesh made for a fine mesh of order p predicts cycles on meshes of orders up to p +
     max_order_above_intended_mesh."""
-    max_interval_ratio: float = 2.0
+    max_time_interval_count_ratio: float = 2.0
     """A coarse mesh predicts the cycle on a fine mesh only if the ratio of the numbers of time intervals,
     fine mesh to coarse mesh, is at most this number."""
     min_predicted_error_over_accuracy: float = 0.033
@@ -63,7 +63,7 @@ COARSER_MESH_SETTINGS = CoarserMeshSettings()
 
 class CoarserMeshes:
     """Solutions of a cycle on a coarse mesh, on meshes finer in space only and on meshes finer in time only,
-    from which the cycle on a fine mesh is predicted. relative_y_rounding: relative error of the
+    from which the cycle on a fine mesh is predicted. relative_largest_y_rounding_error: relative error of the
     largest y on any mesh, due to rounding."""
 
     def __init__(self, mesh: OrbitMesh, start: Orbit, accuracy: float, workspace: NewtonWorkspace) -> None:
@@ -72,21 +72,22 @@ class CoarserMeshes:
         order_difference = _fine_to_coarse_order_difference(start)
         order = max(
             mesh.order - order_difference,
-            ORBIT_MESH_SETTINGS.min_order - COARSER_MESH_SETTINGS.min_fine_to_coarse_order_difference,
+            ORBIT_MESH_SETTINGS.min_element_order - COARSER_MESH_SETTINGS.min_fine_to_coarse_order_difference,
         )
         self._max_predicted_order = (
             order + order_difference + COARSER_MESH_SETTINGS.max_order_above_intended_mesh
         )
         interval_count = (
-            round(mesh.full_length_interval_count / (1 + COARSER_MESH_SETTINGS.added_interval_fraction)) + 1
+            round(mesh.full_length_interval_count / (1 + COARSER_MESH_SETTINGS.added_time_interval_fraction))
+            + 1
         )
         self._fine_mesh = mesh
         self.coarse_mesh = replace(mesh.with_order(order), interval_count=interval_count)
         self._min_error = COARSER_MESH_SETTINGS.min_predicted_error_over_accuracy * accuracy
-        self._tolerance = FINER_MESH_SETTINGS.newton_tolerance_ratio * accuracy
+        self._tolerance = FINER_MESH_SETTINGS.newton_tolerance_per_accuracy * accuracy
         self._workspace = workspace
-        coarse_orbit = newton(self.coarse_mesh.interpolated_orbit(start), self._tolerance, workspace)
-        self.relative_y_rounding = relative_y_rounding(coarse_orbit)
+        coarse_orbit = solve_by_newton(self.coarse_mesh.interpolated_orbit(start), self._tolerance, workspace)
+        self.relative_largest_y_rounding_error = relative_largest_y_rounding_error(coarse_orbit)
         self._coarse_cycle = ComparedCycle(coarse_orbit)
         self._cycles_on_finer_meshes: dict[OrbitMesh, ComparedCycle] = {}
 
@@ -95,7 +96,7 @@ class CoarserMeshes:
         mesh, and its order and its number of time intervals are not too large."""
         is_near = (
             mesh.order <= self._max_predicted_order
-            and self._interval_ratio(mesh) <= COARSER_MESH_SETTINGS.max_interval_ratio
+            and self._time_interval_count_ratio(mesh) <= COARSER_MESH_SETTINGS.max_time_interval_count_ratio
         )
         return (
             is_near
@@ -103,7 +104,7 @@ class CoarserMeshes:
             and mesh.stage_count == self.coarse_mesh.stage_count
         )
 
-    def predicted_orbit_and_errors(self, mesh: OrbitMesh) -> tuple[Orbit, Calibration]:
+    def predicted_orbit_and_errors(self, mesh: OrbitMesh) -> tuple[Orbit, MeshErrorCalibration]:
         """Returns (orbit, calibration): predicted orbit on the fine mesh `mesh`, and calibration of this mesh
         with predicted errors; raises Unsolvable."""
         space_cycle = self._cycle_on_mesh(replace(mesh, interval_count=self.coarse_mesh.interval_count))
@@ -115,56 +116,64 @@ class CoarserMeshes:
             fine_in_space, values=fine_in_space.values + fine_in_time.values - coarse_orbit.values
         )
         space_factor = np.exp(
-            _pessimistic_space_decay(space_cycle.orbit) * (mesh.order - self.coarse_mesh.order)
+            _pessimistic_log_space_error_decay(space_cycle.orbit) * (mesh.order - self.coarse_mesh.order)
         )
         # Between the time nodes the order is smaller: near the largest theta, local errors of fast modes
         # remain.
         time_orders = mesh.stage_count + np.array([1.0, 1.0, -1.0, -1.0])
-        time_factors = self._interval_ratio(mesh) ** time_orders
+        time_factors = self._time_interval_count_ratio(mesh) ** time_orders
         # The error of the multipliers may decrease more slowly than the errors of the paths. The difference
         # between the multipliers on the two finer meshes bounds this error.
         multiplier_error = error_of_largest_multiplier(space_cycle.multipliers, time_cycle.multipliers)
         space_errors = np.append(self._errors_of_finer_mesh(space_cycle, space_factor), 0.0)
         time_errors = np.append(self._errors_of_finer_mesh(time_cycle, time_factors), multiplier_error)
-        return orbit, calibration_of(mesh, np.array([space_errors, time_errors]), orbit, None)
+        return orbit, mesh_error_calibration(mesh, np.array([space_errors, time_errors]), orbit, None)
 
     def _cycle_on_mesh(self, mesh: OrbitMesh) -> ComparedCycle:
         if mesh not in self._cycles_on_finer_meshes:
             start = mesh.interpolated_orbit(self._coarse_cycle.orbit)
-            solved = newton(start, self._tolerance, self._workspace)
+            solved = solve_by_newton(start, self._tolerance, self._workspace)
             self._cycles_on_finer_meshes[mesh] = ComparedCycle(solved)
         return self._cycles_on_finer_meshes[mesh]
 
     def _errors_of_finer_mesh(self, finer_cycle: ComparedCycle, error_ratio: Array | float) -> Array:
-        """Errors of a finer mesh, (4,), in the order of `path_differences`, from the difference between the
-        cycles on this mesh and on the coarse mesh.
+        """Errors of a finer mesh, (4,), in the order of `tip_path_differences`, from the difference between
+        the cycles on this mesh and on the coarse mesh.
 
         error_ratio: errors of the coarse mesh divided by the errors of the finer mesh, for all errors or
         (4,).
         """
         # The difference of the cycles is the coarse error minus the fine one: ratio - 1 times the fine error.
-        errors: Array = path_differences(self._coarse_cycle.motion, finer_cycle.motion) / (error_ratio - 1)
+        errors: Array = tip_path_differences(self._coarse_cycle.motion, finer_cycle.motion) / (
+            error_ratio - 1
+        )
         doubly_accurate = [PERIOD_INDEX, Y_INDEX]
         errors[doubly_accurate] = np.maximum(errors[doubly_accurate], self._min_error)
         return errors
 
-    def _interval_ratio(self, mesh: OrbitMesh) -> float:
+    def _time_interval_count_ratio(self, mesh: OrbitMesh) -> float:
         """The `full_length_interval_count` of `mesh`, divided by that of the coarse mesh."""
         return mesh.full_length_interval_count / self.coarse_mesh.full_length_interval_count
 
 
-def _pessimistic_space_decay(orbit: Orbit) -> float:
+def _pessimistic_log_space_error_decay(orbit: Orbit) -> float:
     """Pessimistic decrease of ln(error) in space per order, from the coefficients of an orbit."""
     min_decay = (
-        COARSER_MESH_SETTINGS.pessimistic_error_to_coefficient_decay_ratio * tails_of(orbit).space_decay
+        COARSER_MESH_SETTINGS.pessimistic_error_to_coefficient_decay_ratio
+        * coefficient_tails_of(orbit).log_coefficient_decay_per_order
     )
-    return min(max(min_decay, CALIBRATION_SETTINGS.min_space_decay), CALIBRATION_SETTINGS.max_space_decay)
+    return min(
+        max(min_decay, MESH_ERROR_CALIBRATION_SETTINGS.min_log_space_error_decay_per_order),
+        MESH_ERROR_CALIBRATION_SETTINGS.max_log_space_error_decay_per_order,
+    )
 
 
 def _fine_to_coarse_order_difference(orbit: Orbit) -> int:
     """Difference between the orders of a fine mesh and its coarse mesh, for a cycle near the orbit
     `orbit`."""
-    difference = ceil(COARSER_MESH_SETTINGS.min_log_error_decrease / _pessimistic_space_decay(orbit))
+    difference = ceil(
+        COARSER_MESH_SETTINGS.min_log_error_decrease / _pessimistic_log_space_error_decay(orbit)
+    )
     return min(
         max(difference, COARSER_MESH_SETTINGS.min_fine_to_coarse_order_difference),
         COARSER_MESH_SETTINGS.max_fine_to_coarse_order_difference,

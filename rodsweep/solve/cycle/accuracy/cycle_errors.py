@@ -14,9 +14,9 @@ import numpy as np
 
 from ....arrays import Array
 from ...orbit.measures import CycleMotion
-from ...orbit.path_differences import EXTREMUM_INDEX, PATH_INDEX, PERIOD_INDEX, Y_INDEX
+from ...orbit.tip_path_differences import EXTREMUM_INDEX, PATH_INDEX, PERIOD_INDEX, Y_INDEX
 from ..integration_settings import INTEGRATION_SETTINGS
-from .settings import CALIBRATION_SETTINGS
+from .settings import MESH_ERROR_CALIBRATION_SETTINGS
 
 MULTIPLIER_ERROR_INDEX = 4
 """Index of the error of the largest nontrivial multiplier in the error arrays of a calibration."""
@@ -27,7 +27,7 @@ class CycleErrorSettings:
     """Settings for the smallest error estimates of a cycle (applied in `errors_with_safety_factors`), and for
     the error that is compared with the accuracy."""
 
-    rounding_error: float = 2e-14
+    relative_rounding_error: float = 2e-14
     """Smallest relative error estimate of period and extrema: the rounding error on any mesh."""
     min_error_over_accuracy: float = 0.1
     """Lower limit of error estimates, divided by the accuracy: a smaller estimate may be a coincidence."""
@@ -83,21 +83,26 @@ def message_of_error(errors: CycleErrors, accuracy: float) -> str:
 
 def errors_with_safety_factors(space_errors: Array, time_errors: Array, accuracy: float) -> Array:
     """The four errors of `CycleErrors`, (4, ...), from the errors `space_errors` due to the elements and
-    `time_errors` due to the time intervals, (5, ...) each: the four errors of `path_differences`, then the
-    error of the multiplier. Safety factors and lower limits are applied. accuracy: requested relative
+    `time_errors` due to the time intervals, (5, ...) each: the four errors of `tip_path_differences`, then
+    the error of the multiplier. Safety factors and lower limits are applied. accuracy: requested relative
     accuracy, for a lower limit."""
-    scaled_errors = CALIBRATION_SETTINGS.safety_factor * (space_errors + time_errors)
+    scaled_errors = MESH_ERROR_CALIBRATION_SETTINGS.error_safety_factor * (space_errors + time_errors)
     # Single quantities may agree on two meshes by chance; the whole path cannot.
     path_error = space_errors[PATH_INDEX] + time_errors[PATH_INDEX]
-    time_path_error = CALIBRATION_SETTINGS.time_path_distance_factor * time_errors[PATH_INDEX]
+    time_path_error = (
+        MESH_ERROR_CALIBRATION_SETTINGS.min_error_per_time_path_distance * time_errors[PATH_INDEX]
+    )
     larger_errors = [np.maximum(part[PERIOD_INDEX], part[Y_INDEX]) for part in (space_errors, time_errors)]
     # Period and largest y come from the same orbit, so neither is much more accurate than the other.
-    min_errors = CALIBRATION_SETTINGS.min_ratio_to_larger_error * (larger_errors[0] + larger_errors[1])
+    min_errors = MESH_ERROR_CALIBRATION_SETTINGS.min_error_per_larger_error * (
+        larger_errors[0] + larger_errors[1]
+    )
     min_period_error = (
-        CALIBRATION_SETTINGS.min_period_error_over_path_distance * space_errors[PATH_INDEX] + time_path_error
+        MESH_ERROR_CALIBRATION_SETTINGS.min_period_error_over_path_distance * space_errors[PATH_INDEX]
+        + time_path_error
     )
     min_height_error = np.maximum(
-        CALIBRATION_SETTINGS.min_largest_y_error_over_path_distance * space_errors[PATH_INDEX]
+        MESH_ERROR_CALIBRATION_SETTINGS.min_largest_y_error_over_path_distance * space_errors[PATH_INDEX]
         + time_path_error,
         CYCLE_ERROR_SETTINGS.min_largest_y_error_over_accuracy * accuracy,
     )
@@ -106,12 +111,12 @@ def errors_with_safety_factors(space_errors: Array, time_errors: Array, accuracy
         np.maximum(np.maximum(scaled_errors[Y_INDEX], min_height_error), min_errors),
         np.maximum(
             scaled_errors[EXTREMUM_INDEX],
-            CALIBRATION_SETTINGS.min_extrema_error_over_path_distance * path_error,
+            MESH_ERROR_CALIBRATION_SETTINGS.min_extrema_error_over_path_distance * path_error,
         ),
         scaled_errors[MULTIPLIER_ERROR_INDEX],
     ]
     min_error = max(
-        CYCLE_ERROR_SETTINGS.min_error_over_accuracy * accuracy, CYCLE_ERROR_SETTINGS.rounding_error
+        CYCLE_ERROR_SETTINGS.min_error_over_accuracy * accuracy, CYCLE_ERROR_SETTINGS.relative_rounding_error
     )
     errors: Array = np.maximum(np.array(stated_errors), min_error)
     return errors
@@ -124,8 +129,8 @@ def errors_of_two_integrations(first: CycleMotion, second: CycleMotion, distance
     """Error estimates from the differences between the motions `first` and `second` of two time integrations,
     relative to the largest y and the period of `second`; NaN for the multiplier. distance: relative distance
     of the settled motions from the cycle, which is added to the errors."""
-    first_extrema = first.extrema
-    second_extrema = second.extrema
+    first_extrema = first.tip_extrema
+    second_extrema = second.tip_extrema
     largest_y = abs(second_extrema["tip_y_max"])
     period_difference = abs(first.orbit.period / second.orbit.period - 1)
     y_difference = abs(first_extrema["tip_y_max"] - second_extrema["tip_y_max"]) / largest_y

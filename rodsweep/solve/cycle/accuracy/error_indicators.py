@@ -11,12 +11,12 @@ by comparison with a finer mesh may vanish.
 import numpy as np
 
 from ....arrays import Array, Complex
+from ...orbit.coefficient_tails import smooth_element_and_time_tails
 from ...orbit.measures import CycleMotion
 from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
-from ...orbit.tails import smooth_element_and_time_tails
 from .cycle_errors import CYCLE_ERROR_SETTINGS
-from .settings import CALIBRATION_SETTINGS
+from .settings import MESH_ERROR_CALIBRATION_SETTINGS
 
 ENERGY_LOSS_INDEX, AMPLITUDE_ERROR_INDEX, LAST_HARMONICS_INDEX = range(3)
 """Indices into the array that `error_indicators` returns."""
@@ -37,22 +37,24 @@ def error_indicators(solved: ConvergedOrbit, motion: CycleMotion) -> Array:
     Near a fold or a Hopf point, where h = 1, this error is large.
     """
     orbit = solved.orbit
-    means = orbit.means
+    means = orbit.power_means_and_least_stretch
     # Over a period a cycle gains no energy, so the imbalance is the error of the collocation.
     lost_energy = abs(means.injection_mean - means.dissipation_mean) * orbit.solved_duration
     # The squared energy norm is twice the elastic energy.
     twice_energy = float((orbit.form.energy_norm(orbit.states_equidistant_in_mesh_time) ** 2).mean())
     relative_loss = lost_energy / twice_energy
     # A slowly attracting cycle is displaced farther by the same loss.
-    amplitude_error = relative_loss / _slowest_decay_over_solved_part(
-        solved.matrix.multipliers_over_solved_part
+    amplitude_error = relative_loss / _slowest_decay_over_solved_time_interval(
+        solved.matrix.multipliers_over_solved_time_interval
     )
     last_harmonics = float(np.linalg.norm(motion.last_tip_coefficients[-LAST_HARMONIC_COUNT:]))
-    indicators = np.array([relative_loss, amplitude_error, last_harmonics / abs(motion.extrema["tip_y_max"])])
-    return np.maximum(indicators, CYCLE_ERROR_SETTINGS.rounding_error)
+    indicators = np.array(
+        [relative_loss, amplitude_error, last_harmonics / abs(motion.tip_extrema["tip_y_max"])]
+    )
+    return np.maximum(indicators, CYCLE_ERROR_SETTINGS.relative_rounding_error)
 
 
-def _slowest_decay_over_solved_part(multipliers: Complex) -> float:
+def _slowest_decay_over_solved_time_interval(multipliers: Complex) -> float:
     """Smallest |ln h| of the nontrivial multipliers h; 1 without a nontrivial multiplier. multipliers:
     multipliers over the solved part of the period, with the trivial multiplier, (m,)."""
     exponents = np.sort(np.abs(np.log(multipliers[multipliers != 0])))[
@@ -61,17 +63,20 @@ def _slowest_decay_over_solved_part(multipliers: Complex) -> float:
     return float(exponents[0]) if len(exponents) else 1.0
 
 
-def tails_and_size(orbit: Orbit) -> Array:
+def coefficient_tails_and_orbit_size(orbit: Orbit) -> Array:
     """Relative tails of an orbit in space, of each element, and in time, not below a minimum, and size of the
     orbit, (elements + 2,)."""
-    tails = np.maximum(smooth_element_and_time_tails(orbit), CALIBRATION_SETTINGS.min_tail)
+    tails = np.maximum(
+        smooth_element_and_time_tails(orbit), MESH_ERROR_CALIBRATION_SETTINGS.min_coefficient_tail
+    )
     return np.append(tails, orbit.max_energy_norm)
 
 
 def error_growth_factors(earlier_tails: Array, later_tails: Array) -> Array:
     """Estimated growth factors of the errors in space and in time between two orbits, (2,), at least 1.
 
-    earlier_tails, later_tails: `tails_and_size` of the earlier and of the later orbit, (elements + 2,) each.
+    earlier_tails, later_tails: `coefficient_tails_and_orbit_size` of the earlier and of the later orbit,
+    (elements + 2,) each.
 
     Absolute errors grow as the squares of the tails. Near the Hopf point where the cycles end, the error of
     the size also grows as the reciprocal of the squared size, because the mesh displaces the Hopf point.
@@ -87,15 +92,16 @@ def error_growth_factors(earlier_tails: Array, later_tails: Array) -> Array:
 def squared_tail_growth(earlier_tails: Array, later_tails: Array) -> Array:
     """Growth factors of the squared absolute tails in space and in time between two orbits, (2,). The growth
     in space is the largest of all elements, because the cycle may hardly depend on the element with the
-    largest tail. earlier_tails, later_tails: `tails_and_size` of both orbits, (elements + 2,) each; of meshes
-    with different numbers of elements, the largest tails in space are compared."""
+    largest tail. earlier_tails, later_tails: `coefficient_tails_and_orbit_size` of both orbits, (elements +
+    2,) each; of meshes with different numbers of elements, the largest tails in space are compared."""
     if len(earlier_tails) != len(later_tails):
         earlier_tails, later_tails = (
             np.append(tails[:-2].max(), tails[-2:]) for tails in (earlier_tails, later_tails)
         )
     earlier, later = (
         np.append(
-            np.maximum(tails[:-2], CALIBRATION_SETTINGS.min_element_tail_ratio * tails[:-2].max()), tails[-2:]
+            np.maximum(tails[:-2], MESH_ERROR_CALIBRATION_SETTINGS.min_element_tail_ratio * tails[:-2].max()),
+            tails[-2:],
         )
         for tails in (earlier_tails, later_tails)
     )

@@ -15,7 +15,7 @@ from ....arrays import Array
 from ....model.compiled.compilation import compiled
 from ...orbit.measures import CycleMotion
 from ...orbit.orbit import Orbit, node_times
-from ...orbit.time_grading import UNIFORM_TIME
+from ...orbit.time_grading import UNIFORM_TIME_GRADING
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -25,7 +25,7 @@ class MinimalPeriodSettings:
     min_harmonic_ratio: float = 1e-3
     """While the error of the orbit is not known, a harmonic is treated as nonzero if its size divided by the
     size of the largest harmonic exceeds this number."""
-    min_certain_harmonic_in_errors: float = 10.0
+    min_certain_harmonic_per_extrema_error: float = 10.0
     """A harmonic is certainly nonzero if its size divided by the size of the largest harmonic exceeds this
     number times the relative error of the extrema."""
     min_certain_harmonic_ratio: float = 1e-6
@@ -40,9 +40,9 @@ def common_harmonic_divisor(motion: CycleMotion, min_ratio: float) -> int:
     """Greatest common divisor of the numbers of all harmonics of the bending strain larger than `min_ratio`
     times the largest harmonic; 0 if all harmonics are 0. If the tip's angle alone gives 1, the harmonics of
     the strain are not computed: a motion whose tip does not repeat within the period does not repeat."""
-    if _divisor_from_harmonic_sizes(motion.tip_angle_harmonics, min_ratio) == 1:
+    if _divisor_from_harmonic_sizes(motion.tip_angle_harmonic_sizes, min_ratio) == 1:
         return 1
-    return int(_divisor_from_harmonic_sizes(motion.bending_harmonics, min_ratio))
+    return int(_divisor_from_harmonic_sizes(motion.curvature_harmonic_sizes, min_ratio))
 
 
 @compiled
@@ -66,7 +66,7 @@ def possible_period_divisor(motion: CycleMotion, extrema_error: float) -> int:
     return common_harmonic_divisor(
         motion,
         max(
-            MINIMAL_PERIOD_SETTINGS.min_certain_harmonic_in_errors * extrema_error,
+            MINIMAL_PERIOD_SETTINGS.min_certain_harmonic_per_extrema_error * extrema_error,
             MINIMAL_PERIOD_SETTINGS.min_certain_harmonic_ratio,
         ),
     )
@@ -82,4 +82,4 @@ def restricted_to_minimal_period(orbit: Orbit) -> Orbit:
     # A symmetric orbit bends in odd harmonics only, so its divisor is odd and the shorter orbit is symmetric.
     values = np.append(orbit.states_at_time_fractions(times / divisor), orbit.period / divisor)
     # The grading was fitted to several minimal periods, so the shorter orbit starts with a uniform one.
-    return replace(orbit, values=values, grading=UNIFORM_TIME)
+    return replace(orbit, values=values, grading=UNIFORM_TIME_GRADING)

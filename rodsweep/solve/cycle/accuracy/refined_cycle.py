@@ -9,8 +9,8 @@ from ...orbit.measures import CycleMeasures, CycleMotion
 from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
 from ..status import CycleStatus
-from .amplitude_errors import relative_y_rounding
-from .calibration import Calibration
+from .amplitude_errors import relative_largest_y_rounding_error
+from .calibration import MeshErrorCalibration
 from .cycle_errors import CycleErrors, message_of_error
 from .minimal_period import possible_period_divisor
 
@@ -25,7 +25,7 @@ class RefinedCycle:
     """
 
     converged_orbit: ConvergedOrbit
-    calibration: Calibration
+    calibration: MeshErrorCalibration
     motion: CycleMotion
     measures: CycleMeasures
     multipliers: Complex
@@ -37,7 +37,7 @@ class RefinedCycle:
         return self.converged_orbit.orbit
 
     @property
-    def largest_multiplier(self) -> float:
+    def largest_multiplier_modulus(self) -> float:
         """Largest modulus of the nontrivial multipliers; 0 if there is no nontrivial multiplier."""
         return float(np.abs(self.multipliers[0])) if len(self.multipliers) else 0.0
 
@@ -48,21 +48,21 @@ class RefinedCycle:
         return possible_period_divisor(self.motion, self.errors.extrema_error)
 
     @property
-    def largest_modulus_error(self) -> float:
-        """Absolute error of `largest_multiplier`; the stability is undecided if this modulus differs from 1
-        by this error or less."""
+    def largest_multiplier_modulus_error(self) -> float:
+        """Absolute error of `largest_multiplier_modulus`; the stability is undecided if this modulus differs
+        from 1 by this error or less."""
         return max(self.trivial_multiplier_error, self.errors.multiplier_error)
 
     @property
-    def stable(self) -> bool | None:
+    def is_stable(self) -> bool | None:
         """Whether all nontrivial multipliers lie inside the unit circle; None if the largest modulus is 1
         within its error."""
-        excess = self.largest_multiplier - 1
-        return None if abs(excess) <= self.largest_modulus_error else excess < 0
+        excess = self.largest_multiplier_modulus - 1
+        return None if abs(excess) <= self.largest_multiplier_modulus_error else excess < 0
 
     def _accuracy_message(self, accuracy: float) -> str:
         """Why the errors exceed the requested relative accuracy `accuracy`."""
-        rounding = relative_y_rounding(self.converged_orbit)
+        rounding = relative_largest_y_rounding_error(self.converged_orbit)
         if rounding > accuracy:
             return (
                 "so close to a Hopf point or a fold, rounding errors may change the amplitude by a relative "
@@ -70,7 +70,7 @@ class RefinedCycle:
             )
         return message_of_error(self.errors, accuracy)
 
-    def verdict(self, accuracy: float) -> tuple[CycleStatus, str]:
+    def status_and_message(self, accuracy: float) -> tuple[CycleStatus, str]:
         """Returns (status, message) of the cycle for a requested relative accuracy; the message is "" for a
         stable or unstable cycle."""
         if self.measures.least_stretch <= 0:
@@ -86,10 +86,10 @@ class RefinedCycle:
                 "harmonics that distinguish the two are within their errors"
             )
             return CycleStatus.not_settled, message
-        if self.stable is None:
+        if self.is_stable is None:
             return (
                 CycleStatus.not_settled,
                 "the stability is undecided: the largest modulus of a Floquet multiplier is 1 within its "
-                f"error, {self.largest_modulus_error:.0e}",
+                f"error, {self.largest_multiplier_modulus_error:.0e}",
             )
-        return (CycleStatus.cycle if self.stable else CycleStatus.unstable), ""
+        return (CycleStatus.cycle if self.is_stable else CycleStatus.unstable), ""

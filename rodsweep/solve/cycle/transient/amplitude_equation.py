@@ -22,23 +22,23 @@ from ....arrays import Array
 class AmplitudeEquationSettings:
     """Settings for the prediction of the amplitude of a slowly growing motion."""
 
-    max_slow_growth: float = 0.2
+    max_slow_growth_per_return: float = 0.2
     """The final amplitude of a motion is predicted instead of integrated if the linear and the measured
     growth per return are at most this in modulus."""
-    min_significant_growth: float = 10.0
+    min_cubic_growth_over_noise: float = 10.0
     """A new measurement replaces an earlier c if |c| a^2 exceeds this number times the noise, so that the
     noise is at most a tenth of c a^2. A c measured within the noise may have the wrong sign."""
-    min_factor_change: float = 0.1
+    min_scaling_factor_change: float = 0.1
     """The state is not scaled if the factor to the predicted amplitude differs from 1 by less than this
     number, because Newton's method converges."""
-    decaying_state_factor: float = 0.7
+    decaying_state_scaling_factor: float = 0.7
     """Factor by which a slowly decaying motion is scaled; a growing motion with c < 0 is scaled by the
     inverse. The factor is close enough to 1 not to miss a cycle."""
-    max_jump_factor: float = 4.0
+    max_state_scaling_factor: float = 4.0
     """Largest factor by which a state is scaled in one jump; the smallest factor is the inverse."""
-    min_returns_for_limit: int = 10
+    min_returns_for_slow_limit: int = 10
     """Smallest number of returns for the coefficients of |z|^2 and |z|^4 in the growth of a slow motion."""
-    linear_tolerance: float = 0.05
+    linear_decay_tolerance: float = 0.05
     """A decaying motion ends at the straight rod if its decay rate and period differ by less than this
     fraction from the decay rate and the period of the leading mode."""
 
@@ -79,21 +79,21 @@ class AmplitudeEquation:
 
     def is_slow_mode(self, times: Array, states: Array) -> bool:
         """Whether a motion has the period of the leading mode, and both its growth of ln |z| over the last
-        return and the growth predicted by the linear rate are at most `max_slow_growth` in modulus. times:
-        (k,); states: (k, unknowns)."""
+        return and the growth predicted by the linear rate are at most `max_slow_growth_per_return` in
+        modulus. times: (k,); states: (k, unknowns)."""
         return max(
             map(abs, self.measured_and_linear_growth(times, states))
-        ) <= AMPLITUDE_EQUATION_SETTINGS.max_slow_growth and self._has_period_of_mode(times)
+        ) <= AMPLITUDE_EQUATION_SETTINGS.max_slow_growth_per_return and self._has_period_of_mode(times)
 
     def decays_at_linear_rate(self, times: Array, states: Array) -> bool:
         """Whether a motion decays to the straight rod: the linear growth is negative, the last return took a
         period of the leading mode, and one of two conditions holds. First: no c is measured, the states
-        shrink at every return, and the last growth equals the linear growth within `linear_tolerance`.
+        shrink at every return, and the last growth equals the linear growth within `linear_decay_tolerance`.
         Second: c |z|^2 is within this tolerance by the measured c, and the last growth is not larger than the
         linear growth, within tolerance and noise. times: (k,); states: (k, unknowns)."""
         growth, linear_growth = self.measured_and_linear_growth(times, states)
         sizes = np.linalg.norm(states, axis=1)
-        tolerance = AMPLITUDE_EQUATION_SETTINGS.linear_tolerance * abs(linear_growth)
+        tolerance = AMPLITUDE_EQUATION_SETTINGS.linear_decay_tolerance * abs(linear_growth)
         decreases = np.diff(np.log(sizes)) + self.growth_excess * np.diff(times) < 0
         # Where higher powers of |z| cancel c |z|^2, the rates agree although a cycle may lie at smaller |z|.
         is_linear = (
@@ -109,16 +109,16 @@ class AmplitudeEquation:
         return linear_growth < 0 and (is_linear or is_small) and self._has_period_of_mode(times)
 
     def decays_no_slower_than_mode(self, times: Array, states: Array) -> bool:
-        """Whether a motion decays at least 1 - max_slow_growth times as fast as the leading mode, so that no
-        cycle is near. The decay of a slow mode with c > 0 may be smaller by `growth_error`. times: (k,);
-        states: (k, unknowns)."""
+        """Whether a motion decays at least 1 - max_slow_growth_per_return times as fast as the leading mode,
+        so that no cycle is near. The decay of a slow mode with c > 0 may be smaller by `growth_error`. times:
+        (k,); states: (k, unknowns)."""
         growth, linear_growth = self.measured_and_linear_growth(times, states)
         is_known = self.cubic_coefficient > 0 and self.is_slow_mode(times, states)
         return linear_growth < 0 and growth < linear_growth * (
-            1 - AMPLITUDE_EQUATION_SETTINGS.max_slow_growth
+            1 - AMPLITUDE_EQUATION_SETTINGS.max_slow_growth_per_return
         ) + (self.growth_error if is_known else 0)
 
-    def factor_to_cycle(self, times: Array, states: Array) -> float | None:
+    def scaling_factor_to_cycle(self, times: Array, states: Array) -> float | None:
         """Factor by which the state is to be scaled: to the predicted amplitude of the cycle, or by a fixed
         factor if no amplitude is predicted. Measures c if its contribution exceeds the noise.
 
@@ -132,40 +132,40 @@ class AmplitudeEquation:
         # d|z|/dt = linear |z| - c |z|^3, so linear - growth = c |z|^2.
         cubic_coefficient = (linear_growth - growth) / amplitude**2
         if abs(linear_growth - growth) > self.growth_error * (
-            1 if isnan(self.cubic_coefficient) else AMPLITUDE_EQUATION_SETTINGS.min_significant_growth
+            1 if isnan(self.cubic_coefficient) else AMPLITUDE_EQUATION_SETTINGS.min_cubic_growth_over_noise
         ):
             self.cubic_coefficient = cubic_coefficient
         coefficient = cubic_coefficient if isnan(self.cubic_coefficient) else self.cubic_coefficient
         if isnan(self.cubic_coefficient) and linear_growth > 0:
             factor = (
-                AMPLITUDE_EQUATION_SETTINGS.max_jump_factor
+                AMPLITUDE_EQUATION_SETTINGS.max_state_scaling_factor
             )  # c is within the noise at this small amplitude
         elif linear_growth > 0 and coefficient > 0:
             factor = float(
                 np.clip(
                     # The amplitude at which linear = c |z|^2.
                     np.sqrt(linear_growth / coefficient) / amplitude,
-                    1 / AMPLITUDE_EQUATION_SETTINGS.max_jump_factor,
-                    AMPLITUDE_EQUATION_SETTINGS.max_jump_factor,
+                    1 / AMPLITUDE_EQUATION_SETTINGS.max_state_scaling_factor,
+                    AMPLITUDE_EQUATION_SETTINGS.max_state_scaling_factor,
                 )
             )
         elif linear_growth > 0 or (coefficient < 0 and growth > self.growth_error):
             # The growth increases with the amplitude.
-            factor = 1 / AMPLITUDE_EQUATION_SETTINGS.decaying_state_factor
+            factor = 1 / AMPLITUDE_EQUATION_SETTINGS.decaying_state_scaling_factor
         elif coefficient > 0 or growth < -self.growth_error:
-            factor = AMPLITUDE_EQUATION_SETTINGS.decaying_state_factor
+            factor = AMPLITUDE_EQUATION_SETTINGS.decaying_state_scaling_factor
         else:
             return None
-        return factor if abs(factor - 1) >= AMPLITUDE_EQUATION_SETTINGS.min_factor_change else None
+        return factor if abs(factor - 1) >= AMPLITUDE_EQUATION_SETTINGS.min_scaling_factor_change else None
 
-    def factor_to_slow_limit(self, returns: Sequence[tuple[float, Array]]) -> float | None:
+    def scaling_factor_to_slow_limit(self, returns: Sequence[tuple[float, Array]]) -> float | None:
         """Factor from the last state to the stable cycle that a slow motion approaches, by the amplitude
         equation g = g0 - c |z|^2 - d |z|^4 with both coefficients from all returns; None if the motion is
         not slow or has no such limit. Near a fold of a branch the motion takes thousands of returns.
 
         returns: time and bending moments, (nodes,), of each of the last returns.
         """
-        if len(returns) < AMPLITUDE_EQUATION_SETTINGS.min_returns_for_limit:
+        if len(returns) < AMPLITUDE_EQUATION_SETTINGS.min_returns_for_slow_limit:
             return None
         times, states = (np.array(column) for column in zip(*returns, strict=True))
         if not self.is_slow_mode(times, states):
@@ -185,12 +185,13 @@ class AmplitudeEquation:
             if root.imag == 0 and root.real > 0 and offset + 2 * slope * root.real < 0
         ]
         factors = [float(np.sqrt(limit) / sizes[-1]) for limit in limits]
-        most = AMPLITUDE_EQUATION_SETTINGS.max_jump_factor
+        most = AMPLITUDE_EQUATION_SETTINGS.max_state_scaling_factor
         return next((factor for factor in factors if 1 / most < factor < most), None)
 
     def _has_period_of_mode(self, times: Array) -> bool:
-        """Whether the last return took as long as a period of the leading mode, within `linear_tolerance`.
-        times: (k,)."""
+        """Whether the last return took as long as a period of the leading mode, within
+        `linear_decay_tolerance`. times: (k,)."""
         return bool(
-            abs((times[-1] - times[-2]) / self.period - 1) < AMPLITUDE_EQUATION_SETTINGS.linear_tolerance
+            abs((times[-1] - times[-2]) / self.period - 1)
+            < AMPLITUDE_EQUATION_SETTINGS.linear_decay_tolerance
         )

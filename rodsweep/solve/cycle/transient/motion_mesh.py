@@ -23,7 +23,7 @@ class MotionMeshSettings:
     accuracy: float = 1e-5
     """Relative accuracy of the mesh of an integrated motion. The motion only has to reach the basin of
     attraction of the cycle; Newton's method gives the accuracy of the cycle."""
-    stored_accuracy: float = 1e-10
+    accuracy_of_stored_motion: float = 1e-10
     """Relative accuracy of the mesh of a motion whose path is stored: an error of the growth rate shifts the
     phase of the whole later motion. The integration takes a quarter longer than with `accuracy`, and its
     errors were 30 to 500 times smaller on four arms."""
@@ -82,7 +82,7 @@ def motion_mesh(rod: Rod, accuracy: float) -> Mesh:
 def accuracy_of_motion_mesh(is_stored: bool) -> float:
     """Relative accuracy of the first mesh of an integrated motion. is_stored: whether the path of the motion
     is stored."""
-    return MOTION_MESH_SETTINGS.stored_accuracy if is_stored else MOTION_MESH_SETTINGS.accuracy
+    return MOTION_MESH_SETTINGS.accuracy_of_stored_motion if is_stored else MOTION_MESH_SETTINGS.accuracy
 
 
 def motion_meshes(rod: Rod, is_stored: bool) -> Iterator[Mesh]:
@@ -103,7 +103,7 @@ def motion_meshes(rod: Rod, is_stored: bool) -> Iterator[Mesh]:
         yield mesh
 
 
-def coarse_mesh_along_branch(rod: Rod) -> Mesh:
+def coarse_mesh_for_branch_to_cycle(rod: Rod) -> Mesh:
     """Coarse mesh for the intermediate orbits on the branch from a Hopf point to the cycle of a rod."""
     wave_number = MOTION_MESH_SETTINGS.wave_number_per_root_force * abs(rod.F) ** 0.5
     if rod.is_uniform_and_linear:
@@ -118,7 +118,7 @@ def coarse_mesh_along_branch(rod: Rod) -> Mesh:
     return mesh_with_edges(elements.edges, elements.order)
 
 
-def integrable_rod(rod: Rod, distance: float = 1.0) -> Rod:
+def rod_for_time_integration(rod: Rod, distance: float = 1.0) -> Rod:
     """The rod with k1 and k2 at the base of at most MOTION_MESH_SETTINGS.max_stiffness, and with gamma3 and
     gamma1 of at least `min_rotational_drag` and `min_axial_drag` at the base and at every row of a profile; a
     limiting rod (k1 = inf, k2 = inf or gamma3 = 0) cannot be integrated in time. distance: distance of the

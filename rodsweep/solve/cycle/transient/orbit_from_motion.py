@@ -18,17 +18,18 @@ from ...orbit.symmetry import NO_SYMMETRY, REFLECTION
 class NewtonFromMotionSettings:
     """Settings for starting Newton's method from an integrated motion."""
 
-    stages: int = 3
+    collocation_stage_count: int = 3
     """Number of collocation stages per interval of the approximate orbit."""
-    intervals_per_return: int = 20
+    time_intervals_per_return: int = 20
     """Number of time intervals of the approximate orbit per return of the tip."""
     peak_search_time_count: int = 128
     """Number of equidistant times per period from which the time of the largest y is chosen."""
-    max_asymmetry: float = 0.2
-    """The orbit is solved as symmetric if the `relative_asymmetry` of the motion is less than this number."""
+    max_asymmetry_of_symmetric_orbit: float = 0.2
+    """The orbit is solved as symmetric if the `relative_bending_moment_asymmetry` of the motion is less than
+    this number."""
 
     def __post_init__(self) -> None:
-        require_enough_stages(self.stages)
+        require_enough_stages(self.collocation_stage_count)
 
 
 NEWTON_FROM_MOTION_SETTINGS = NewtonFromMotionSettings()
@@ -38,8 +39,8 @@ def orbit_from_motion(
     system: ExplicitSystem, form: StressForm, run: Trajectory, period: float, return_count: int
 ) -> Orbit:
     """Approximate orbit of the rod in `form` from the last period of the motion `run` of `system`, on its
-    mesh. The orbit starts at the largest y of the tip, and is symmetric if the `relative_asymmetry` of
-    the motion is small.
+    mesh. The orbit starts at the largest y of the tip, and is symmetric if the
+    `relative_bending_moment_asymmetry` of the motion is small.
 
     period: in tau2. return_count: number of returns of the tip to theta = 0 per period. If the rod in `form`
     is a limiting rod, for example an inextensible rod, `system` is a nearby rod.
@@ -60,22 +61,29 @@ def orbit_from_motion(
     time_of_largest_y = float(times[int(np.argmax(system.tip_coordinates(period_states)[1]))])
     symmetry = (
         REFLECTION
-        if relative_asymmetry(system, period_states) < NEWTON_FROM_MOTION_SETTINGS.max_asymmetry
+        if relative_bending_moment_asymmetry(system, period_states)
+        < NEWTON_FROM_MOTION_SETTINGS.max_asymmetry_of_symmetric_orbit
         else NO_SYMMETRY
     )
     # A cycle with several returns of the tip needs as many times more intervals.
-    interval_count = NEWTON_FROM_MOTION_SETTINGS.intervals_per_return * return_count // symmetry.period_parts
-    duration = period / symmetry.period_parts
+    interval_count = (
+        NEWTON_FROM_MOTION_SETTINGS.time_intervals_per_return
+        * return_count
+        // symmetry.solved_parts_per_period
+    )
+    duration = period / symmetry.solved_parts_per_period
     times_of_nodes = time_of_largest_y + duration * node_times(
-        interval_count, NEWTON_FROM_MOTION_SETTINGS.stages
+        interval_count, NEWTON_FROM_MOTION_SETTINGS.collocation_stage_count
     )
     # Times after the end of the run are moved back by one period.
     times_of_nodes = np.where(times_of_nodes > run.times[-1], times_of_nodes - period, times_of_nodes)
     states = collocation_states(system, form, spline(times_of_nodes))
-    return Orbit.from_states(form, symmetry, period, states, NEWTON_FROM_MOTION_SETTINGS.stages)
+    return Orbit.from_states(
+        form, symmetry, period, states, NEWTON_FROM_MOTION_SETTINGS.collocation_stage_count
+    )
 
 
-def relative_asymmetry(system: ExplicitSystem, states: Array) -> float:
+def relative_bending_moment_asymmetry(system: ExplicitSystem, states: Array) -> float:
     """Norm of the difference between m3(t) and the reflection -m3(t + T/2), divided by the norm of m3; m3:
     bending moments, T: period. states: states at m equidistant times over a period, (m, n)."""
     moments = system.layout.stress_field(states, "m3")
@@ -90,16 +98,16 @@ def collocation_states(system: ExplicitSystem, form: StressForm, z: Array) -> Ar
     S = system.stresses(z)
     velocities = np.empty(S.shape)
     G = np.empty((len(S), S.shape[-1]))
-    if form.unknown_velocities:
+    if form.unknown_velocity_components:
         for k, state in enumerate(system.layout.state(S, S)):
             # The collocation has velocities as unknowns where a drag is small; the integrator has none.
             velocity = np.empty(G.shape)
-            write_balance(state, velocity, G, system.nodal_rod, system.mesh.matrices)
+            write_balance(state, velocity, G, system.nodal_rod, system.mesh.node_matrices)
             velocities[:, k] = velocity
     return form.layout.state(S, velocities)
 
 
-def scaled_state(system: ExplicitSystem, z: Array, factor: float) -> Array:
+def state_with_scaled_deflection(system: ExplicitSystem, z: Array, factor: float) -> Array:
     """The state z, (unknowns,), with the deflection multiplied by `factor`."""
     scaled = factor * z
     system.layout.stress_field(scaled, "n1")[...] *= factor  # quadratic in the deflection

@@ -16,62 +16,67 @@ class TimeSchemeSettings:
     max_growth_for_accurate_scheme: float = 0.01
     """Linear growth per period, in modulus, below which the scheme is the accurate one."""
 
-    default_growth_error: float = 1e-3
+    default_scheme_growth_error: float = 1e-3
     """Largest growth per period that integration errors of the default scheme and of the
     fast-growth scheme may add; 3e-4 was measured."""
 
-    accurate_growth_error: float = 1e-5
+    accurate_scheme_growth_error: float = 1e-5
     """Largest growth per period that integration errors of the accurate scheme may add; 8e-6 was
     measured."""
 
-    default_max_steps_per_return: int = 200
+    default_scheme_max_steps_per_return: int = 200
     """Maximum number of time steps of the default scheme, divided by the allowed number of returns.
     22 to 101 steps per return were measured on motions of 400 returns. A motion with rare returns takes far
     more, and ends at this maximum."""
 
-    accurate_max_steps_per_return: int = 2000
+    accurate_scheme_max_steps_per_return: int = 2000
     """Maximum number of time steps of the accurate scheme, divided by the allowed number of returns;
     its steps are a tenth as long as those of the default scheme."""
 
-    default_tolerance: float = 1e-5
+    default_scheme_tolerance: float = 1e-5
     """Local tolerance of the default scheme."""
 
-    fast_growth_tolerance: float = 1e-4
+    fast_growth_scheme_tolerance: float = 1e-4
     """Local tolerance of the scheme of a fast-growing motion."""
 
-    accurate_tolerance: float = 1e-9
+    accurate_scheme_tolerance: float = 1e-9
     """Local tolerance of the accurate scheme."""
 
 
 TIME_SCHEME_SETTINGS = TimeSchemeSettings()
 
 
-class TransientSchemes(NamedTuple):
-    """Time schemes of the first run and of all later runs of a motion. growth_error: growth per period that
-    integration errors may add. max_steps_per_return: maximum number of time steps, divided by the allowed
-    number of returns."""
+class TransientTimeSchemes(NamedTuple):
+    """Time schemes of the first run and of all later runs of a motion. growth_error_per_period: growth per
+    period that integration errors may add. max_steps_per_return: maximum number of time steps, divided by the
+    allowed number of returns."""
 
     first_run: TimeScheme
+    """Time scheme of the first run."""
     later_runs: TimeScheme
-    growth_error: float
+    """Time scheme of all later runs."""
+    growth_error_per_period: float
     max_steps_per_return: int
 
 
-def schemes_for_growth(growth: float, is_stored: bool) -> TransientSchemes:
+def time_schemes_for_growth(growth: float, is_stored: bool) -> TransientTimeSchemes:
     """Time schemes of a motion. growth: linear growth per period of the leading mode. is_stored: whether the
     path of the motion is stored."""
     settings = TIME_SCHEME_SETTINGS
     # An error of the scheme could change the sign of a slow growth, and with it the outcome.
     if abs(growth) < settings.max_growth_for_accurate_scheme or is_stored:
-        accurate = TimeScheme("arkimex", "5", tolerance=settings.accurate_tolerance)
-        return TransientSchemes(
-            accurate, accurate, settings.accurate_growth_error, settings.accurate_max_steps_per_return
+        accurate = TimeScheme("arkimex", "5", tolerance=settings.accurate_scheme_tolerance)
+        return TransientTimeSchemes(
+            accurate,
+            accurate,
+            settings.accurate_scheme_growth_error,
+            settings.accurate_scheme_max_steps_per_return,
         )
-    default = TimeScheme("arkimex", "4", tolerance=settings.default_tolerance)
+    default = TimeScheme("arkimex", "4", tolerance=settings.default_scheme_tolerance)
     # Only the first run starts small and grows; later runs start near the cycle. Its growth is not used, so
     # that a large tolerance suffices.
-    is_fast = growth > AMPLITUDE_EQUATION_SETTINGS.max_slow_growth
-    first = replace(default, tolerance=settings.fast_growth_tolerance) if is_fast else default
-    return TransientSchemes(
-        first, default, settings.default_growth_error, settings.default_max_steps_per_return
+    is_fast = growth > AMPLITUDE_EQUATION_SETTINGS.max_slow_growth_per_return
+    first = replace(default, tolerance=settings.fast_growth_scheme_tolerance) if is_fast else default
+    return TransientTimeSchemes(
+        first, default, settings.default_scheme_growth_error, settings.default_scheme_max_steps_per_return
     )

@@ -20,7 +20,7 @@ class ShapeTraceSettings:
     """Maximum number of recorded time steps: some 50 to 100 returns of the tip, or 4 MB."""
     max_stored_shapes: int = 1600
     """Maximum number of stored shapes: 50 periods of 32 shapes."""
-    max_rest_deflection: float = 2e-3
+    max_tip_y_at_rest: float = 2e-3
     """An arm is at rest if the tip's |y|, in L, is at most this number."""
     min_returns_to_measure_period: int = 3
     """With fewer returns than this number, the period of the leading mode is used as the period of the
@@ -51,7 +51,7 @@ class ShapeTrace:
         the record is not full. z: current state, (unknowns,)."""
         return (
             not self.is_full
-            and abs(float(self.system.tip_coordinates(z)[1])) > SHAPE_TRACE_SETTINGS.max_rest_deflection
+            and abs(float(self.system.tip_coordinates(z)[1])) > SHAPE_TRACE_SETTINGS.max_tip_y_at_rest
         )
 
     def begin_with_relaxation(self, z: Array, relaxed: Array, duration: float) -> None:
@@ -105,6 +105,6 @@ class ShapeTrace:
             self.system.shape(states)[:2] @ self.system.mesh.evaluation_matrix(lobatto_points(node_count)).T
         )
         is_complete = not self.is_full and len(shape_times) < SHAPE_TRACE_SETTINGS.max_stored_shapes
-        moving_shapes = np.flatnonzero(np.abs(shapes[1, :, -1]) > SHAPE_TRACE_SETTINGS.max_rest_deflection)
+        moving_shapes = np.flatnonzero(np.abs(shapes[1, :, -1]) > SHAPE_TRACE_SETTINGS.max_tip_y_at_rest)
         # One shape at rest follows the last moving shape.
         return MotionShapes(time_step, shapes[:, : int(moving_shapes.max(initial=0)) + 2], is_complete)

@@ -12,7 +12,7 @@ from ....arrays import Array
 from ....discretization.explicit_system import ExplicitSystem
 from ...motion.integrator import Trajectory
 
-MAX_STEP_RATIO = 8.0
+MAX_TIME_STEP_RATIO_FOR_QUINTIC = 8.0
 """A time step that is longer than another step at one of its ends by more than this factor is interpolated by
 the cubic polynomial: second derivatives from unequal steps multiply errors of the values by the squared
 factor. The integrator changes a step by a factor of at most 5, except a last step, which ends on time."""
@@ -59,7 +59,7 @@ class TipTrace:
             )
         )
 
-    def at_equal_times(self, count: int) -> Array:
+    def path_at_equidistant_times(self, count: int) -> Array:
         """Time in tau2, and x, y (in L) and theta of the tip, (4, count), at equidistant times from the start
         to the end of the last run."""
         times = np.linspace(0.0, self.run_times[-1][-1], count)
@@ -81,7 +81,7 @@ class TipTrace:
 def interpolated_between_steps(steps: Array, values: Array, rates: Array, times: Array) -> Array:
     """Values at `times`, (m, k), by the quintic polynomial of each time step, which has the values, rates and
     second derivatives of its two ends; by the cubic polynomial for a run with a single step, and for a step
-    that is more than MAX_STEP_RATIO times as long as a neighbouring step.
+    that is more than MAX_TIME_STEP_RATIO_FOR_QUINTIC times as long as a neighbouring step.
 
     steps: times of the ends of the steps, increasing, (n,), n >= 2. values, rates: values and time
     derivatives at these times, (m, n). times: times between the first and the last of `steps`, (k,).
@@ -113,7 +113,7 @@ def interpolated_between_steps(steps: Array, values: Array, rates: Array, times:
     shortest = np.minimum(
         steps[inner_steps] - steps[inner_steps - 1], steps[inner_steps + 1] - steps[inner_steps]
     ).min(axis=0)
-    return np.where(h <= MAX_STEP_RATIO * shortest, quintic, cubic)
+    return np.where(h <= MAX_TIME_STEP_RATIO_FOR_QUINTIC * shortest, quintic, cubic)
 
 
 def _second_derivatives(

@@ -20,7 +20,7 @@ from ...unsolvable import Unsolvable
 from ..accuracy.refined_cycle import RefinedCycle
 from ..accuracy.refinement import refined_cycle
 from ..cycle_outcome import TransientOutcome
-from ..hopf_start import hopf_point_below, orbit_from_hopf
+from ..hopf_start import hopf_point_below_force, orbit_from_hopf
 from ..status import CycleStatus
 from .transient_integration import TransientIntegration
 
@@ -29,20 +29,20 @@ from .transient_integration import TransientIntegration
 class TorusTestSettings:
     """Settings for the test whether a motion lies on a torus."""
 
-    harmonics: int = 6
+    harmonic_count: int = 6
     """Number of harmonics of the second frequency in the fitted Fourier series. On the studied tori each
     harmonic was a fifth of the previous harmonic, and the sum of all harmonics beyond the sixth was 6e-4."""
     min_distinct_returns: int = 16
     """Smallest number of returns after which a motion on a torus may close: the returns must leave no gap
     larger than 1/`min_distinct_returns` of the closed curve. The returns then determine the 13 terms of the
     Fourier series."""
-    max_prediction_error_ratio: float = 0.05
+    max_prediction_error_per_modulation: float = 0.05
     """Largest rms error of the predicted returns on a torus, divided by the rms modulation. Errors of 7e-4 to
     0.03 were measured on tori, and 0.11 for a growing modulation."""
-    skipped_fraction: float = 1 / 3
+    skipped_return_fraction: float = 1 / 3
     """Fraction of the returns, counted from the start, that the test ignores, because the motion still
     approaches the torus."""
-    max_angle_difference: float = 0.3
+    max_angle_difference_from_multiplier: float = 0.3
     """Largest difference, in rad, between the angle per return on a torus and the argument of the cycle's
     complex multipliers. The difference is 0 at the torus point; 0.18 was observed far from this point."""
     trial_angles_per_minimum: int = 13
@@ -50,7 +50,7 @@ class TorusTestSettings:
     residual, which is 2 pi/k for k returns and one harmonic."""
     angle_tolerance_ratio: float = 1e-4
     """Tolerance of the fitted angle divided by half the width of the residual's minimum."""
-    max_period_difference: float = 0.1
+    max_relative_period_difference: float = 0.1
     """Largest relative difference between the mean return time on a torus and the period of the cycle; the
     difference is 0 at the torus point."""
 
@@ -75,7 +75,7 @@ def classify_quasiperiodic(outcome: TransientOutcome, transient: TransientIntegr
     # Only the last returns are stored, so some or all of the skipped returns may not be stored.
     skipped_count = max(
         0,
-        int(TORUS_TEST_SETTINGS.skipped_fraction * transient.returns)
+        int(TORUS_TEST_SETTINGS.skipped_return_fraction * transient.returns)
         - (transient.returns - len(transient.past_returns)),
     )
     past_returns = list(transient.past_returns)[skipped_count:]
@@ -86,16 +86,19 @@ def classify_quasiperiodic(outcome: TransientOutcome, transient: TransientIntegr
     for cycle in _unstable_cycles(transient):
         is_near = (
             abs(np.ptp(times) / (len(times) - 1) / cycle.orbit.period - 1)
-            <= TORUS_TEST_SETTINGS.max_period_difference
+            <= TORUS_TEST_SETTINGS.max_relative_period_difference
         )
         angle = unstable_pair_angle(cycle)
         modulation = torus_frequency_of(moments, angle) if is_near and angle else None
-        if modulation and modulation.prediction_error <= TORUS_TEST_SETTINGS.max_prediction_error_ratio:
+        if (
+            modulation
+            and modulation.prediction_error <= TORUS_TEST_SETTINGS.max_prediction_error_per_modulation
+        ):
             ratio = modulation.angle_per_return / (2 * np.pi)
             message = (
                 f"the motion is modulated at {ratio:.3f} times the frequency of its oscillation; the "
                 "unstable cycle inside the torus has a Floquet multiplier of modulus "
-                f"{cycle.largest_multiplier:.3g}"
+                f"{cycle.largest_multiplier_modulus:.3g}"
             )
             return TransientOutcome(
                 CycleStatus.torus,
@@ -110,13 +113,14 @@ def classify_quasiperiodic(outcome: TransientOutcome, transient: TransientIntegr
 def _unstable_cycles(transient: TransientIntegration) -> Iterator[RefinedCycle]:
     """Candidates for the unstable cycle inside a torus: a cycle found during the motion, then the cycle on
     the branch from the Hopf point below the force."""
-    if transient.unstable_cycle is not None:
-        yield transient.unstable_cycle
+    search = transient.search
+    if search.unstable_cycle is not None:
+        yield search.unstable_cycle
     try:
-        hopf = hopf_point_below(transient.form.rod)
+        hopf = hopf_point_below_force(transient.form.rod)
         if hopf is not None:
-            start = orbit_from_hopf(transient.form, hopf, transient.workspace)
-            yield refined_cycle(start, transient.accuracy, transient.workspace)
+            start = orbit_from_hopf(transient.form, hopf, search.workspace)
+            yield refined_cycle(start, search.accuracy, search.workspace)
     except (Unsolvable, ArithmeticError, np.linalg.LinAlgError):
         return
 
@@ -125,11 +129,13 @@ def unstable_pair_angle(cycle: RefinedCycle) -> float | None:
     """Argument, in (0, pi), of the complex pair of Floquet multipliers outside the unit circle; None unless
     this pair is the only instability of the cycle."""
     # Multipliers on the circle within their error count as outside, or a second instability could be missed.
-    outer_multipliers = cycle.multipliers[np.abs(cycle.multipliers) > 1 - cycle.largest_modulus_error]
+    outer_multipliers = cycle.multipliers[
+        np.abs(cycle.multipliers) > 1 - cycle.largest_multiplier_modulus_error
+    ]
     if (
-        cycle.stable is not False
+        cycle.is_stable is not False
         or len(outer_multipliers) != 2
-        or abs(outer_multipliers[0].imag) <= cycle.largest_modulus_error
+        or abs(outer_multipliers[0].imag) <= cycle.largest_multiplier_modulus_error
     ):
         return None
     return float(abs(np.angle(outer_multipliers[0])))
@@ -145,7 +151,7 @@ def torus_frequency_of(return_states: Array, angle: float) -> TorusFrequency | N
     numbers = np.arange(len(return_states))
     first_half = return_states[:half]
     second_half = return_states[half:]
-    best_angle = fitted_angle(first_half, angle)
+    best_angle = fitted_angle_per_return(first_half, angle)
     modulation_size = float(np.linalg.norm(second_half - second_half.mean(axis=0)))
     if (
         modulation_size == 0
@@ -153,7 +159,7 @@ def torus_frequency_of(return_states: Array, angle: float) -> TorusFrequency | N
         > 2 * np.pi / TORUS_TEST_SETTINGS.min_distinct_returns
     ):
         return None
-    basis = fourier_basis(best_angle * numbers, TORUS_TEST_SETTINGS.harmonics)
+    basis = fourier_basis(best_angle * numbers, TORUS_TEST_SETTINGS.harmonic_count)
     # The series is fitted to the first half and tested on the second: a fit alone would explain any motion.
     series = np.linalg.lstsq(basis[:half], first_half, rcond=None)[0]
     return TorusFrequency(
@@ -161,7 +167,7 @@ def torus_frequency_of(return_states: Array, angle: float) -> TorusFrequency | N
     )
 
 
-def fitted_angle(return_states: Array, angle: float) -> float:
+def fitted_angle_per_return(return_states: Array, angle: float) -> float:
     """Angle per return, in rad, near `angle`, for which a Fourier series fits the returns best in the
     least-squares sense. return_states: states at successive returns, (k, n)."""
     from scipy.optimize import minimize_scalar  # slow import: 0.1 s, for few runs
@@ -175,13 +181,13 @@ def fitted_angle(return_states: Array, angle: float) -> float:
         )
 
     # With one harmonic the minimum is 2 pi/k wide, with m harmonics 2 pi/(k m); k: number of returns.
-    max_difference = TORUS_TEST_SETTINGS.max_angle_difference
+    max_difference = TORUS_TEST_SETTINGS.max_angle_difference_from_multiplier
     minimum_width = 2 * np.pi / len(return_states)
     angle_count = ceil(2 * max_difference / minimum_width * TORUS_TEST_SETTINGS.trial_angles_per_minimum)
     trial_angles = angle + np.linspace(-max_difference, max_difference, angle_count + 1)
     best_angle = min(map(float, trial_angles), key=lambda at: residual(at, 1))
     # Every further harmonic narrows the minimum, so the search continues around the last one.
-    for harmonics in range(1, TORUS_TEST_SETTINGS.harmonics + 1):
+    for harmonics in range(1, TORUS_TEST_SETTINGS.harmonic_count + 1):
         half_width = np.pi / (len(return_states) * harmonics)
         bounds = (best_angle - half_width, best_angle + half_width)
         minimum = minimize_scalar(

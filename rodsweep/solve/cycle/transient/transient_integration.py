@@ -1,8 +1,9 @@
 """Integration of a motion from a start until Newton's method finds its cycle, or until the rod is straight.
 
-The motion is integrated from return to return (`returns`). Newton's method starts once two returns agree to a
-relative distance of a tenth. Slow motions about the straight rod are shortened by jumps: the state is scaled
-to the amplitude that the amplitude equation predicts (`amplitude_equation`), unless its path is stored.
+The motion is integrated from return to return (`poincare_returns`). Newton's method starts once two returns
+agree to a relative distance of a tenth. Slow motions about the straight rod are shortened by jumps: the state
+is scaled to the amplitude that the amplitude equation predicts (`amplitude_equation`), unless its path is
+stored.
 
 A rod with an unstable straight state leaves this state. The deflection may nevertheless decay while a large
 axial stretch relaxes slowly; the motion then restarts from a small deflection in the leading mode."""
@@ -19,39 +20,37 @@ from ....wording import counted
 from ...motion.integrator import INTEGRATOR_SETTINGS, EndReason, Trajectory, integrator, relax_fast_components
 from ...motion.leading_mode import leading_mode
 from ...orbit.matrix.workspace import NewtonWorkspace
-from ...unsolvable import Unsolvable
 from ..accuracy.refined_cycle import RefinedCycle
-from ..accuracy.refinement import refined_cycle
 from ..cycle_outcome import CycleRequest, TransientOutcome
 from ..status import CycleStatus
 from ..straight_rod import StraightRodStability, growth_rate_of_integrated_rod
 from .amplitude_equation import AmplitudeEquation
-from .motion_mesh import integrable_rod
-from .orbit_from_motion import orbit_from_motion, scaled_state
-from .returns import (
+from .cycle_search import CycleSearch
+from .motion_mesh import rod_for_time_integration
+from .orbit_from_motion import orbit_from_motion, state_with_scaled_deflection
+from .poincare_returns import (
     RETURN_SETTINGS,
-    classified_run_length,
-    is_too_short,
+    has_too_few_returns,
     no_period_text,
-    recurrence,
-    return_limit,
+    poincare_section_crossings,
+    return_count_of_classified_run,
+    returns_per_period_and_distance,
     run_failure,
-    section_crossings,
+    run_limit_by_returns,
     tip_angle_row,
 )
-from .schemes import schemes_for_growth
+from .schemes import time_schemes_for_growth
 from .shape_trace import ShapeTrace
 from .tip_trace import TipTrace
 from .transient_settings import TRANSIENT_SETTINGS
 
 
 class TransientIntegration:
-    """Integration of the motion of one rod from a start; `follow` is called only once. form: the rod whose
-    cycle is solved for, and the mesh. straight: stability of the straight rod. tangent_parameter: parameter
-    of the cycle's tangent, or None. unstable_cycle: a nearby unstable cycle, or None. system: the integrated
-    rod, near a limiting rod of `form` (k1 = inf, ...). record: record of the tip's path or of shapes, or
-    None. returns, steps, jump_count: numbers of returns, time steps and jumps so far. attempts: number of
-    attempts of Newton's method, up to a maximum. next_attempt: number of returns before the next attempt."""
+    """Integration of the motion of one rod from a start; `integrate_to_outcome` is called only once. form:
+    the rod whose cycle is solved for, and the mesh. straight: stability of the straight rod. parameter_name,
+    unstable_cycle: see `CycleSearch`. system: the integrated rod, near a limiting rod of `form` (k1 = inf,
+    ...). record: record of the tip's path or of shapes, or None. returns, steps, jump_count: numbers of
+    returns, time steps and jumps so far."""
 
     def __init__(
         self,
@@ -62,89 +61,97 @@ class TransientIntegration:
         unstable_cycle: RefinedCycle | None,
         workspace: NewtonWorkspace,
     ) -> None:
-        self.system = ExplicitSystem(integrable_rod(form.rod), form.mesh)
+        self.system = ExplicitSystem(rod_for_time_integration(form.rod), form.mesh)
         self.form = form
         self.straight = straight
-        self.tangent_parameter = parameter_name
-        self.workspace = workspace
-        self.accuracy = request.accuracy
+        self.search = CycleSearch(request.accuracy, parameter_name, unstable_cycle, workspace)
         self.max_returns = request.most_periods
-        self.unstable_cycle = unstable_cycle
         self.leading_mode = leading_mode(self.system)
         trace = ShapeTrace if request.frames else TipTrace
         self.record = trace(self.system) if request.is_motion_recorded else None
         rate = straight.growth_rate(self.leading_mode.w.real)
         period = self.leading_mode.period
-        self.first_scheme, self.scheme, growth_error, max_steps = schemes_for_growth(
-            rate * period, request.transient > 0
-        )
+        schemes = time_schemes_for_growth(rate * period, request.transient > 0)
+        self.first_scheme, self.scheme, growth_error, max_steps = schemes
         self.max_steps = max_steps * max(request.most_periods, TRANSIENT_SETTINGS.min_returns_for_max_steps)
         excess = rate - growth_rate_of_integrated_rod(form.rod, self.system.rod, straight, rate)
         self.amplitude_equation = AmplitudeEquation(period, rate, excess, growth_error)
-        self.step = period / TRANSIENT_SETTINGS.first_steps_per_period
+        self.step = period / TRANSIENT_SETTINGS.first_time_steps_per_period
         """First time step of the next run, in tau2."""
         self.past_returns: deque[tuple[float, Array]] = deque(maxlen=TRANSIENT_SETTINGS.max_stored_returns)
         """Times, in tau2, and bending moments of the last returns since the last jump."""
         self.elapsed_time = 0.0
-        self.returns = self.steps = self.jump_count = self.attempts = self.next_attempt = 0
-        self.successive_failures = 0
-        """Number of successive failures of Newton's method."""
+        self.returns = self.steps = self.jump_count = 0
         self.unsolved_message = ""
         """Message that no cycle is found near a periodic motion; "" while the search continues."""
 
-    def follow(self, z: Array) -> TransientOutcome:
+    def integrate_to_outcome(self, z: Array) -> TransientOutcome:
         """Outcome of the motion from the state z, (unknowns,)."""
         z = self._state_after_fast_decay(z)
         is_first_run = True
         while self.returns < self.max_returns and self.steps < self.max_steps and not self.unsolved_message:
             report(lambda: SolvePosition(f"{self.returns} of at most {self.max_returns} returns of the tip"))
-            returns = classified_run_length(is_first_run, self.max_returns - self.returns)
+            returns = return_count_of_classified_run(is_first_run, self.max_returns - self.returns)
             run = self._run_of_returns(z, returns, is_first_run)
             if failure := run_failure(self.system, run, self.returns):
                 status = CycleStatus.left_the_model if failure.left_the_model else CycleStatus.failed
-                return self._result(status, failure.message)
+                return self._outcome(status, failure.message)
             z = run.states[-1]
-            times, states = section_crossings(self.system, run)
+            times, states = poincare_section_crossings(self.system, run)
             self._record_returns(run, times, states)
             # An unstable rod is excluded, because rounding errors exceed the growth of so small a motion.
-            if self.straight.stable is not False and np.linalg.norm(z) < RETURN_SETTINGS.max_straight_norm:
-                return self._result(CycleStatus.straight, "the motion has decayed to rounding error")
-            if self.straight.stable is False and not self._bends_beyond_rounding(z):
-                if self.record or self.jump_count >= TRANSIENT_SETTINGS.max_jumps:
+            has_decayed = np.linalg.norm(z) < RETURN_SETTINGS.max_state_norm_of_straight_rod
+            if self.straight.is_stable is not False and has_decayed:
+                return self._outcome(CycleStatus.straight, "the motion has decayed to rounding error")
+            if self.straight.is_stable is False and not self._bends_beyond_rounding(z):
+                if self.record or self.jump_count >= TRANSIENT_SETTINGS.max_state_jumps:
                     break
                 # The rod is unstable, but the state has no component along the growing mode beyond rounding.
-                z = self._state_after_jump(self.leading_mode.state(TRANSIENT_SETTINGS.restart_deflection))
+                z = self._state_after_jump(self.leading_mode.state(TRANSIENT_SETTINGS.restart_tip_y))
                 continue
             is_first = is_first_run
             is_first_run = False
-            if is_too_short(times) or (is_first and self.amplitude_equation.is_slow_mode(times, states)):
-                continue
-            continues = self.record is not None and self.record.needs_more_motion(z)
-            if not (is_first or continues) and self.amplitude_equation.decays_at_linear_rate(times, states):
-                return self._result(CycleStatus.straight, "the motion decays at the rate of the leading mode")
-            may_jump = not is_first and self.jump_count < TRANSIENT_SETTINGS.max_jumps
-            factor = self.amplitude_equation.factor_to_cycle(times, states) if may_jump else None
-            if factor is not None:
-                if not self.record or self.record.is_full:  # a motion with a stored path has no jumps
-                    z = self._state_after_jump(scaled_state(self.system, z, factor))
-                continue
-            decays = self.amplitude_equation.decays_no_slower_than_mode(times, states)
-            cycle = None if decays else self._cycle_from_returns(run)
-            if cycle is not None:
-                return self._result(*cycle.verdict(self.accuracy), cycle)
+            if not has_too_few_returns(times):
+                outcome, z = self._outcome_or_next_state(run, times, states, is_first)
+                if outcome is not None:
+                    return outcome
         if (cycle := self._cycle_at_slow_limit(z)) is not None:
-            return self._result(*cycle.verdict(self.accuracy), cycle)
-        return self._result(CycleStatus.not_settled, self._not_settled_text(z))
+            return self._outcome(*cycle.status_and_message(self.search.accuracy), cycle)
+        return self._outcome(CycleStatus.not_settled, self._not_settled_text(z))
+
+    def _outcome_or_next_state(
+        self, run: Trajectory, times: Array, states: Array, is_first: bool
+    ) -> tuple[TransientOutcome | None, Array]:
+        """Returns (outcome after `run`, None while it is unknown; state from which the motion continues,
+        (unknowns,)). times, states: times and states of the returns, (k,) and (k, unknowns). is_first:
+        whether the run is the first of the motion."""
+        z = run.states[-1]
+        equation = self.amplitude_equation
+        if is_first and equation.is_slow_mode(times, states):
+            return None, z
+        continues = self.record is not None and self.record.needs_more_motion(z)
+        if not (is_first or continues) and equation.decays_at_linear_rate(times, states):
+            return self._outcome(CycleStatus.straight, "the motion decays at the rate of the leading mode"), z
+        may_jump = not is_first and self.jump_count < TRANSIENT_SETTINGS.max_state_jumps
+        factor = equation.scaling_factor_to_cycle(times, states) if may_jump else None
+        if factor is not None:
+            if not self.record or self.record.is_full:  # a motion with a stored path has no jumps
+                z = self._state_after_jump(state_with_scaled_deflection(self.system, z, factor))
+            return None, z
+        cycle = None if equation.decays_no_slower_than_mode(times, states) else self._cycle_from_returns(run)
+        if cycle is None:
+            return None, z
+        return self._outcome(*cycle.status_and_message(self.search.accuracy), cycle), z
 
     def _cycle_at_slow_limit(self, z: Array) -> RefinedCycle | None:
         """The stable cycle that a slow motion, now at the state z, (unknowns,), approaches; None if none."""
-        factor = self.amplitude_equation.factor_to_slow_limit(self.past_returns)
+        factor = self.amplitude_equation.scaling_factor_to_slow_limit(self.past_returns)
         if factor is None or self.record or self.unsolved_message:
             return None
-        start = scaled_state(self.system, z, factor)
+        start = state_with_scaled_deflection(self.system, z, factor)
         start = relax_fast_components(self.system, start, self.leading_mode.period)
         run = self._run_of_returns(start, TRANSIENT_SETTINGS.returns_per_run)
-        times, _ = section_crossings(self.system, run)
+        times, _ = poincare_section_crossings(self.system, run)
         if len(times) < 2 or run_failure(self.system, run, self.returns):
             return None
         return self._cycle_near(run, float(times[-1] - times[-2]), 1)
@@ -171,14 +178,14 @@ class TransientIntegration:
         if self._bends_beyond_rounding(z):
             limit_text = f", at the maximum of {self.steps} time steps" * (self.steps >= self.max_steps)
             return no_period_text(self.returns, limit_text, self.past_returns)
-        is_unstable = self.straight.stable is False
+        is_unstable = self.straight.is_stable is False
         reason = "the straight rod is unstable" if is_unstable else "the stretch of the rod has not relaxed"
         return f"the deflection has decayed after {self.returns} returns, but {reason}"
 
     def _bends_beyond_rounding(self, z: Array) -> bool:
         """Whether the bending and shear components of the state z, (unknowns,), exceed rounding errors."""
         size = np.linalg.norm(self.system.layout.transverse_unknowns(z))
-        return bool(size >= RETURN_SETTINGS.max_straight_norm)
+        return bool(size >= RETURN_SETTINGS.max_state_norm_of_straight_rod)
 
     def _state_after_fast_decay(self, z: Array) -> Array:
         """The state, (unknowns,), after the fast decay from z, (unknowns,); a record begins at z."""
@@ -186,21 +193,23 @@ class TransientIntegration:
         shortening = settings.stored_relaxation_shortening if self.record else 1.0
         relaxed_state = relax_fast_components(self.system, z, period, shortening)
         if self.record:
-            self.elapsed_time = settings.relaxation_duration_ratio * period / shortening
+            self.elapsed_time = settings.relaxation_duration_over_period * period / shortening
             self.record.begin_with_relaxation(z, relaxed_state, self.elapsed_time)
         return relaxed_state
 
-    def _result(self, status: CycleStatus, text: str, cycle: RefinedCycle | None = None) -> TransientOutcome:
+    def _outcome(self, status: CycleStatus, text: str, cycle: RefinedCycle | None = None) -> TransientOutcome:
         return TransientOutcome(status, text, self.returns, cycle)
 
     def _run_of_returns(self, z: Array, returns: int, first: bool = False) -> Trajectory:
-        """A run from the state z, (unknowns,), over `returns` returns, of at most `max_run_duration_ratio`
-        times their expected time. first: whether the run is the first of the motion."""
+        """A run from the state z, (unknowns,), over `returns` returns, of at most
+        `max_actual_to_expected_run_duration` times their expected time. first: whether the run is the first
+        of the motion."""
         scheme = self.first_scheme if first else self.scheme
-        limit = return_limit(tip_angle_row(self.system), z, returns)
+        limit = run_limit_by_returns(tip_angle_row(self.system), z, returns)
         # A slow-fast cycle may take many time constants of a leading mode that does not oscillate.
         last = self.past_returns[-1][0] - self.past_returns[-2][0] if len(self.past_returns) > 1 else 0.0
-        duration = TRANSIENT_SETTINGS.max_run_duration_ratio * returns * max(self.leading_mode.period, last)
+        max_ratio = TRANSIENT_SETTINGS.max_actual_to_expected_run_duration
+        duration = max_ratio * returns * max(self.leading_mode.period, last)
         run = integrator(self.system.mesh, scheme).run(self.system, z, duration, self.step, limit)
         if len(run.times) > 2:
             self.step = run.times[-1] - run.times[-2]
@@ -210,22 +219,20 @@ class TransientIntegration:
 
     def _cycle_from_returns(self, run: Trajectory) -> RefinedCycle | None:
         """The stable cycle near the end of a run, if the returns repeat and Newton's method converges;
-        otherwise, or before the next attempt is due, None. The number of returns between attempts doubles
-        with each attempt. After too many failures near a periodic motion, sets `unsolved_message`."""
-        states = [state for _, state in self.past_returns]
-        count, distance = recurrence(states[-1 - RETURN_SETTINGS.max_returns_per_period :])
-        often_failed = self.successive_failures >= TRANSIENT_SETTINGS.max_successive_failures
-        if often_failed and distance < TRANSIENT_SETTINGS.max_periodic_distance:
+        otherwise, or before the next attempt is due, None. After too many failures near a periodic motion,
+        sets `unsolved_message`."""
+        states = [state for _, state in self.past_returns][-1 - RETURN_SETTINGS.max_returns_per_period :]
+        count, distance = returns_per_period_and_distance(states)
+        often_failed = self.search.successive_failures >= TRANSIENT_SETTINGS.max_successive_newton_failures
+        if often_failed and distance < TRANSIENT_SETTINGS.max_return_distance_if_periodic:
             repeats_text = f"the motion repeats within {distance:.0e}, but Newton's method"
             self.unsolved_message = f"{repeats_text} finds no cycle near this motion on finer meshes"
             return None
-        limit = TRANSIENT_SETTINGS.max_newton_distance / TRANSIENT_SETTINGS.distance_divisor**self.attempts
-        if self.record and self.returns < self.max_returns // 2:  # the motion may settle
-            limit = min(limit, TRANSIENT_SETTINGS.max_newton_distance_with_path)
-        if distance >= limit or self.returns < self.next_attempt:
+        may_settle = self.record is not None and self.returns < self.max_returns // 2
+        is_far = distance >= self.search.max_return_distance(may_settle)
+        if is_far or self.returns < self.search.min_returns:
             return None
-        self.next_attempt = self.returns + TRANSIENT_SETTINGS.returns_per_run * 2**self.attempts
-        self.attempts = min(self.attempts + 1, TRANSIENT_SETTINGS.max_counted_attempts)
+        self.search.count_attempt(self.returns)
         return self._cycle_near(run, self.past_returns[-1][0] - self.past_returns[-1 - count][0], count)
 
     def _cycle_near(self, run: Trajectory, period: float, return_count: int) -> RefinedCycle | None:
@@ -234,17 +241,7 @@ class TransientIntegration:
         if run.times[-1] < period:
             start = run.states[-1]
             run = integrator(self.system.mesh, self.scheme).run(self.system, start, period, self.step)
-            if run.ending != EndReason.reached:
+            if run.end_reason != EndReason.reached:
                 return None
         orbit = orbit_from_motion(self.system, self.form, run, period, return_count)
-        try:
-            cycle = refined_cycle(orbit, self.accuracy, self.workspace, self.tangent_parameter)
-        except Unsolvable:
-            self.successive_failures += 1
-            return None
-        self.successive_failures = 0
-        if cycle.stable is False:
-            self.unstable_cycle = cycle
-        # If the largest multiplier is 1 to rounding error, periodic orbits of any amplitude form a family.
-        is_isolated = 1 - cycle.largest_multiplier >= TRANSIENT_SETTINGS.min_unit_circle_distance
-        return cycle if cycle.stable and is_isolated else None
+        return self.search.stable_cycle_near(orbit)

@@ -11,9 +11,9 @@ class TransientSettings:
 
     returns_per_run: int = 5
     """Number of returns of the tip in one run, after which the motion is classified."""
-    first_steps_per_period: int = 1000
+    first_time_steps_per_period: int = 1000
     """Period of the leading mode divided by the first time step of a motion."""
-    max_run_duration_ratio: int = 3
+    max_actual_to_expected_run_duration: int = 3
     """Longest duration of a run divided by the number of returns and by the expected time per return: the
     period of the leading mode, or the time between the last two returns if it is longer."""
     returns_in_first_run: int = 3
@@ -22,19 +22,19 @@ class TransientSettings:
     min_returns_per_run: int = 3
     """Smallest number of returns of a run after which the motion is classified. The last run takes up to this
     number minus 1 further returns, since they could not be classified in a run of their own."""
-    max_newton_distance: float = 0.1
+    max_return_distance_for_newton: float = 0.1
     """Relative distance between two returns, below which Newton's method starts."""
-    distance_divisor: int = 10
-    """After each attempt of Newton's method, `max_newton_distance` is divided by this number."""
-    max_newton_distance_with_path: float = 1e-3
-    """Upper limit of `max_newton_distance` for a motion with a stored path, in the first half of the allowed
-    returns, so that the path shows how the motion settles."""
-    max_counted_attempts: int = 5
+    return_distance_divisor_per_attempt: int = 10
+    """After each attempt of Newton's method, `max_return_distance_for_newton` is divided by this number."""
+    max_return_distance_with_stored_path: float = 1e-3
+    """Upper limit of `max_return_distance_for_newton` for a motion with a stored path, in the first half of
+    the allowed returns, so that the path shows how the motion settles."""
+    max_counted_newton_attempts: int = 5
     """Each attempt of Newton's method, up to this number of attempts, decreases the distance at which
     Newton's method starts, and doubles the number of returns before the next attempt."""
-    max_jumps: int = 60
+    max_state_jumps: int = 60
     """Maximum number of jumps of a motion, to a scaled state or to a restart."""
-    restart_deflection: float = 1e-3
+    restart_tip_y: float = 1e-3
     """Tip's y, in L, at a restart in the leading mode; the relative nonlinear change of the growth rate is
     about the square of this number."""
     min_unit_circle_distance: float = 3e-8
@@ -42,10 +42,10 @@ class TransientSettings:
     orbits with any amplitude; mu: largest nontrivial multiplier."""
     max_stored_returns: int = 400
     """Number of last returns that are stored for the recognition of a torus."""
-    max_periodic_distance: float = 1e-4
+    max_return_distance_if_periodic: float = 1e-4
     """Relative distance between two returns, below which a motion is periodic. Periodic
     motions, integrated with a tolerance of 1e-5, return to within 1e-6 to 1e-4."""
-    max_successive_failures: int = 4
+    max_successive_newton_failures: int = 4
     """The integration of a periodic motion ends after this number of successive failures of Newton's method:
     further starts would fail in the same way."""
     min_returns_for_max_steps: int = 100

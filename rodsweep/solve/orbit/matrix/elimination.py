@@ -17,8 +17,8 @@ import numpy as np
 
 from ....arrays import Array
 from ....discretization.plane_equations import write_jacobian
-from ....model.compiled.compilation import compiled_for_vectors
-from ...backend.products import square_product
+from ....model.compiled.compilation import compiled_with_reordered_sums
+from ...backend.products import square_matrix_product
 from ..equations import OrbitEquations
 from .inversion import INVERSION_SETTINGS, invert_matrix
 from .substitution import map_start_to_end, reduce_right_sides
@@ -27,12 +27,12 @@ from .workspace import (
     INTERVAL_MAP,
     SECOND_STAGE,
     NewtonFactors,
-    stage_block,
-    start_block,
+    stage_block_index,
+    start_block_index,
 )
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def eliminate_newton_matrix(
     points: Array, V: Array, duration: float, p: OrbitEquations, factors: NewtonFactors, columns: Array
 ) -> Array:
@@ -50,37 +50,39 @@ def eliminate_newton_matrix(
     right_matrices = np.empty((s, n, n))
     parts = np.empty((5, n, n))
     # M times the product of the maps so far, which is the identity before the first interval.
-    so_far = np.diag(p.mass)
+    so_far = np.diag(p.mass_diagonal)
     ends = np.zeros(columns.shape[2:])
     for k in range(K):
         B = factors.eliminated_blocks[k]
-        h = duration * p.interval_lengths[k]
+        h = duration * p.time_interval_lengths[k]
         for i in range(s):
-            diagonal = B[i] if i < 2 else B[stage_block(i, i, s)]
+            diagonal = B[i] if i < 2 else B[stage_block_index(i, i, s)]
             write_jacobian(points[1 + k * s + i], V[k, i], diagonal, tip, p.rod, p.node_matrices)
             for r in range(n):
                 for q in range(n):
                     # Diagonal block d_ii M - h F'. Column 0 of d is for the start of the interval, so stage i
                     # has the column i + 1.
                     diagonal[r, q] *= -h
-                diagonal[r, r] += p.stage_differentiation[i, i + 1] * p.mass[r]
+                diagonal[r, r] += p.stage_differentiation_matrix[i, i + 1] * p.mass_diagonal[r]
         _eliminate_interval(B, right_matrices, parts, p)
         # The effect of the start on the end and on the later stages is stored for `substitute_stages`.
-        square_product(B[stage_block(s - 1, s - 1, s)], right_matrices[s - 1], B[INTERVAL_MAP], 1.0, 0.0)
+        square_matrix_product(
+            B[stage_block_index(s - 1, s - 1, s)], right_matrices[s - 1], B[INTERVAL_MAP], 1.0, 0.0
+        )
         for a in range(2, s - 1):
-            B[start_block(a)] = right_matrices[a]
+            B[start_block_index(a)] = right_matrices[a]
         reduce_right_sides(B, columns[k], p)
         map_start_to_end(B, columns[k], p, ends)
         # `right` was computed for x_0 = M^-1, so that B[INTERVAL_MAP] acts on M x_0: M is between the maps of
         # two intervals.
-        square_product(B[INTERVAL_MAP], so_far, factors.propagator, 1.0, 0.0)
+        square_matrix_product(B[INTERVAL_MAP], so_far, factors.propagator, 1.0, 0.0)
         for r in range(n):
             for q in range(n):
-                so_far[r, q] = p.mass[r] * factors.propagator[r, q]
+                so_far[r, q] = p.mass_diagonal[r] * factors.propagator[r, q]
     return ends
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def _eliminate_interval(B: Array, right_matrices: Array, parts: Array, p: OrbitEquations) -> None:
     """Eliminates the blocks B of one interval, (blocks, n, n), whose diagonal blocks are given. p: equations.
 
@@ -92,8 +94,8 @@ def _eliminate_interval(B: Array, right_matrices: Array, parts: Array, p: OrbitE
     pivots = np.empty(n, np.int64)
     rows = np.empty((n, INVERSION_SETTINGS.panel_width))
     end = np.empty((n, n))
-    d = p.stage_differentiation
-    mass = p.mass
+    d = p.stage_differentiation_matrix
+    mass = p.mass_diagonal
     Z = parts[0]
     invert_matrix(B[FIRST_STAGE], pivots, rows)
     # Schur complement of the second stage. It needs no product of matrices, because both off-diagonal blocks
@@ -106,17 +108,19 @@ def _eliminate_interval(B: Array, right_matrices: Array, parts: Array, p: OrbitE
     invert_matrix(B[SECOND_STAGE], pivots, rows)
     _eliminate_first_two_stages(B, right_matrices, parts, p)
     for a in range(2, s):
-        pivot = B[stage_block(a, a, s)]
+        pivot = B[stage_block_index(a, a, s)]
         invert_matrix(pivot, pivots, rows)
         for i in range(a + 1, s):
-            square_product(B[stage_block(i, a, s)], pivot, end, 1.0, 0.0)
-            B[stage_block(i, a, s)] = end
+            square_matrix_product(B[stage_block_index(i, a, s)], pivot, end, 1.0, 0.0)
+            B[stage_block_index(i, a, s)] = end
             for j in range(a + 1, s):
-                square_product(end, B[stage_block(a, j, s)], B[stage_block(i, j, s)], -1.0, 1.0)
-            square_product(end, right_matrices[a], right_matrices[i], -1.0, 1.0)
+                square_matrix_product(
+                    end, B[stage_block_index(a, j, s)], B[stage_block_index(i, j, s)], -1.0, 1.0
+                )
+            square_matrix_product(end, right_matrices[a], right_matrices[i], -1.0, 1.0)
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def _eliminate_first_two_stages(B: Array, right_matrices: Array, parts: Array, p: OrbitEquations) -> None:
     """Eliminates the first two stages: computes the blocks of all later stages in B, (blocks, n, n), and
     their matrices in `right_matrices` (see `_eliminate_interval`). p: equations.
@@ -126,8 +130,8 @@ def _eliminate_first_two_stages(B: Array, right_matrices: Array, parts: Array, p
     """
     s = len(right_matrices)
     n = B.shape[2]
-    d = p.stage_differentiation
-    mass = p.mass
+    d = p.stage_differentiation_matrix
+    mass = p.mass_diagonal
     # For x_0 = M^-1 the columns of `right` have the factor -1 instead of M.
     minus = -np.ones(n)
     Z = parts[0]
@@ -136,14 +140,14 @@ def _eliminate_first_two_stages(B: Array, right_matrices: Array, parts: Array, p
     for r in range(n):
         for q in range(n):
             W[r, q] = mass[r] * B[SECOND_STAGE, r, q]
-    square_product(Z, W, ZW, 1.0, 0.0)
-    square_product(W, Z, parts[3], 1.0, 0.0)
-    square_product(ZW, Z, parts[4], 1.0, 0.0)
+    square_matrix_product(Z, W, ZW, 1.0, 0.0)
+    square_matrix_product(W, Z, parts[3], 1.0, 0.0)
+    square_matrix_product(ZW, Z, parts[4], 1.0, 0.0)
     for i in range(2, s):
         right_matrices[i] = 0.0
         for j in range(2, s):
             if i != j:
-                B[stage_block(i, j, s)] = 0.0
+                B[stage_block_index(i, j, s)] = 0.0
     # A group of rows stays in the cache while all later stages use it.
     for first in range(0, n, INVERSION_SETTINGS.rows_in_cache):
         last = min(n, first + INVERSION_SETTINGS.rows_in_cache)
@@ -151,16 +155,16 @@ def _eliminate_first_two_stages(B: Array, right_matrices: Array, parts: Array, p
             _subtract_first_stage_terms(right_matrices[i], parts, (i, 0), (first, last), d, minus)
             for j in range(2, s):
                 _subtract_first_stage_terms(
-                    B[stage_block(i, j, s)], parts, (i, j + 1), (first, last), d, mass
+                    B[stage_block_index(i, j, s)], parts, (i, j + 1), (first, last), d, mass
                 )
     for i in range(2, s):
         for r in range(n):
             right_matrices[i, r, r] -= d[i, 0]
             for j in range(2, s):
-                B[stage_block(i, j, s), r, r] += d[i, j + 1] * mass[r] if i != j else 0.0
+                B[stage_block_index(i, j, s), r, r] += d[i, j + 1] * mass[r] if i != j else 0.0
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def _subtract_first_stage_terms(
     out: Array, parts: Array, place: tuple[int, int], rows: tuple[int, int], d: Array, scale: Array
 ) -> None:

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ....arrays import Array
-from ....model.compiled.compilation import compiled_for_vectors
+from ....model.compiled.compilation import compiled_with_reordered_sums
 from ....model.compiled.kernel_constants import KernelConstants
 from ...backend.products import matrix_product
 
@@ -26,12 +26,13 @@ class InversionSettings(KernelConstants):
     """Number of rows of all blocks that are updated together, so that these rows fit into the first-level
     cache."""
     field_ranges: ClassVar = {"min_pivot_ratio": (0.0, 1.0)}
+    """Exclusive bounds (lower, upper) of settings by name, as in `KernelConstants`."""
 
 
 INVERSION_SETTINGS = InversionSettings()
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def invert_matrix(A: Array, pivots: Any, rows: Array) -> None:
     """Replaces A by A^-1 with Gauss-Jordan elimination and partial pivoting, a panel of columns at a time.
 
@@ -70,7 +71,7 @@ def invert_matrix(A: Array, pivots: Any, rows: Array) -> None:
                 A[k, i], A[p, i] = A[p, i], A[k, i]
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def _sweep_panel(A: Array, first: int, last: int, pivots: Any) -> None:
     """Gauss-Jordan steps on A, (n, n), with the pivot columns `first` to `last` - 1, applied in place to
     these columns only. pivots: output, index of the column exchanged with each column, (n,)."""

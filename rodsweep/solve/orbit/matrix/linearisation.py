@@ -12,23 +12,29 @@ from ....arrays import Array, Complex
 from ....discretization.nodal_rod import NO_JUMP_DERIVATIVE, NodalRodDerivative
 from ....discretization.state_layout import SE2_DIMENSION
 from ....discretization.stress.form import StressForm
-from ....model.compiled.compilation import compiled_for_vectors
+from ....model.compiled.compilation import compiled_with_reordered_sums
 from ..equations import OrbitEquations
 from ..orbit import Orbit
 from .elimination import eliminate_newton_matrix
 from .inversion import INVERSION_SETTINGS, invert_matrix
-from .multipliers import multipliers_over_period, multipliers_over_solved_part
-from .phase import phase_residual, phase_right_side, write_phase_row
-from .right_sides import ParameterDerivatives, write_right_sides, write_stage_residuals, write_variation_sides
+from .multipliers import multipliers_over_period, multipliers_over_solved_time_interval
+from .phase_condition import phase_residual, phase_right_side, write_phase_row
+from .right_sides import (
+    ParameterDerivatives,
+    write_right_sides,
+    write_right_sides_of_variations,
+    write_stage_residuals,
+)
 from .substitution import map_start_to_end, reduce_right_sides, substitute_stages
 from .workspace import FactorStorage, NewtonFactors, NewtonWorkspace
 
-NO_PARAMETER_CHANGE = NodalRodDerivative(np.zeros(0), *(np.zeros((0, 0)),) * 3, NO_JUMP_DERIVATIVE)
+NO_ROD_DERIVATIVE = NodalRodDerivative(np.zeros(0), *(np.zeros((0, 0)),) * 3, NO_JUMP_DERIVATIVE)
 """Placeholder for the derivative of a rod if there is no parameter; compiled code never reads it."""
 
 
 class Linearisation:
-    """Newton's matrix at an orbit. `correction` works until another matrix is assembled in its workspace.
+    """Newton's matrix at an orbit. `newton_step_at_nearby_orbit` works until another matrix is assembled in
+    its workspace.
 
     step: Newton's step at the orbit, (N,). tangent: derivative of the orbit values with respect to the
     coordinate of the parameter `parameter_name`, (N,); None if no parameter was given.
@@ -43,7 +49,7 @@ class Linearisation:
         p = orbit.orbit_equations
         factors = self._memory.factors
         derivatives = (
-            ParameterDerivatives(NO_PARAMETER_CHANGE, p.mass)
+            ParameterDerivatives(NO_ROD_DERIVATIVE, p.mass_diagonal)
             if parameter_name is None
             else parameter_derivatives(orbit.form, parameter_name)
         )
@@ -54,7 +60,7 @@ class Linearisation:
         self.step = steps[0]
         self.tangent = None if parameter_name is None else steps[1]
 
-    def correction(self, orbit: Orbit) -> Array:
+    def newton_step_at_nearby_orbit(self, orbit: Orbit) -> Array:
         """Newton's step, (N,), at the nearby `orbit`; raises RuntimeError if the factors were overwritten."""
         step: Array = newton_step_with_factors(
             orbit.values, self._period_derivative, orbit.orbit_equations, self._memory.factors
@@ -62,30 +68,26 @@ class Linearisation:
         return step
 
     @cached_property
-    def multipliers_over_solved_part(self) -> Complex:
+    def multipliers_over_solved_time_interval(self) -> Complex:
         """Multipliers over the solved part of the period, (multipliers,). Another matrix in the same
         workspace does not change them."""
-        return multipliers_over_solved_part(self._memory.propagator, self.orbit)
+        return multipliers_over_solved_time_interval(self._memory.propagator, self.orbit)
 
     def multipliers(self) -> Complex:
         """Floquet multipliers larger than rounding error, by descending modulus, (multipliers,), with the
         trivial multiplier."""
-        return multipliers_over_period(self.multipliers_over_solved_part, self.orbit)
+        return multipliers_over_period(self.multipliers_over_solved_time_interval, self.orbit)
 
 
 def parameter_derivatives(form: StressForm, name: str) -> ParameterDerivatives:
     """Derivatives of the rod and of its mass, (n,), with respect to the coordinate of parameter `name`."""
-    change = form.parameter_derivative(name)
+    change = form.nodal_rod_parameter_derivative(name)
     return ParameterDerivatives(change, form.mass_diagonal_of(change))
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def eliminate_and_solve_at_orbit(
-    values: Array,
-    count: int,
-    derivatives: ParameterDerivatives,
-    p: OrbitEquations,
-    factors: NewtonFactors,
+    values: Array, count: int, derivatives: ParameterDerivatives, p: OrbitEquations, factors: NewtonFactors
 ) -> tuple[Array, Array]:
     """Eliminates Newton's matrix at the orbit with the given `values`, (N,), and writes it into `factors`.
 
@@ -94,22 +96,22 @@ def eliminate_and_solve_at_orbit(
     stage residuals with respect to the period, (K, s, n). count: 2 or 3. p: equations of the orbit.
     """
     K = len(factors.eliminated_blocks)
-    s = len(p.stage_differentiation)
-    n = len(p.mass)
+    s = len(p.stage_differentiation_matrix)
+    n = len(p.mass_diagonal)
     points = values[:-1].reshape(1 + K * s, n)
-    duration = values[-1] / p.period_parts
-    V = np.empty((K, s, SE2_DIMENSION, len(p.node_matrices.weights)))
+    duration = values[-1] / p.solved_parts_per_period
+    V = np.empty((K, s, SE2_DIMENSION, len(p.node_matrices.quadrature_weights)))
     columns = np.empty((K, s, count, n))
     write_right_sides(points, duration, p, derivatives, V, columns)
     ends = eliminate_newton_matrix(points, V, duration, p, factors, columns)
-    inverse = factors.closing_inverse
+    inverse = factors.closing_matrix_inverse
     inverse[:, :] = 0.0
     inverse[:n, :n] = factors.propagator
     for i in range(n):
         # System of the closing condition, (P - S) dx(0) + (dx(T/p)/dT) dT = jump, and of the phase condition.
         inverse[i, n] = ends[0, i]
         for j in range(n):
-            inverse[i, j] -= p.symmetry[i, j]
+            inverse[i, j] -= p.symmetry_matrix[i, j]
     write_phase_row(points[0], p.rod, p.node_matrices, inverse[n, :n])
     invert_matrix(inverse, np.empty(n + 1, np.int64), np.empty((n + 1, INVERSION_SETTINGS.panel_width)))
     right_sides = np.zeros((count - 1, n + 1))
@@ -119,29 +121,25 @@ def eliminate_and_solve_at_orbit(
     right_sides[0, :n] += closing_residual(points, p)
     right_sides[0, n] = -phase_residual(points[0], p.rod, p.node_matrices)
     if count > 2:
-        right_sides[1, n] = phase_right_side(points[0], derivatives.change, p.rod, p.node_matrices)
+        right_sides[1, n] = phase_right_side(points[0], derivatives.rod_derivative, p.rod, p.node_matrices)
     # A contiguous copy: later corrections at nearby orbits need only this column.
     period_derivative = columns[:, :, 0].copy()
     return orbit_increments(right_sides, period_derivative, columns[:, :, 1:], p, factors), period_derivative
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def closing_residual(points: Array, p: OrbitEquations) -> Array:
     """Residual S x(0) - x(end) of the closing condition, (n,), S: symmetry. points: states, (1 + K s, n)."""
     jump = -points[-1]
     for i in range(len(jump)):
         for j in range(len(jump)):
-            jump[i] += p.symmetry[i, j] * points[0, j]
+            jump[i] += p.symmetry_matrix[i, j] * points[0, j]
     return jump
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def orbit_increments(
-    right_sides: Array,
-    period_derivative: Array,
-    columns: Array,
-    p: OrbitEquations,
-    factors: NewtonFactors,
+    right_sides: Array, period_derivative: Array, columns: Array, p: OrbitEquations, factors: NewtonFactors
 ) -> Array:
     """Increments of the orbit values, (k, N), for k right-hand sides, by the eliminated matrix `factors`.
     right_sides: right-hand sides of closing and phase conditions, (k, n + 1). columns: reduced right-hand
@@ -153,7 +151,7 @@ def orbit_increments(
         for i in range(n + 1):
             total = 0.0
             for j in range(n + 1):
-                total += factors.closing_inverse[i, j] * right_sides[m, j]
+                total += factors.closing_matrix_inverse[i, j] * right_sides[m, j]
             increments[m, i] = total
     end_increments = np.empty((K, s, count, n))
     out = np.empty((K, s, count, n))
@@ -177,13 +175,9 @@ def orbit_increments(
     return steps
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def reduced_residuals(
-    points: Array,
-    duration: float,
-    rod: OrbitEquations,
-    p: OrbitEquations,
-    factors: NewtonFactors,
+    points: Array, duration: float, rod: OrbitEquations, p: OrbitEquations, factors: NewtonFactors
 ) -> tuple[Array, Array]:
     """Residuals of `points`, (1 + K s, n), with the equations `rod`, reduced by a matrix of a nearby rod `p`.
     duration: total length of the intervals, in tau2.
@@ -192,8 +186,8 @@ def reduced_residuals(
     last interval for a fixed start, (1, n).
     """
     K = len(factors.eliminated_blocks)
-    s = len(p.stage_differentiation)
-    n = len(p.mass)
+    s = len(p.stage_differentiation_matrix)
+    n = len(p.mass_diagonal)
     columns = np.empty((K, s, 1, n))
     ends = np.zeros((1, n))
     write_stage_residuals(points, duration, rod, columns[:, :, 0])
@@ -203,7 +197,7 @@ def reduced_residuals(
     return columns, ends
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def reduced_stage_residual_variations(
     values: Array,
     rod: OrbitEquations,
@@ -212,26 +206,26 @@ def reduced_stage_residual_variations(
     p: OrbitEquations,
     factors: NewtonFactors,
 ) -> tuple[Array, Array]:
-    """The right-hand sides of `write_variation_sides` with the equations `rod`, reduced by a matrix of
-    a nearby rod `p`.
+    """The right-hand sides of `write_right_sides_of_variations` with the equations `rod`, reduced by a matrix
+    of a nearby rod `p`.
 
     Returns (columns, ends): reduced right-hand sides for m `variations`, (K, s, m, n), and increments of
     the state at the end of the last interval for a fixed start, (m, n).
     """
     K = len(factors.eliminated_blocks)
-    s = len(p.stage_differentiation)
-    n = len(p.mass)
+    s = len(p.stage_differentiation_matrix)
+    n = len(p.mass_diagonal)
     m = len(variations)
     columns = np.empty((K, s, m, n))
     ends = np.zeros((m, n))
-    write_variation_sides(values, rod, derivatives, variations, columns)
+    write_right_sides_of_variations(values, rod, derivatives, variations, columns)
     for k in range(K):
         reduce_right_sides(factors.eliminated_blocks[k], columns[k], p)
         map_start_to_end(factors.eliminated_blocks[k], columns[k], p, ends)
     return columns, ends
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def newton_step_with_factors(
     values: Array, period_derivative: Array, p: OrbitEquations, factors: NewtonFactors
 ) -> Array:
@@ -239,7 +233,7 @@ def newton_step_with_factors(
     period_derivative: from `eliminate_and_solve_at_orbit` at a nearby orbit."""
     K, s, n = period_derivative.shape
     points = values[:-1].reshape(1 + K * s, n)
-    duration = values[-1] / p.period_parts
+    duration = values[-1] / p.solved_parts_per_period
     columns, ends = reduced_residuals(points, duration, p, p, factors)
     right_sides = np.empty((1, n + 1))
     # The residuals of the stages move the end, too; this change is subtracted from the jump.

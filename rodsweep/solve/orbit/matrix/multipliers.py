@@ -13,7 +13,7 @@ import numpy as np
 
 from ....arrays import Array, Complex
 from ....determinant.exponents import EXPONENT_SETTINGS
-from ....model.compiled.compilation import compiled_for_vectors
+from ....model.compiled.compilation import compiled_with_reordered_sums
 from ...backend.small_eigenvalues import small_matrix_eigenvalues
 from ..orbit import Orbit
 
@@ -36,7 +36,7 @@ def nonzero_eigenvalues(A: Array) -> Complex:
 
     Raises LinAlgError if A has entries that are not finite.
     """
-    eigenvalues: Complex = _eigenvalues_by_rank(
+    eigenvalues: Complex = _eigenvalues_of_compressed_matrix(
         np.ascontiguousarray(A), FLOQUET_MULTIPLIER_SETTINGS.negligible_column_ratio
     )
     if not len(eigenvalues):
@@ -44,7 +44,7 @@ def nonzero_eigenvalues(A: Array) -> Complex:
     return eigenvalues
 
 
-def multipliers_over_solved_part(propagator: Array, orbit: Orbit) -> Complex:
+def multipliers_over_solved_time_interval(propagator: Array, orbit: Orbit) -> Complex:
     """Nonzero eigenvalues, (rank,), of the map S^-1 P over the solved part of the period, S: symmetry.
     propagator: P, (n, n). Raises LinAlgError as `nonzero_eigenvalues`."""
     return nonzero_eigenvalues(orbit.symmetry.apply_inverse_to_flow(propagator, orbit.form.layout))
@@ -53,13 +53,13 @@ def multipliers_over_solved_part(propagator: Array, orbit: Orbit) -> Complex:
 def multipliers_over_period(solved_multipliers: Complex, orbit: Orbit) -> Complex:
     """Floquet multipliers, (m,), by descending modulus. solved_multipliers: multipliers over the solved part,
     (m,)."""
-    multipliers: Complex = solved_multipliers**orbit.symmetry.period_parts
+    multipliers: Complex = solved_multipliers**orbit.symmetry.solved_parts_per_period
     # Stable, because conjugate multipliers have equal moduli.
     return multipliers[np.argsort(-np.abs(multipliers), kind="stable")]
 
 
-@compiled_for_vectors
-def _eigenvalues_by_rank(A: Array, negligible: float) -> Complex:
+@compiled_with_reordered_sums
+def _eigenvalues_of_compressed_matrix(A: Array, negligible: float) -> Complex:
     """Eigenvalues of `compressed_matrix(A, negligible)`, (rank,); empty, (0,), if A has entries that are not
     finite."""
     compressed = compressed_matrix(A, negligible)
@@ -69,7 +69,7 @@ def _eigenvalues_by_rank(A: Array, negligible: float) -> Complex:
     return small_matrix_eigenvalues(compressed)
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def compressed_matrix(A: Array, negligible: float) -> Array:
     """Matrix R Q, (rank, rank), with the nonzero eigenvalues of A = Q R, (n, n), after small columns are
     neglected.
@@ -89,7 +89,7 @@ def compressed_matrix(A: Array, negligible: float) -> Array:
     return small
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def low_rank_factors(A: Array, negligible: float) -> tuple[Array, Array]:
     """Returns (q, r): vectors, (rank, n) each, with A = sum over i of q_i r_i^T, (n, n), after small columns
     are neglected. negligible: as in `compressed_matrix`."""
@@ -124,7 +124,7 @@ def low_rank_factors(A: Array, negligible: float) -> tuple[Array, Array]:
     return Q[:rank], R[:rank]
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def _subtract_component_along(column: Array, q: Array, r: Array, j: int) -> float:
     """Subtracts from `column`, (n,), in place, its component along the unit vector q, (n,), stores this
     component in r[j], and returns the norm of the remaining column. j: index of the column."""

@@ -24,7 +24,7 @@ from .workspace import INTERVAL_MAP, NewtonFactors
 class ShootingIntervalSettings:
     """Settings for the shooting intervals of an orbit."""
 
-    max_growth: float = 1e7
+    max_flow_map_norm: float = 1e7
     """Largest norm of the map of a shooting interval; a Newton step then has nine correct digits. Stable
     cycles have norms below 1e3 and a single shooting interval."""
     orthogonal_iteration_sweep_count: int = 2
@@ -39,11 +39,11 @@ SHOOTING_INTERVAL_SETTINGS = ShootingIntervalSettings()
 
 @dataclass(frozen=True, eq=False)
 class ShootingIntervals:
-    """The m shooting intervals of an orbit. edges: index of the first time interval of each shooting
-    interval, and the number of time intervals, m + 1 numbers. flow_maps: derivative of the end of each
-    shooting interval with respect to its start, (m, n, n)."""
+    """The m shooting intervals of an orbit. first_time_interval_indices: index of the first time interval of
+    each shooting interval, and the number of time intervals, m + 1 numbers. flow_maps: derivative of the end
+    of each shooting interval with respect to its start, (m, n, n)."""
 
-    edges: tuple[int, ...]
+    first_time_interval_indices: tuple[int, ...]
     flow_maps: Array
 
     def end_increments_for_fixed_starts(
@@ -60,7 +60,7 @@ class ShootingIntervals:
         if len(ends) == 1:
             return end_increments[None]
         columns = np.ascontiguousarray(columns)
-        for end, (first, last) in zip(ends, pairwise(self.edges), strict=True):
+        for end, (first, last) in zip(ends, pairwise(self.first_time_interval_indices), strict=True):
             for k in range(first, last):
                 map_start_to_end(factors.eliminated_blocks[k], columns[k], p, end)
         return ends
@@ -72,7 +72,7 @@ class ShootingIntervals:
         shooting intervals, (m, n). columns: reduced right-hand sides, (K, s, 1, n). factors: eliminated
         matrix. p: equations of the orbit."""
         out = np.empty_like(columns)
-        for start, (first, last) in zip(starts, pairwise(self.edges), strict=True):
+        for start, (first, last) in zip(starts, pairwise(self.first_time_interval_indices), strict=True):
             part = factors._replace(eliminated_blocks=factors.eliminated_blocks[first:last])
             substitute_stages(start[None], columns[first:last], p, part, out[first:last])
         return out
@@ -112,18 +112,20 @@ class ShootingIntervals:
 
 def shooting_intervals_of(factors: NewtonFactors, mass: Array) -> ShootingIntervals:
     """The shooting intervals of an orbit, from its eliminated matrix: a single shooting interval unless the
-    norm of P exceeds `SHOOTING_INTERVAL_SETTINGS.max_growth`. Otherwise a time interval is joined to the
-    current shooting interval if the norm of the joined map is at most this number. mass: diagonal of M,
+    norm of P exceeds `SHOOTING_INTERVAL_SETTINGS.max_flow_map_norm`. Otherwise a time interval is joined to
+    the current shooting interval if the norm of the joined map is at most this number. mass: diagonal of M,
     (n,)."""
     blocks = factors.eliminated_blocks
-    if not np.linalg.norm(factors.propagator) > SHOOTING_INTERVAL_SETTINGS.max_growth:  # also true for nan
+    if (
+        not np.linalg.norm(factors.propagator) > SHOOTING_INTERVAL_SETTINGS.max_flow_map_norm
+    ):  # also true for nan
         return ShootingIntervals((0, len(blocks)), factors.propagator[None])
     firsts = [0]
     # The eliminated map of an interval acts on M x_0, not on x_0.
     maps = [blocks[0, INTERVAL_MAP] * mass]
     for k in range(1, len(blocks)):
         next_map = blocks[k, INTERVAL_MAP] @ (mass[:, None] * maps[-1])
-        if np.linalg.norm(next_map) <= SHOOTING_INTERVAL_SETTINGS.max_growth:
+        if np.linalg.norm(next_map) <= SHOOTING_INTERVAL_SETTINGS.max_flow_map_norm:
             maps[-1] = next_map
         else:
             firsts.append(k)

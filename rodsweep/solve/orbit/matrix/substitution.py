@@ -8,27 +8,27 @@ blocks of the interval, B: (blocks, n, n), one interval's part of `NewtonFactors
 import numpy as np
 
 from ....arrays import Array
-from ....model.compiled.compilation import compiled_for_vectors
+from ....model.compiled.compilation import compiled_with_reordered_sums
 from ..equations import OrbitEquations
 from .workspace import (
     FIRST_STAGE,
     INTERVAL_MAP,
     SECOND_STAGE,
     NewtonFactors,
-    stage_block,
-    start_block,
+    stage_block_index,
+    start_block_index,
 )
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def reduce_right_sides(B: Array, columns: Array, p: OrbitEquations) -> None:
     """Reduces k right-hand sides of one interval, `columns`, (s, k, n), in place. The right-hand sides of the
     first two stages are unchanged. The right-hand side of the last stage becomes the increment of the state
     at the interval's end for a fixed start. B: eliminated blocks of the interval, (blocks, n, n). p:
     equations."""
     s, count, n = columns.shape
-    d = p.stage_differentiation
-    mass = p.mass
+    d = p.stage_differentiation_matrix
+    mass = p.mass_diagonal
     t = np.empty((count, n))
     u = np.empty((count, n))
     _write_first_two_stages(B, columns, p, t, u)
@@ -37,31 +37,31 @@ def reduce_right_sides(B: Array, columns: Array, p: OrbitEquations) -> None:
             for r in range(n):
                 columns[i, m, r] -= mass[r] * (d[i, 1] * t[m, r] + d[i, 2] * u[m, r])
         for a in range(2, i):
-            add_products(B[stage_block(i, a, s)], columns[a], columns[i], -1.0)
+            add_products(B[stage_block_index(i, a, s)], columns[a], columns[i], -1.0)
     # Only the last stage is solved here, because the next interval needs only the end of this interval.
     t[:] = columns[s - 1]
     columns[s - 1] = 0.0
-    add_products(B[stage_block(s - 1, s - 1, s)], t, columns[s - 1], 1.0)
+    add_products(B[stage_block_index(s - 1, s - 1, s)], t, columns[s - 1], 1.0)
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def map_start_to_end(B: Array, columns: Array, p: OrbitEquations, ends: Array) -> None:
     """Replaces `ends`, the increments of the state at the start of an interval, (k, n), by the increments at
     its end. B: eliminated blocks of the interval, (blocks, n, n). columns: reduced right-hand sides of the
     stages, (s, k, n). p: equations."""
     # The eliminated map of an interval acts on M x_0, not on x_0.
-    scaled_ends = ends * p.mass
+    scaled_ends = ends * p.mass_diagonal
     ends[:] = columns[-1]
     add_products(B[INTERVAL_MAP], scaled_ends, ends, 1.0)
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def _write_first_two_stages(B: Array, y: Array, p: OrbitEquations, t: Array, u: Array) -> None:
     """Writes the increments of the first two stages into t and u, (k, n). B: eliminated blocks, (blocks, n,
     n). y: right-hand sides, of which only the first two stages are used, (s, k, n). The increments of later
     stages are taken as 0."""
-    d = p.stage_differentiation
-    mass = p.mass
+    d = p.stage_differentiation_matrix
+    mass = p.mass_diagonal
     (count, n) = t.shape
     side = np.empty((count, n))
     t[:] = 0.0
@@ -78,7 +78,7 @@ def _write_first_two_stages(B: Array, y: Array, p: OrbitEquations, t: Array, u: 
     add_products(B[FIRST_STAGE], side, t, -1.0)
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def add_products(A: Array, x: Array, y: Array, factor: float) -> None:
     """Adds `factor` A x to y, in place, for k columns x; x, y: (k, n), A: (n, n)."""
     count, n = x.shape
@@ -100,7 +100,7 @@ def add_products(A: Array, x: Array, y: Array, factor: float) -> None:
             y[count - 1, i] += factor * total
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def substitute_stages(
     initial_increment: Array, columns: Array, p: OrbitEquations, factors: NewtonFactors, out: Array
 ) -> None:
@@ -112,8 +112,8 @@ def substitute_stages(
     y = np.empty((2, count, n))
     first = initial_increment.copy()
     scaled_increment = np.empty((count, n))
-    d = p.stage_differentiation
-    mass = p.mass
+    d = p.stage_differentiation_matrix
+    mass = p.mass_diagonal
     for k in range(K):
         B = factors.eliminated_blocks[k]
         for m in range(count):
@@ -132,7 +132,7 @@ def substitute_stages(
         first[:] = out[k, s - 1]
 
 
-@compiled_for_vectors
+@compiled_with_reordered_sums
 def _substitute_stage(B: Array, a: int, columns: Array, scaled_increment: Array, out: Array) -> None:
     """Writes the increments of stage a >= 2 into out[a]. B: eliminated blocks, (blocks, n, n). columns:
     reduced right-hand sides, (s, k, n). scaled_increment: M times the increments of the state at the start,
@@ -145,7 +145,7 @@ def _substitute_stage(B: Array, a: int, columns: Array, scaled_increment: Array,
         add_products(B[INTERVAL_MAP], scaled_increment, out[a], 1.0)
         return
     side = columns[a].copy()
-    add_products(B[start_block(a)], scaled_increment, side, 1.0)
+    add_products(B[start_block_index(a)], scaled_increment, side, 1.0)
     for j in range(a + 1, s):
-        add_products(B[stage_block(a, j, s)], out[j], side, -1.0)
-    add_products(B[stage_block(a, a, s)], side, out[a], 1.0)
+        add_products(B[stage_block_index(a, j, s)], out[j], side, -1.0)
+    add_products(B[stage_block_index(a, a, s)], side, out[a], 1.0)

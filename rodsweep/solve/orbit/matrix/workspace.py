@@ -59,13 +59,13 @@ def block_count(s: int) -> int:
 
 
 @compiled
-def start_block(a: int) -> int:
+def start_block_index(a: int) -> int:
     """Number of the block for the effect of the start of the interval on stage a, 2 <= a <= s - 2."""
     return a + 1
 
 
 @compiled
-def stage_block(i: int, j: int, s: int) -> int:
+def stage_block_index(i: int, j: int, s: int) -> int:
     """Number of the block in row i and column j of the later stages, 2 <= i, j < s. s: stages."""
     return s + (i - 2) * (s - 2) + j - 2
 
@@ -81,16 +81,17 @@ class NewtonFactors(NamedTuple):
     """Eliminated Newton matrix of all K intervals.
 
     eliminated_blocks: (K, `block_count(s)`, n, n). Blocks `FIRST_STAGE` and `SECOND_STAGE` are the inverses
-    of the pivot blocks of these stages. The blocks `stage_block` of later stages are the inverses of pivot
-    blocks on the diagonal, row multipliers below, and Schur-updated blocks above. The remaining blocks
-    multiply M x_0, x_0: state at the start; `INTERVAL_MAP` gives the increment of the end, `start_block(a)`
-    the right-hand side of stage a, 2 <= a <= s - 2. propagator: map P over all intervals, (n, n).
-    closing_inverse: inverse of the remaining matrix for start and period, (n + 1, n + 1).
+    of the pivot blocks of these stages. The blocks `stage_block_index` of later stages are the inverses of
+    pivot blocks on the diagonal, row multipliers below, and Schur-updated blocks above. The remaining blocks
+    multiply M x_0, x_0: state at the start; `INTERVAL_MAP` gives the increment of the end,
+    `start_block_index(a)` the right-hand side of stage a, 2 <= a <= s - 2. propagator: map P over all
+    intervals, (n, n). closing_matrix_inverse: inverse of the remaining matrix for start and period, (n + 1, n
+    + 1).
     """
 
     eliminated_blocks: Array
     propagator: Array
-    closing_inverse: Array
+    closing_matrix_inverse: Array
 
 
 def _empty_from_cache_line(size: int) -> Array:
@@ -113,9 +114,10 @@ class NewtonWorkspace:
         self._max_work = inf
         self._work = 0.0
 
-    def limit_work(self, max_work: float) -> None:
-        """Starts to count the work anew. max_work: limit of the work until `release`, in multiplications."""
-        self._max_work = max_work
+    def limit_work(self, max_multiplications: float) -> None:
+        """Starts to count the work anew. max_multiplications: limit of the work until `release`, in
+        multiplications."""
+        self._max_work = max_multiplications
         self._work = 0.0
 
     @property
@@ -124,7 +126,7 @@ class NewtonWorkspace:
         return self._work
 
     @contextmanager
-    def further_limit(self, further_work: float) -> Iterator[None]:
+    def further_work_limit(self, further_work: float) -> Iterator[None]:
         """Context in which at most `further_work` multiplications are done; a lower limit of the work stays
         in force."""
         previous_max_work = self._max_work

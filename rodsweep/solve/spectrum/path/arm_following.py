@@ -1,7 +1,7 @@
 """Eigenvalues of arms followed along a path, and proved complete at every point of the path.
 
-The method is described in `rodsweep.solve.spectrum.path.following`; here the determinant D is computed from
-the interpolated propagators of a family of arms. The proof at a point
+The method is described in `rodsweep.solve.spectrum.path.eigenvalue_following`; here the determinant D is
+computed from the interpolated propagators of a family of arms. The proof at a point
 (`rodsweep.determinant.arm.completeness`) uses only the eigenvalues at this point.
 """
 
@@ -21,13 +21,13 @@ from ....determinant.arm.completeness import (
 )
 from ....determinant.arm.family_values import write_propagators
 from ....determinant.arm.hull.region import EigenvalueHull, PathHulls, hull_at
-from ....determinant.arm.rounding import error_of_interpolated_chain
+from ....determinant.arm.rounding import error_from_interpolated_propagators
 from ....determinant.arm.value import determinant_from_propagators, path_value_from_propagators
 from ....determinant.roots.roots import roots_of_parabola, sort_indices_descending
 from ....determinant.value import DETERMINANT_SETTINGS, scaled_second_derivative_between
 from ....model.compiled.compilation import compiled
 from ..candidates import CANDIDATE_SETTINGS
-from .following import (
+from .eigenvalue_following import (
     EIGENVALUE_FOLLOWING_SETTINGS,
     CorrectedEigenvalue,
     are_distinct_roots,
@@ -36,7 +36,7 @@ from .following import (
     eigenvalue_newton_step,
     store_root,
 )
-from .prediction import FollowedEigenvalues, find_conjugates, predict_eigenvalues, set_two_guesses
+from .eigenvalue_prediction import FollowedEigenvalues, find_conjugates, predict_eigenvalues, set_two_guesses
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -50,22 +50,22 @@ class ArmFollowingSettings:
     min_proved_fraction_without_more_modes: float = 0.5
     """More modes are followed if the modes are proved complete at less than this fraction of the points, no
     counts follow, and more modes would prove a further point."""
-    min_unproved_points: int = 64
+    min_unproved_points_for_more_hulls: int = 64
     """Minimum number of points without a proof for which hulls are computed at more arms."""
     hulls_per_unproved_interval: int = 49
     """Number of hulls computed in an interval, instead of `hulls_per_interval`, if at least
-    `min_unproved_points` points have no proof."""
-    w_bound_ratio: float = 2.0
-    """The propagators of a new family are valid at least up to W = `w_bound_ratio` * (largest |w| at the
-    first point)."""
+    `min_unproved_points_for_more_hulls` points have no proof."""
+    family_W_over_max_abs_eigenvalue: float = 2.0
+    """The propagators of a new family are valid at least up to W = `family_W_over_max_abs_eigenvalue` *
+    (largest |w| at the first point)."""
     min_reused_W_over_max_w: float = 1.25
     """The family of the previous interval is used again if its W is at least this multiple of the largest |w|
     at the first point of the new interval."""
     max_points_over_previous_family: int = 2
     """Maximum number of points of a new family, divided by the number reached with the previous family."""
-    min_points: int = 4
+    min_family_points: int = 4
     """Minimum number of points for which a family of arms is made."""
-    accuracy: float = 1e-8
+    eigenvalue_accuracy: float = 1e-8
     """Relative accuracy of the eigenvalues of `FollowedArms`."""
     modes_beyond_growing: int = 2
     """Number of modes that a search for crossings requests in addition to the growing modes."""
@@ -82,8 +82,8 @@ ARM_FOLLOWING_SETTINGS = ArmFollowingSettings()
 
 PropagatorsWithPathSlopes = tuple[float, Array, Array, Array]
 """(bound W of |w|, propagators valid for |w| <= W, derivatives of the propagators with respect to the path
-variable p, sizes of their entries); the first two arrays: (elements, terms, PADDED), the third as
-`ArmFamily.entry_sizes`."""
+variable p, sizes of their entries); the first two arrays: (elements, terms, PADDED_LENGTH), the third as
+`ArmFamily.reference_entry_sizes`."""
 
 
 @compiled
@@ -110,7 +110,9 @@ def _converged_step_and_error(
         error = converged_error(step, crowding, exact)
         if error < math.inf:
             if exact:
-                error_of_D = error_of_interpolated_chain(step.w, level[0], level[1], step.log_scale, level[3])
+                error_of_D = error_from_interpolated_propagators(
+                    step.w, level[0], level[1], step.log_scale, level[3]
+                )
                 error = max(error, error_of_D / step.D_slope)
             return step, error
         step = newton_step_of_arm_eigenvalue(step.w, level)
@@ -123,7 +125,7 @@ def taylor_parabola_roots_of_arm(
 ) -> tuple[complex, complex]:
     """The two roots of D near a real `middle`, from the quadratic Taylor polynomial of D about `middle`."""
     D, D_w, S, _ = determinant_from_propagators(middle, level[0], level[1])
-    h = DETERMINANT_SETTINGS.second_difference_step_ratio * abs(middle)
+    h = DETERMINANT_SETTINGS.second_derivative_step_over_w * abs(middle)
     value_after = determinant_from_propagators(middle + h, level[0], level[1])
     value_before = determinant_from_propagators(middle - h, level[0], level[1])
     D_ww = scaled_second_derivative_between(value_after, value_before, S, h)
@@ -179,7 +181,7 @@ def proved_count_right_of_line(
     line = min(
         w[k].real
         - CANDIDATE_SETTINGS.proof_line_distance_in_errors * error[k]
-        - CANDIDATE_SETTINGS.proof_line_distance_ratio * abs(w[k]),
+        - CANDIDATE_SETTINGS.relative_proof_line_distance * abs(w[k]),
         0.0,
     )
     count = 0
@@ -187,7 +189,7 @@ def proved_count_right_of_line(
         if abs(w[j].real - line) <= 2 * error[j]:
             return 0
         count += w[j].real > line
-    for point_count in COMPLETENESS_SETTINGS.point_counts:
+    for point_count in COMPLETENESS_SETTINGS.real_point_counts:
         points = points_right_of_hull(line, hull.a, hull.c, point_count)
         if len(points) == 0 or points[-1] > level[0]:
             continue
@@ -215,7 +217,7 @@ def follow_eigenvalues_of_arms(
     shape = family.coefficients.shape[1:]
     polynomials = np.empty(shape)
     changes = np.empty(shape)
-    level = (family.largest_w, polynomials, changes, family.entry_sizes)
+    level = (family.largest_w, polynomials, changes, family.reference_entry_sizes)
     guess = track.w[0].copy()
     partner = np.empty(len(guess), np.int64)
     for i in range(len(p)):

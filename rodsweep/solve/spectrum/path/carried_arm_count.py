@@ -21,7 +21,7 @@ from ....determinant.parameter_path import ParameterPath
 from ..candidates import lines_for_count
 from .arm_interval import ArmInterval
 from .carried_count import leading_eigenvalues_of_track
-from .prediction import FollowedEigenvalues
+from .eigenvalue_prediction import FollowedEigenvalues
 
 
 def confirmed_count_at(
@@ -52,7 +52,7 @@ def confirmed_line(
     w, error = eigenvalues_and_errors
     if w[-1].real > 0:  # more modes grow, and the count would include them
         return None
-    determinant = ArmDeterminant(path.rod_at(p), propagators_at(interval.family, p))
+    determinant = ArmDeterminant(path.rod_at(p), propagators_at(interval.arm_family, p))
     hull = hull_at(interval.hulls, p)
     lines = [line for line in lines_for_count(list_of(w), mode_count) if line <= rightmost]
     for line in [*lines, rightmost] if rightmost < math.inf else lines:
@@ -122,7 +122,7 @@ class ArmCountCarrier:
                 confirmed_line = self._confirmed_line_at_or_left_of(index, line)
                 if confirmed_line is None:
                     break
-            if self._is_line_free_of_unknowns(line, index, next_index):
+            if self._is_line_free_of_unknown_eigenvalues(line, index, next_index):
                 points.append(next_index)
                 lines.append(line)
                 confirmed_line = line
@@ -139,14 +139,14 @@ class ArmCountCarrier:
         p = float(self.interval.p[i])
         return confirmed_line(self.path, self.interval, p, (self.w[i], self.error[i]), self.modes, line)
 
-    def _is_line_free_of_unknowns(self, line: float, first: int, last: int) -> bool:
+    def _is_line_free_of_unknown_eigenvalues(self, line: float, first: int, last: int) -> bool:
         """Whether no unknown eigenvalue lies on a line, for any arm between two points of the interval."""
         interval = self.interval
         points = sampled_point_indices(first, last)
         known_w = interval.track.w[points], interval.track.error[points]
         p = interval.p[points]
         rods = [self.path.rod_at(value) for value in list_of(p)]
-        return proves_no_crossing_of_arms(line, rods, p, known_w, interval.family, interval.hulls)
+        return proves_no_crossing_of_arms(line, rods, p, known_w, interval.arm_family, interval.hulls)
 
     def _store_proved_counts_between(self, points: list[int], lines: list[float]) -> None:
         """Fills `interval.proved_counts` between successive `points`, where no followed eigenvalue is close

@@ -17,7 +17,7 @@ from ....determinant.roots.settings import ROOT_SETTINGS
 from ....model.compiled.compilation import compiled
 from ....model.compiled.kernel_constants import KernelConstants
 from ....model.rod import Coefficients
-from .prediction import FollowedEigenvalues
+from .eigenvalue_prediction import FollowedEigenvalues
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -30,38 +30,39 @@ class CarriedCountSettings(KernelConstants):
     `rectangles_per_point` times the number of points covered."""
     rectangles_per_point: int = 20
     """Number of rectangles allowed in a proof for each point covered: a new count costs as much as twenty."""
-    wide_half_gap_ratio: float = 0.2
+    min_wide_relative_half_gap: float = 0.2
     """Gaps are treated as equally wide if their relative half-width exceeds this; the leftmost of these gaps
     is taken. Relative half-width: half-width divided by the distance of the gap's middle from the imaginary
     axis."""
-    min_half_gap_ratio: float = 1e-6
-    """No line is drawn in a gap whose relative half-width (see `wide_half_gap_ratio`) is less than this."""
+    min_relative_half_gap: float = 1e-6
+    """No line is drawn in a gap whose relative half-width (see `min_wide_relative_half_gap`) is less than
+    this."""
 
 
 CARRIED_COUNT_SETTINGS = CarriedCountSettings()
 
 
 @compiled
-def line_in_gap(track: FollowedEigenvalues, i: int, gap: int) -> tuple[float, float]:
+def line_and_relative_half_gap(track: FollowedEigenvalues, i: int, gap: int) -> tuple[float, float]:
     """(real part of the line in the middle of a gap at point i, half-width of the gap divided by the modulus
-    of this real part). The half-width is at most `wide_half_gap_ratio`, and 0 if the line is not to the left
-    of the imaginary axis. gap: number of eigenvalues to the right of the gap."""
+    of this real part). The half-width is at most `min_wide_relative_half_gap`, and 0 if the line is not to
+    the left of the imaginary axis. gap: number of eigenvalues to the right of the gap."""
     right = track.w[i, track.descending_order[i, gap - 1]].real
     left = track.w[i, track.descending_order[i, gap]].real
     line = (right + left) / 2
     if not line < 0:
         return line, 0.0
-    return line, min((right - line) / -line, CARRIED_COUNT_SETTINGS.wide_half_gap_ratio)
+    return line, min((right - line) / -line, CARRIED_COUNT_SETTINGS.min_wide_relative_half_gap)
 
 
 @compiled
-def widest_gap(track: FollowedEigenvalues, i: int, modes: int) -> int:
+def count_right_of_widest_gap(track: FollowedEigenvalues, i: int, modes: int) -> int:
     """Number of eigenvalues to the right of the widest gap at point i; 0 if no gap is wide enough. The gap
     lies to the left of the leading `modes` and of the imaginary axis."""
     best_gap = 0
-    max_width = CARRIED_COUNT_SETTINGS.min_half_gap_ratio
+    max_width = CARRIED_COUNT_SETTINGS.min_relative_half_gap
     for gap in range(modes, track.w.shape[1]):
-        width = line_in_gap(track, i, gap)[1]
+        width = line_and_relative_half_gap(track, i, gap)[1]
         if width >= max_width:
             best_gap = gap
             max_width = width
@@ -69,7 +70,7 @@ def widest_gap(track: FollowedEigenvalues, i: int, modes: int) -> int:
 
 
 @compiled
-def _stays_open(
+def _does_gap_stay_open(
     track: FollowedEigenvalues, ends: tuple[int, int], gap: int, lines: tuple[float, float], p: Array
 ) -> bool:
     """Whether exactly the leading `gap` eigenvalues lie to the right of a moving line at every point between
@@ -94,11 +95,11 @@ def _count_right_of_widest_open_gap(
     """Number of eigenvalues to the right of the widest gap that stays open between the points `ends`; 0 if no
     gap stays open. The number is at least `modes` and at most `proved_count`."""
     best_gap = 0
-    max_width = CARRIED_COUNT_SETTINGS.min_half_gap_ratio
+    max_width = CARRIED_COUNT_SETTINGS.min_relative_half_gap
     for gap in range(modes, min(proved_count, track.w.shape[1] - 1) + 1):
-        start_line, start_width = line_in_gap(track, ends[0], gap)
-        end_line, end_width = line_in_gap(track, ends[1], gap)
-        if min(start_width, end_width) >= max_width and _stays_open(
+        start_line, start_width = line_and_relative_half_gap(track, ends[0], gap)
+        end_line, end_width = line_and_relative_half_gap(track, ends[1], gap)
+        if min(start_width, end_width) >= max_width and _does_gap_stay_open(
             track, ends, gap, (start_line, end_line), p
         ):
             best_gap = gap
@@ -107,12 +108,14 @@ def _count_right_of_widest_open_gap(
 
 
 @compiled
-def _interval_end(track: FollowedEigenvalues, i: int, gap: int, p: Array, coefficients: Array) -> IntervalEnd:
+def _line_interval_end(
+    track: FollowedEigenvalues, i: int, gap: int, p: Array, coefficients: Array
+) -> IntervalEnd:
     """End, at point i of a path, of an interval over which a vertical line moves; at point i the line lies in
     the middle of a gap. gap: number of eigenvalues to the right of the gap. p: (points,). coefficients:
     (points, 4)."""
     F, nu, c2, gamma3 = coefficients[i]
-    return IntervalEnd(p[i], Coefficients(F, nu, c2, gamma3), line_in_gap(track, i, gap)[0])
+    return IntervalEnd(p[i], Coefficients(F, nu, c2, gamma3), line_and_relative_half_gap(track, i, gap)[0])
 
 
 @compiled
@@ -138,8 +141,8 @@ def carry_count(
         gap = _count_right_of_widest_open_gap(track, (i, j), modes, proved_counts[i], p)
         proved = False
         if gap > 0:
-            first = _interval_end(track, i, gap, p, coefficients)
-            end = _interval_end(track, j, gap, p, coefficients)
+            first = _line_interval_end(track, i, gap, p, coefficients)
+            end = _line_interval_end(track, j, gap, p, coefficients)
             most = (
                 CARRIED_COUNT_SETTINGS.base_rectangle_count
                 + CARRIED_COUNT_SETTINGS.rectangles_per_point * (j - i)
@@ -159,7 +162,7 @@ def carry_count(
 
 
 @compiled
-def assess_points(
+def certified_points_and_unstable_counts(
     track: FollowedEigenvalues, proved_counts: NDArray, modes: int, accuracy: float
 ) -> tuple[NDArray, NDArray]:
     """Returns (is_good, unstable_counts), (points,) each. is_good: whether the point is certified and its
@@ -178,12 +181,12 @@ def assess_points(
             w = track.w[s, k]
             error = track.error[s, k]
             if abs(w.real) <= max(
-                ROOT_SETTINGS.axis_tolerance_in_errors * error,
-                ROOT_SETTINGS.axis_tolerance * abs(w),
+                ROOT_SETTINGS.imaginary_axis_tolerance_in_errors * error,
+                ROOT_SETTINGS.imaginary_axis_tolerance * abs(w),
             ):
                 is_good[s] = False
             if rank < modes and not error <= min(
-                ROOT_SETTINGS.double_root_correction_ratio, accuracy / 2
+                ROOT_SETTINGS.min_double_root_correction_over_w, accuracy / 2
             ) * abs(w):
                 is_good[s] = False
             unstable_counts[s] += w.real > 0

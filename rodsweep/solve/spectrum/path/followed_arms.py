@@ -13,8 +13,8 @@ from ..status import SpectrumStatus
 from .arm_following import ARM_FOLLOWING_SETTINGS, follow_eigenvalues_of_arms
 from .arm_interval import ArmInterval, follow_interval
 from .carried_arm_count import confirmed_count_at
-from .carried_count import assess_points, leading_eigenvalues_of_track
-from .prediction import FollowedEigenvalues, KnownRoots, new_track, slice_track
+from .carried_count import certified_points_and_unstable_counts, leading_eigenvalues_of_track
+from .eigenvalue_prediction import FollowedEigenvalues, KnownRoots, new_track, slice_track
 
 
 class FollowedArms:
@@ -29,7 +29,7 @@ class FollowedArms:
         """p: path variable of the points, monotone, (n,). mode_count: number of leading eigenvalues to be
         proved complete at each point."""
         self.path = path
-        self.request = SpectrumRequest(mode_count, ARM_FOLLOWING_SETTINGS.accuracy, certify=True)
+        self.request = SpectrumRequest(mode_count, ARM_FOLLOWING_SETTINGS.eigenvalue_accuracy, certify=True)
         self.intervals: list[ArmInterval] = []
         self._proved_by_p: dict[float, list[ProvedEigenvalues]] = {}
         self._p = p
@@ -52,19 +52,19 @@ class FollowedArms:
                 1 if interval is not None else 2 * self._points_skipped_on_failure
             )
 
-    def family_at(self, p: float) -> ArmFamily | None:
+    def arm_family_at(self, p: float) -> ArmFamily | None:
         """The family of interpolated arms that contains p; None if no interval reached p."""
         self._follow_to(p)
         return next(
             (
-                interval.family
+                interval.arm_family
                 for interval in self.intervals
-                if interval.family.p_low <= p <= interval.family.p_high
+                if interval.arm_family.p_low <= p <= interval.arm_family.p_high
             ),
             None,
         )
 
-    def eigenvalue_slope(self, w: complex, p: float) -> tuple[complex, float] | None:
+    def slope_and_error_of_eigenvalue(self, w: complex, p: float) -> tuple[complex, float] | None:
         """Returns (dw/dp, error of w) for an eigenvalue w that `spectrum` returned at p; None for any other
         w."""
         for eigenvalues in self._proved_by_p.get(p, []):
@@ -86,7 +86,7 @@ class FollowedArms:
         self._follow_to(p)
         for interval in self.intervals:
             if interval.p.min() <= p <= interval.p.max():
-                track, _ = self._track_and_proved_count_at(interval, p, self.request.modes)
+                track, _ = self._track_and_proved_count_at(interval, p, self.request.mode_count)
                 if track is not None:
                     return KnownRoots(track.w[0], track.error[0])
         return None
@@ -132,7 +132,7 @@ class FollowedArms:
         i = int(np.argmin(np.abs(interval.p - p)))
         start = float(interval.p[i])
         # The proof at the point itself is there already.
-        if p == start and mode_count <= self.request.modes:
+        if p == start and mode_count <= self.request.mode_count:
             return slice_track(interval.track, i, i + 1), int(interval.proved_counts[i])
         # One step mostly suffices; shorter steps follow where eigenvalues meet in between.
         for steps in ARM_FOLLOWING_SETTINGS.step_counts_from_nearest_point:
@@ -142,7 +142,7 @@ class FollowedArms:
             proved_counts = np.zeros(len(grid), np.int64)
             track.descending_order[0] = interval.track.descending_order[i]
             if follow_eigenvalues_of_arms(
-                track, interval.family, interval.hulls, grid, mode_count, proved_counts
+                track, interval.arm_family, interval.hulls, grid, mode_count, proved_counts
             ) == len(grid):
                 return slice_track(track, len(grid) - 1, len(grid)), int(proved_counts[-1])
         return None, 0
@@ -154,14 +154,15 @@ class ProvedEigenvalues(NamedTuple):
 
     max_tried_mode_count: int
     track: FollowedEigenvalues
+    """Track of a single point p with all followed eigenvalues, (1, m)."""
     proved_count: int
 
     def spectrum(self, mode_count: int, accuracy: float) -> Spectrum | None:
-        """The leading `mode_count` eigenvalues if they were followed, have the relative accuracy `accuracy`
-        and are proved complete; else None."""
+        """The leading `mode_count` eigenvalues if they were followed, have the relative accuracy
+        `eigenvalue_accuracy` and are proved complete; else None."""
         if self.track.w.shape[1] < mode_count:
             return None
-        is_good, unstable_counts = assess_points(
+        is_good, unstable_counts = certified_points_and_unstable_counts(
             self.track, np.array([self.proved_count]), mode_count, accuracy
         )
         if not is_good[0]:

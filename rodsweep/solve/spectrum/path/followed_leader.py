@@ -22,20 +22,20 @@ from ....determinant.roots.newton import refine_eigenvalue
 from ....determinant.roots.roots import root_error_and_scales
 from ....model.rod import Rod
 from ..candidates import CANDIDATE_SETTINGS, line_for_proof
-from .following import are_distinct_roots
+from .eigenvalue_following import are_distinct_roots
+from .eigenvalue_prediction import KnownRoots
 from .leader_in_range import ArmRange, leader_in_range
-from .prediction import KnownRoots
 
 
 class LeadingEigenvalue(NamedTuple):
     """The leading eigenvalue w of a rod, in 1/tau2, with Im w >= 0, and its absolute error. eigenvalues: all
-    followed eigenvalues of the rod with Im w >= 0, (n,), the leading eigenvalue first. is_counted: whether
-    the proof that w leads needed a count of the eigenvalues of an arm."""
+    followed eigenvalues of the rod with Im w >= 0, (n,), the leading eigenvalue first. is_proved_by_count:
+    whether the proof that w leads needed a count of the eigenvalues of an arm."""
 
     w: complex
     error: float
     eigenvalues: Complex
-    is_counted: bool = False
+    is_proved_by_count: bool = False
 
 
 def follow_leading_eigenvalue(rod: Rod, guesses: Complex, accuracy: float) -> LeadingEigenvalue | None:
@@ -50,7 +50,7 @@ def follow_leading_eigenvalue(rod: Rod, guesses: Complex, accuracy: float) -> Le
         return _follow_leader_of_uniform(rod, complex(guesses[0]), accuracy)
     if rod.is_uniform:
         # The eigenvalues of the nonlinear rod are `rate` times the eigenvalues of an equivalent linear rod.
-        linear_rod, rate = rod.equivalent_linear_rod_and_rate
+        linear_rod, rate = rod.equivalent_linear_rod_and_rate_factor
         leading_w = follow_leading_eigenvalue(linear_rod, guesses / rate, accuracy)
         if leading_w is None:
             return None
@@ -122,7 +122,7 @@ def _follow_leader_of_arm(rod: Rod, guesses: Complex, accuracy: float) -> Leadin
     )
     if not is_leading:
         return None
-    return LeadingEigenvalue(leading_w, float(error[0]), w, is_counted=not is_complete)
+    return LeadingEigenvalue(leading_w, float(error[0]), w, is_proved_by_count=not is_complete)
 
 
 def _refined_eigenvalues(
@@ -131,7 +131,7 @@ def _refined_eigenvalues(
     """Returns (w, errors), (m,) each: the eigenvalues of an arm near `guesses`, (n,), and their absolute
     errors. A complex guess near which no complex eigenvalue has the relative error `accuracy` gives two real
     eigenvalues; two real guesses near which there are no such real eigenvalues give a complex one."""
-    w, error = _refined(guesses, determinant)
+    w, error = _newton_roots_and_errors(guesses, determinant)
     is_lost = (error > accuracy * np.abs(w)) | ((w.imag == 0) & (guesses.imag != 0))
     if not is_lost.any():
         return w, error
@@ -142,11 +142,11 @@ def _refined_eigenvalues(
         middles.append(float(real_guesses.mean()))
     pairs = [taylor_parabola_roots(complex(middle), determinant) for middle in middles]
     added = np.array([root for pair in pairs for root in pair if root.imag >= 0])
-    new_w, new_error = _refined(added, determinant)
+    new_w, new_error = _newton_roots_and_errors(added, determinant)
     return np.append(w[~is_lost], new_w), np.append(error[~is_lost], new_error)
 
 
-def _refined(guesses: Complex, determinant: ArmDeterminant) -> tuple[Complex, Array]:
+def _newton_roots_and_errors(guesses: Complex, determinant: ArmDeterminant) -> tuple[Complex, Array]:
     """Returns (w, errors): the roots of D found by Newton's method from each of `guesses`, and their absolute
     errors; (n,) each."""
     roots = refine_eigenvalues_and_errors(list_of(guesses), determinant, [inf] * len(guesses))
@@ -183,7 +183,7 @@ def _lines_for_count(w: complex) -> Iterator[float]:
         # Another eigenvalue may lie right of the far line; the near line then excludes it.
         w.real - distance * abs(w)
         for distance in (
-            CANDIDATE_SETTINGS.leader_line_distance_ratio,
-            CANDIDATE_SETTINGS.last_line_distance_ratio,
+            CANDIDATE_SETTINGS.relative_line_distance_from_leading_w,
+            CANDIDATE_SETTINGS.relative_line_distance_from_last_w,
         )
     )

@@ -25,9 +25,9 @@ from ....model.parameters import PARAMETERS
 from ....model.rod import Rod
 from ..candidates import line_for_proof
 from .arm_following import ARM_FOLLOWING_SETTINGS, follow_eigenvalues_of_arms
-from .arm_interval import family_with_proofs
+from .arm_interval import arm_family_with_proofs
 from .carried_count import leading_eigenvalues_of_track
-from .prediction import new_track
+from .eigenvalue_prediction import new_track
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,17 +37,22 @@ class ArmRangeSettings(KernelConstants):
     max_relative_length: float = 0.2
     """Length of a range of the parameter coordinate, divided by the coordinate at its start: at most this,
     the change after which a chain of cycles measures its errors again."""
-    min_steps: int = 8
+    min_chain_steps: int = 8
     """No range is chosen for fewer steps of the chain: the propagators of a range take the time of about five
     single arms."""
     hull_count: int = 5
     """Number of arms of a range, both ends included, whose hulls are computed."""
-    max_failures: int = 2
+    max_successive_failures: int = 2
     """Number of successive arms without a proof after which a range is given up. A single failure, as where a
     pair of eigenvalues becomes real, does not last."""
     max_cached_ranges: int = 2
     """Maximum number of ranges whose propagators are cached; a chain needs one at a time."""
-    field_ranges: ClassVar = {"hull_count": (2, inf), "min_steps": (1, inf), "max_failures": (1, inf)}
+    field_ranges: ClassVar = {
+        "hull_count": (2, inf),
+        "min_chain_steps": (1, inf),
+        "max_successive_failures": (1, inf),
+    }
+    """Exclusive bounds (lower, upper) of a field, by name of the field."""
 
 
 ARM_RANGE_SETTINGS = ArmRangeSettings()
@@ -55,20 +60,20 @@ ARM_RANGE_SETTINGS = ArmRangeSettings()
 
 class ArmRange(NamedTuple):
     """Range of a parameter that contains the next arms of a chain. low, high: coordinates of the parameter.
-    largest_w: largest |w| of the eigenvalues that are followed. line: real part <= 0 of a line left of the
-    leading eigenvalue, for the proof that it leads. Both belong to the arm at which the range begins.
-    failures: number of successive last arms at which the range gave no proof."""
+    max_abs_w: largest |w| of the eigenvalues that are followed. proof_line: real part <= 0 of a line left of
+    the leading eigenvalue, for the proof that it leads. Both belong to the arm at which the range begins.
+    successive_failure_count: number of successive last arms at which the range gave no proof."""
 
     low: float
     high: float
-    largest_w: float
-    line: float
-    failures: float = 0.0
+    max_abs_w: float
+    proof_line: float
+    successive_failure_count: float = 0.0
 
     @property
     def is_usable(self) -> bool:
         """Whether the range is tried at further arms."""
-        return self.failures < ARM_RANGE_SETTINGS.max_failures
+        return self.successive_failure_count < ARM_RANGE_SETTINGS.max_successive_failures
 
 
 NO_RANGE = ArmRange(nan, nan, nan, nan)
@@ -88,7 +93,7 @@ def next_range(
     if current is not None and (current is NO_RANGE or current.low <= start + step <= current.high):
         return None if current is NO_RANGE else current
     max_length = ARM_RANGE_SETTINGS.max_relative_length * abs(start)
-    is_long = abs(step) * ARM_RANGE_SETTINGS.min_steps > max_length
+    is_long = abs(step) * ARM_RANGE_SETTINGS.min_chain_steps > max_length
     if rod.is_uniform or step == 0 or is_long or not np.isfinite(eigenvalues).all():
         return None
     low, high = sorted((start, start + floor(max_length / abs(step)) * step))
@@ -109,8 +114,8 @@ def leader_in_range(
     # A rod would be a slower key, because its values are tested whenever one is made.
     values = {**rod.values, name: PARAMETERS[name].value(arm_range.low)}
     # Failures change no propagators, so they must not be part of the key.
-    family_data = family_and_hulls_of_range(
-        tuple(values.items()), rod.material, name, arm_range._replace(failures=0.0)
+    family_data = arm_family_and_hulls_of_range(
+        tuple(values.items()), rod.material, name, arm_range._replace(successive_failure_count=0.0)
     )
     if family_data is None:
         return None
@@ -129,17 +134,17 @@ def leader_in_range(
 
 
 @lru_cache(maxsize=ARM_RANGE_SETTINGS.max_cached_ranges)
-def family_and_hulls_of_range(
+def arm_family_and_hulls_of_range(
     values: tuple[tuple[str, float], ...], material: RodMaterial, name: str, arm_range: ArmRange
 ) -> tuple[ArmFamily, PathHulls] | None:
     """(family of the arms of a range, hulls that contain their spectra), cached; None if the arms are not
     smooth in the parameter, or if no elements resolve an arm. values, material: parameter values by name, and
     material, of the arm at `arm_range.low`. name: the varied parameter."""
-    W = ARM_FOLLOWING_SETTINGS.w_bound_ratio * arm_range.largest_w
+    W = ARM_FOLLOWING_SETTINGS.family_W_over_max_abs_eigenvalue * arm_range.max_abs_w
     try:
         path = ParameterPath(Rod(**dict(values), material=material), name)
         hulls = hulls_along(path, arm_range.low, arm_range.high, ARM_RANGE_SETTINGS.hull_count)
-        family = family_with_proofs(path, hulls, W, arm_range.line)
+        family = arm_family_with_proofs(path, hulls, W, arm_range.proof_line)
     except (ValueError, FloatingPointError):
         return None
     return None if family is None else (family, hulls)

@@ -18,7 +18,7 @@ from ....determinant.certificate.winding_number import count_right_of
 from ....determinant.parameter_path import ParameterPath
 from ....model.rod import Rod, coefficients_of
 from ...backend.solver_pools import destroy_pooled_solvers
-from ...point_outcome import FAILURES
+from ...point_outcome import FAILURE_EXCEPTIONS
 from ..search import SpectrumRequest, SpectrumSearch
 from ..search import warm_up as warm_up_search
 from ..spectrum import FollowedPoints, Spectrum, errors_with_rounding
@@ -26,9 +26,15 @@ from ..status import SpectrumStatus
 from .arm_following import ARM_FOLLOWING_SETTINGS
 from .arm_interval import follow_interval
 from .carried_arm_count import ArmCountCarrier, confirmed_count_at
-from .carried_count import assess_points, carry_count, leading_eigenvalues_of_track, line_in_gap, widest_gap
-from .following import follow_eigenvalues
-from .prediction import FollowedEigenvalues, new_track, slice_track
+from .carried_count import (
+    carry_count,
+    certified_points_and_unstable_counts,
+    count_right_of_widest_gap,
+    leading_eigenvalues_of_track,
+    line_and_relative_half_gap,
+)
+from .eigenvalue_following import follow_eigenvalues
+from .eigenvalue_prediction import FollowedEigenvalues, new_track, slice_track
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,27 +51,27 @@ NEIGHBOURING_RODS_SETTINGS = NeighbouringRodsSettings()
 
 @dataclass(frozen=True, slots=True)
 class NeighbouringRods:
-    """Neighbouring rods of a sweep that differ in the parameter of `path`, with the `values`, (n,)."""
+    """Neighbouring rods of a sweep with the values `parameter_values`, (n,), of the parameter of `path`."""
 
     path: ParameterPath
-    values: Array
+    parameter_values: Array
 
     def __len__(self) -> int:
-        return len(self.values)
+        return len(self.parameter_values)
 
     def rod_at(self, i: int) -> Rod:
         """Rod of index i."""
-        return self.path.rod.with_values(**{self.path.name: float(self.values[i])})
+        return self.path.rod.with_values(**{self.path.name: float(self.parameter_values[i])})
 
     @property
     def path_variables(self) -> Array:
         """Path variable p of every rod, (n,)."""
-        return 1 / self.values if self.path.is_compliance_path else self.values
+        return 1 / self.parameter_values if self.path.is_compliance_path else self.parameter_values
 
     @property
     def coefficients(self) -> Array:
         """(F, nu, c2, gamma3) of every rod, (n, 4), identical to `Rod.coefficients`."""
-        columns = coefficients_of({**self.path.rod.values, self.path.name: self.values})
+        columns = coefficients_of({**self.path.rod.values, self.path.name: self.parameter_values})
         coefficients = np.empty((len(self), len(columns)))
         for number, column in enumerate(columns):
             coefficients[:, number] = column
@@ -74,8 +80,9 @@ class NeighbouringRods:
 
 @dataclass(frozen=True, slots=True)
 class FollowedSpectra:
-    """Spectra of `NeighbouringRods`. is_solved: whether the spectrum of each rod is known, (n,); the
-    remaining rods must be solved one by one."""
+    """Spectra of `NeighbouringRods`. spectra: one `Spectrum` with a first axis of length n for all rods;
+    eigenvalues are NaN where `is_solved` is False. is_solved: whether the spectrum of each rod is known,
+    (n,); the remaining rods must be solved one by one."""
 
     spectra: Spectrum
     is_solved: NDArray[np.bool_]
@@ -86,7 +93,7 @@ def follow_spectra(rods: NeighbouringRods, request: SpectrumRequest) -> Followed
     rod and proved complete; `is_solved` is False for every other rod."""
     start_time = time.perf_counter()
     n = len(rods)
-    fields = _unsolved_fields(n, request.modes)
+    fields = _fields_of_unsolved_spectra(n, request.mode_count)
     is_solved = np.zeros(n, np.bool_)
     start = 0
     stride = 1
@@ -99,9 +106,8 @@ def follow_spectra(rods: NeighbouringRods, request: SpectrumRequest) -> Followed
             continue
         indices = slice(start, start + len(followed_w.is_accepted))
         fields["eigenvalues"][indices] = followed_w.w
-        fields["error_estimate"][indices] = errors_with_rounding(
-            followed_w.w, followed_w.error, rods.path.rod
-        )
+        errors = errors_with_rounding(followed_w.w, followed_w.error, rods.path.rod)
+        fields["error_estimate"][indices] = errors
         fields["unstable_count"][indices] = followed_w.unstable_count
         fields["certified"][indices] = True
         is_solved[indices] = followed_w.is_accepted
@@ -111,7 +117,7 @@ def follow_spectra(rods: NeighbouringRods, request: SpectrumRequest) -> Followed
     return FollowedSpectra(Spectrum(seconds=seconds, **fields), is_solved)
 
 
-def _unsolved_fields(rod_count: int, mode_count: int) -> dict[str, Any]:
+def _fields_of_unsolved_spectra(rod_count: int, mode_count: int) -> dict[str, Any]:
     """Arrays for the fields of a `Spectrum` of several rods, filled with the values of an unsolved rod."""
     zeros = np.zeros(rod_count, np.int64)
     return {
@@ -141,18 +147,19 @@ def _followed_eigenvalues(
     if first is None:
         return None
     first_w, proved_count = first
-    modes = request.modes
-    later_rods = NeighbouringRods(rods.path, rods.values[start:])
+    modes = request.mode_count
+    later_rods = NeighbouringRods(rods.path, rods.parameter_values[start:])
     track = new_track(first_w, len(later_rods))
-    n = follow_eigenvalues(
-        track, later_rods.coefficients, later_rods.path_variables, rods.path.direction, modes
-    )
+    p = later_rods.path_variables
+    n = follow_eigenvalues(track, later_rods.coefficients, p, rods.path.direction, modes)
     if n == 0:
         return None
     track = slice_track(track, 0, n)
     proved_counts = _proved_counts_along(later_rods, track, modes, proved_count)
     reached_track = slice_track(track, 0, len(proved_counts))
-    is_good, unstable_counts = assess_points(reached_track, proved_counts, modes, request.accuracy)
+    is_good, unstable_counts = certified_points_and_unstable_counts(
+        reached_track, proved_counts, modes, request.accuracy
+    )
     return FollowedPoints(*leading_eigenvalues_of_track(reached_track, modes), unstable_counts, is_good)
 
 
@@ -163,53 +170,46 @@ def follow_spectra_of_arms(path: ParameterPath, p: Array, request: SpectrumReque
     interval = follow_interval(path, p, request, counts_follow=True)
     if interval is None:
         return None
-    if (interval.proved_counts < request.modes).sum() >= ARM_FOLLOWING_SETTINGS.min_unproved_points:
+    modes = request.mode_count
+    unproved_count = (interval.proved_counts < modes).sum()
+    if unproved_count >= ARM_FOLLOWING_SETTINGS.min_unproved_points_for_more_hulls:
         hull_count = ARM_FOLLOWING_SETTINGS.hulls_per_unproved_interval
-        hulls = hulls_along(path, interval.family.p_low, interval.family.p_high, hull_count)
+        hulls = hulls_along(path, interval.arm_family.p_low, interval.arm_family.p_high, hull_count)
         interval = interval._replace(hulls=hulls)
-    ArmCountCarrier(path, interval, request.modes).carry_counts()
-    for i in list_of(np.flatnonzero(interval.proved_counts < request.modes)):
+    ArmCountCarrier(path, interval, modes).carry_counts()
+    for i in list_of(np.flatnonzero(interval.proved_counts < modes)):
         point_track = slice_track(interval.track, i, i + 1)
         interval.proved_counts[i] = confirmed_count_at(
-            path, interval, float(interval.p[i]), request.modes, point_track
+            path, interval, float(interval.p[i]), modes, point_track
         )
-    is_accepted, unstable_counts = assess_points(
-        interval.track, interval.proved_counts, request.modes, request.accuracy
+    is_accepted, unstable_counts = certified_points_and_unstable_counts(
+        interval.track, interval.proved_counts, modes, request.accuracy
     )
-    return FollowedPoints(
-        *leading_eigenvalues_of_track(interval.track, request.modes), unstable_counts, is_accepted
-    )
+    return FollowedPoints(*leading_eigenvalues_of_track(interval.track, modes), unstable_counts, is_accepted)
 
 
 def _proved_counts_along(
     rods: NeighbouringRods, track: FollowedEigenvalues, mode_count: int, first_count: int
 ) -> NDArray[np.int64]:
     """Number of leading eigenvalues proved complete at each point of a track, up to the last point with a
-    proof, (points,).
-
-    mode_count: number of requested eigenvalues. first_count: number of eigenvalues proved complete at the
-    first point. If a proof does not carry the number to the next point, a new count there is tried.
-    """
+    proof, (points,). mode_count: number of requested eigenvalues. first_count: number of eigenvalues proved
+    complete at the first point. If a proof does not carry the number to the next point, a new count there is
+    tried."""
     n = len(track.w)
     coefficients = rods.coefficients[:n]
     p = rods.path_variables[:n]
     proved_counts = np.zeros(n, np.int64)
     proved_counts[0] = first_count
+    direction = rods.path.direction
     index = 0
     while True:
         rest_track = slice_track(track, index, n)
-        index += carry_count(
-            rest_track,
-            coefficients[index:],
-            p[index:],
-            rods.path.direction,
-            mode_count,
-            proved_counts[index:],
-        )
+        rest_counts = proved_counts[index:]
+        index += carry_count(rest_track, coefficients[index:], p[index:], direction, mode_count, rest_counts)
         if index == n - 1:
             break
-        gap = widest_gap(track, index + 1, mode_count)
-        line = float(line_in_gap(track, index + 1, gap)[0]) if gap else 0.0
+        gap = count_right_of_widest_gap(track, index + 1, mode_count)
+        line = float(line_and_relative_half_gap(track, index + 1, gap)[0]) if gap else 0.0
         if not gap or count_right_of(line, rods.rod_at(index + 1)).number != gap:
             break
         index += 1
@@ -221,11 +221,12 @@ def _first_eigenvalues(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int
     """Returns (eigenvalues, proved_count); None after a failure or without a proof. eigenvalues: start of the
     followed eigenvalues, (m,), none complex and unpaired. proved_count: number proved complete."""
     try:
-        count = request.modes + NEIGHBOURING_RODS_SETTINGS.further_mode_count
-        search = SpectrumSearch(rod, replace(request, modes=count - 1, certify=True), requested_count=count)
+        count = request.mode_count + NEIGHBOURING_RODS_SETTINGS.further_mode_count
+        extended_request = replace(request, mode_count=count - 1, certify=True)
+        search = SpectrumSearch(rod, extended_request, requested_count=count)
         with np.errstate(all="ignore"):
-            outcome = search.outcome()
-    except FAILURES:
+            outcome = search.find_spectrum()
+    except FAILURE_EXCEPTIONS:
         destroy_pooled_solvers()
         return None
     if search.best is None or search.best.comparison is None or not outcome.certified:

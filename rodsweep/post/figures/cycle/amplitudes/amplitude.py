@@ -10,22 +10,22 @@ from matplotlib.figure import Figure
 
 from .....arrays import Array, list_of
 from .....config.arm.axes import PARAMETER_CHANGED_ALONG
-from .....config.task.limit_cycle import LONGEST_AXIS
+from .....config.task.limit_cycle import LONGEST_AXIS_KEYWORD
 from .....errors import InputError
 from .....results.file.view import ResultView
 from .....results.layouts.limit_cycle import CYCLE_STATUSES
 from ... import style
 from ...grid_slices import infinite_values_clause
-from ..selection import shared_and_own_of_arms, shared_and_own_texts
+from ..selection import shared_and_own_texts, shared_and_own_texts_of_arms
 from ..units_and_labels import units_of_files
 from .amplitude_series import AmplitudeSeries, abscissa_parameter, amplitude_series
-from .square_root import draw_square_root_laws, mark_hopf_points, square_root_laws
+from .square_root_law import draw_square_root_laws, mark_hopf_points, square_root_laws
 
 SERIES_LOOKS = tuple(zip(style.LINE_COLOURS, ("o", "s", "^", "D", "v", "P"), strict=True))
 """(colour, marker) of each line."""
 MIN_ARROW_POINTS = 4
 """Only a line with at least this number of points has an arrow in the direction of continuation."""
-UNSTABLE_LOOK: dict[str, Any] = {
+UNSTABLE_CYCLE_LOOK: dict[str, Any] = {
     "ls": "", "ms": 5.0, "zorder": 3, "label": "unstable cycle"
 }  # fmt: skip
 """Matplotlib style of the open markers of unstable cycles, which are drawn over the markers of the line."""
@@ -48,16 +48,18 @@ def draw_amplitude(views: Sequence[ResultView], is_narrow: bool = False) -> tupl
             f"{len(SERIES_LOOKS)}: choose lines with --at, such as --at k1=150, or draw a full grid over two "
             "parameters as maps (--what maps)"
         )
-    has_amplitude = any(np.isfinite(series.amplitude_y).any() for series in all_series)
+    has_amplitude = any(np.isfinite(series.tip_y_max).any() for series in all_series)
     style.require_content(first_view, has_amplitude, "amplitude")
     figure = Figure(figsize=(4.4, 8.4) if is_narrow else (8.6, 5.6), layout="constrained")
     panels = figure.subplots(*((4, 1) if is_narrow else (2, 2)), sharex=True).T.ravel()
-    common_text, series_texts = _common_and_own_texts(all_series, name)
+    common_text, series_texts = _shared_and_own_texts(all_series, name)
     _draw_series(panels, all_series, series_texts, _legend_entries_of_files(views, name))
     coloured = zip(all_series, SERIES_LOOKS, strict=False)
-    mark_hopf_points(panels, [(point, look[0]) for series, look in coloured for point in series.hopf])
+    mark_hopf_points(panels, [(point, look[0]) for series, look in coloured for point in series.hopf_points])
     laws = [
-        law for series in all_series for law in square_root_laws(series.x, series.amplitude_y, series.hopf)
+        law
+        for series in all_series
+        for law in square_root_laws(series.x, series.tip_y_max, series.hopf_points)
     ]
     draw_square_root_laws(panels[1], laws, units[0].names[0] * units[0].in_si)
     _label_axes(panels, name, units[0].panel_labels)
@@ -84,14 +86,14 @@ def _draw_series(
         word, upward = direction_labels[id(series.view)]
         label = ", ".join(filter(None, (word, text)))
         unstable = series.status_names == "unstable"
-        for axes, values in zip(panels, series.measures, strict=True):
-            axes.plot(*series.with_gap_at_onset(values), label=label, **look)
+        for axes, values in zip(panels, series.drawn_quantities, strict=True):
+            axes.plot(*series.with_gaps_at_straight_rods(values), label=label, **look)
             if unstable.any():
                 axes.plot(
                     series.x[unstable],
                     values[unstable],
                     mfc=rcParams["axes.facecolor"],
-                    **look | UNSTABLE_LOOK,
+                    **look | UNSTABLE_CYCLE_LOOK,
                 )
             if upward is not None:
                 _draw_direction_arrow(axes, series.x, values, upward, colour)
@@ -121,7 +123,8 @@ def _legend_entries_of_files(views: Sequence[ResultView], name: str) -> dict[int
         return {id(views[0]): ("", None)}
     options = [view.config.get("limit_cycle", {}) for view in views]
     followed = all(
-        chosen.get("start") == "neighbour" and chosen.get("along", LONGEST_AXIS) in (name, LONGEST_AXIS)
+        chosen.get("start") == "neighbour"
+        and chosen.get("along", LONGEST_AXIS_KEYWORD) in (name, LONGEST_AXIS_KEYWORD)
         for chosen in options
     )
     directions = [chosen.get("direction", "up") for chosen in options]
@@ -147,7 +150,7 @@ def _draw_direction_arrow(axes: Axes, x: Array, values: Array, upward: bool, col
     axes.annotate("", head, tail, arrowprops=arrow, zorder=4)
 
 
-def _common_and_own_texts(all_series: Sequence[AmplitudeSeries], name: str) -> tuple[str, list[str]]:
+def _shared_and_own_texts(all_series: Sequence[AmplitudeSeries], name: str) -> tuple[str, list[str]]:
     """Returns (text of the parameters that are equal for all lines, text of the other parameters of each
     line); for an arm, of the quantities in the units typed by the user. name: parameter on the horizontal
     axis."""
@@ -156,8 +159,8 @@ def _common_and_own_texts(all_series: Sequence[AmplitudeSeries], name: str) -> t
         axis_names = [
             quantity for quantity, changed_name in PARAMETER_CHANGED_ALONG.items() if changed_name == name
         ]
-        numbers = [series.first_number for series in all_series]
-        return shared_and_own_of_arms(view, numbers, {name, *axis_names})
+        numbers = [series.first_point_number for series in all_series]
+        return shared_and_own_texts_of_arms(view, numbers, {name, *axis_names})
     return shared_and_own_texts([series.parameters for series in all_series])
 
 
@@ -174,4 +177,4 @@ def _label_axes(panels: Sequence[Axes], name: str, labels: Sequence[str]) -> Non
         axes.set_ylabel(label)
         grid_cell = axes.get_subplotspec()
         if grid_cell is not None and grid_cell.is_last_row():
-            axes.set_xlabel(style.LABELS[name])
+            axes.set_xlabel(style.AXIS_LABELS[name])

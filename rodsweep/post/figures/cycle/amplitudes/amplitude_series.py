@@ -18,7 +18,7 @@ from ..units_and_labels import DIMENSIONLESS_UNITS, CycleUnits
 class AmplitudeSeries:
     """Limit cycles of the file `view` at points that differ in one parameter x, in the order of the file.
 
-    Arrays have the shape (points,). amplitude_x: (x_max - x_min)/2 of the tip. amplitude_y: largest y of the
+    Arrays have the shape (points,). amplitude_x: (x_max - x_min)/2 of the tip. tip_y_max: largest y of the
     tip. Amplitudes, period and power of points without a cycle are NaN; the amplitudes of a straight rod are
     0.
     """
@@ -28,25 +28,25 @@ class AmplitudeSeries:
     """Parameters that are constant along the line, by name."""
     x: Array
     amplitude_x: Array
-    amplitude_y: Array
+    tip_y_max: Array
     period: Array
     power: Array
     """Mean power of the follower force over a period."""
     status_names: NDArray[np.str_]
     """Status of each point, as a word."""
-    hopf: list[LocatedThreshold]
+    hopf_points: list[LocatedThreshold]
     """Hopf points on the line; empty unless x is F."""
     units: CycleUnits
     """Units of all drawn quantities."""
-    first_number: int
+    first_point_number: int
     """Number of the first point of the line in the file, from 1."""
 
     @property
-    def measures(self) -> tuple[Array, ...]:
+    def drawn_quantities(self) -> tuple[Array, ...]:
         """Quantities drawn in the panels, from top to bottom."""
-        return self.amplitude_x, self.amplitude_y, self.period, self.power
+        return self.amplitude_x, self.tip_y_max, self.period, self.power
 
-    def with_gap_at_onset(self, values: Array) -> tuple[Array, Array]:
+    def with_gaps_at_straight_rods(self, values: Array) -> tuple[Array, Array]:
         """Returns (x, values) with NaN inserted between neighbouring points of which one is straight and one
         is not, because a line between these points would suggest a slope."""
         straight = self.status_names == "straight"
@@ -83,7 +83,7 @@ def amplitude_series(
     all_series = []
     stored_thresholds = StoredThresholds(view, "F")
     for line in lines_along(view.point_columns, name):
-        changes = stored_thresholds.thresholds_on(line) if name == "F" else []
+        changes = stored_thresholds.thresholds_on_line(line) if name == "F" else []
         indices = line.indices
         hopf_points = [
             change for change in changes if isinstance(change, LocatedThreshold) and change.changes_stability
@@ -91,16 +91,16 @@ def amplitude_series(
         all_series.append(
             AmplitudeSeries(
                 view=view,
-                parameters=line.parameters,
-                x=line.x,
+                parameters=line.other_parameters,
+                x=line.values,
                 amplitude_x=x_values[indices],
-                amplitude_y=y_values[indices],
+                tip_y_max=y_values[indices],
                 period=period[indices],
                 power=power[indices],
                 status_names=statuses[indices],
-                hopf=hopf_points,
+                hopf_points=hopf_points,
                 units=units,
-                first_number=int(indices[0]) + 1,
+                first_point_number=int(indices[0]) + 1,
             )
         )
     return all_series

@@ -1,5 +1,5 @@
 """Cycles near a cycle whose Newton matrix is factorised, corrected together with a test function from the
-module `fold_and_torus_functions`. A new matrix is assembled only if the corrections converge slowly."""
+module `fold_and_torus_test_functions`. A new matrix is assembled only if the corrections converge slowly."""
 
 from typing import TYPE_CHECKING
 
@@ -8,7 +8,7 @@ from ....orbit.orbit import Orbit
 from ....unsolvable import Unsolvable
 from ...bordered.condition import BorderCondition, moved_orbit
 from ...bordered.matrix import BorderedMatrix
-from .fold_and_torus_functions import MINIMALLY_AUGMENTED_SETTINGS
+from .fold_and_torus_test_functions import MINIMALLY_AUGMENTED_SETTINGS
 
 if TYPE_CHECKING:
     from ..cycle_family import CycleFamily  # for annotations only: the module imports this one
@@ -31,9 +31,9 @@ class NearbyCycleSolver:
 
     def _assemble_matrix(self, orbit: Orbit) -> None:
         """Assembles and factorises a new matrix at an orbit, with a new test function. Sets
-        `matrix_distance`, the relative distance of the current cycle from this orbit, to 0."""
+        `distance_from_matrix_orbit`, the relative distance of the current cycle from this orbit, to 0."""
         self.matrix = BorderedMatrix(orbit, self._family.scale, self._family.workspace)
-        self.matrix_distance = 0.0
+        self.distance_from_matrix_orbit = 0.0
         self.test_function = self._family.test_function(self.matrix)
 
     def solve(
@@ -48,9 +48,9 @@ class NearbyCycleSolver:
         for _ in range(MINIMALLY_AUGMENTED_SETTINGS.max_corrections):
             report()
             orbit, change = self._corrected_orbit(orbit, condition)
-            distance = self.matrix_distance
+            distance = self.distance_from_matrix_orbit
             previous_value = self.test_function.value(orbit)
-            self.test_function.correct_vectors(orbit)
+            self.test_function.correct_null_vectors(orbit)
             # Cycle and test function are corrected in turn: at a wrong cycle the exact function has no use.
             value = self.test_function.value(orbit)
             # The change of the test function, divided by `slope`, is a distance across the curve.
@@ -72,9 +72,12 @@ class NearbyCycleSolver:
                 tolerance, MINIMALLY_AUGMENTED_SETTINGS.tolerance_to_distance_ratio * abs(value) / slope
             ):
                 return orbit, value
-            if previous_change and correction_ratio > MINIMALLY_AUGMENTED_SETTINGS.max_correction_ratio:
+            if (
+                previous_change
+                and correction_ratio > MINIMALLY_AUGMENTED_SETTINGS.max_successive_correction_ratio
+            ):
                 # Corrections that stall at this size are rounding, which a new matrix would not reduce.
-                if change_after_step <= MINIMALLY_AUGMENTED_SETTINGS.max_rounding_correction:
+                if change_after_step <= MINIMALLY_AUGMENTED_SETTINGS.max_relative_correction_by_rounding:
                     return orbit, value
                 self._assemble_matrix(orbit)
                 # With a new matrix no ratio to the last change is known.
@@ -87,7 +90,7 @@ class NearbyCycleSolver:
     def _corrected_orbit(self, orbit: Orbit, condition: BorderCondition) -> tuple[Orbit, float]:
         """(orbit after one correction under `condition` with the current matrix, relative change of the
         orbit); raises Unsolvable."""
-        step = self.matrix.correction(orbit, condition.border, condition.residual(orbit))
+        step = self.matrix.newton_step_at_nearby_orbit(orbit, condition.border, condition.residual(orbit))
         change = condition.relative_change_within_limit(orbit, step)
-        self.matrix_distance += change
+        self.distance_from_matrix_orbit += change
         return moved_orbit(orbit, condition.scale.parameter_name, step), change

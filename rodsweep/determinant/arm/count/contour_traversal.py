@@ -1,0 +1,157 @@
+"""Traversal of the contour of a count of an arm's eigenvalues: the nodes, and the change of arg D between
+them.
+
+The phase between two nodes follows from the tangents log D(w) + L (v - w), L = D'/D, of log D(v) at both
+nodes w, if the error of each tangent is below pi/2 at a common point between the nodes.
+"""
+
+import cmath
+import math
+from typing import NamedTuple
+
+from ....arrays import Complex
+from ....model.compiled.compilation import compiled
+from ..determinant import PropagatorsUpToW
+from ..elements.settings import ARM_ELEMENT_SETTINGS
+from ..hull.region import EigenvalueHull
+from ..local_waves import ExponentSamples, mean_wave_number_and_w_scale
+from .phase_node import PhaseNode, linearised_log_determinant, phase_node
+from .settings import CONTOUR_SETTINGS
+
+
+class ContourTraversal(NamedTuple):
+    """State of a traversal of the contour of a count: on side number `side_number` of the box, at
+    `distance_on_side` from the start of this side.
+
+    phase_change: change of arg D so far. node_count: number of nodes so far. last_node: the last node.
+    valid_radius_growth: change of the valid radius per distance. distance_to_next_node: distance of the next
+    node, 0 if not chosen yet. required_w_bound: |w| for which propagators are needed to continue; 0 at the
+    end, inf if the change of phase is not determined.
+    """
+
+    side_number: int
+    distance_on_side: float
+    phase_change: float
+    node_count: int
+    last_node: PhaseNode
+    valid_radius_growth: float
+    distance_to_next_node: float
+    required_w_bound: float
+
+
+@compiled
+def continue_traversal(  # noqa: PLR0913, PLR0917 - state and constants of one walk
+    traversal: ContourTraversal,
+    box: tuple[Complex, float],
+    known_w: Complex,
+    hull: EigenvalueHull,
+    samples: tuple[ExponentSamples, ExponentSamples],
+    level: PropagatorsUpToW,
+) -> ContourTraversal:
+    """Continues a traversal of the box to the end, or until propagators for another |w| are needed. box:
+    (corners, largest |w| for which propagators are known to exist). level: (W, propagators) in use. samples:
+    samples of the arm's coefficients, which give the lengths over which D changes and the dominant wave."""
+    corners, largest_w = box
+    side, t, change, nodes, node, growth, step, _ = traversal
+    while side < len(corners) - 1:
+        end = corners[side + 1]
+        length = abs(end - corners[side])
+        # The comparison is exact because t is set to the length itself at a corner.
+        if t == length:
+            side, t, growth = side + 1, 0.0, 0.0
+            continue
+        if _is_phase_lost(node, nodes):
+            return ContourTraversal(side, t, change, nodes, node, growth, step, math.inf)
+        if step == 0:
+            step = min(_distance_to_next_node(node.valid_radius, growth), length - t)
+        # The last node of a side is the corner itself, where the next side starts, not a rounded sum.
+        w = end if step == length - t else corners[side] + (end - corners[side]) / length * (t + step)
+        unit = mean_wave_number_and_w_scale(w, samples[0])[1]
+        radius, min_W = _first_radius_and_required_w(w, unit, node.circle_radius, largest_w)
+        if not _are_propagators_reusable(level[0], min_W):
+            return ContourTraversal(side, t, change, nodes, node, growth, step, min_W)
+        neighbour = phase_node(w, known_w, (unit, min(radius, level[0] - abs(w))), hull, (samples[1], level))
+        nodes += 1
+        # A node that proves too far away still shows how fast the valid radius changes.
+        growth = (neighbour.valid_radius - node.valid_radius) / step
+        if abs(neighbour.w - node.w) < node.valid_radius + neighbour.valid_radius:
+            change += _phase_change_between(node, neighbour, samples[1])
+            t = length if neighbour.w == end else t + step
+            node = neighbour
+            step = 0.0
+        else:
+            step = _shortened_distance_to_next_node(node.valid_radius, growth, step)
+    return ContourTraversal(side, t, change, nodes, node, growth, step, 0.0)
+
+
+@compiled
+def _first_radius_and_required_w(
+    w: complex, unit: float, last_radius: float, largest_w: float
+) -> tuple[float, float]:
+    """Returns (radius of the first circle about the node w, |w| for which propagators are needed). unit:
+    length over which D changes. last_radius: radius of the circle at the last node, 0 if it has none.
+    largest_w: largest |w| for which propagators are known to exist."""
+    first = CONTOUR_SETTINGS.first_circle_radius_over_w_scale * unit
+    radius = first
+    if last_radius > 0:
+        radius = min(2 * last_radius, CONTOUR_SETTINGS.max_circle_radius_over_w_scale * unit)
+    wave_radius = CONTOUR_SETTINGS.max_dominant_wave_radius_over_im_w * w.imag
+    radius = max(radius, wave_radius)
+    limit = max(first, min(wave_radius, largest_w - abs(w)))
+    return radius, abs(w) + min(radius, limit)
+
+
+@compiled
+def _is_phase_lost(node: PhaseNode, node_count: int) -> bool:
+    """Whether the phase is lost: the valid radius of the node is too small, or there are too many nodes."""
+    min_radius = CONTOUR_SETTINGS.min_valid_radius_over_w * abs(node.w)
+    # Negated, so that a valid radius of nan counts as lost.
+    return not node.valid_radius > min_radius or node_count > CONTOUR_SETTINGS.max_nodes
+
+
+@compiled
+def _are_propagators_reusable(W: float, required_W: float) -> bool:
+    """Whether propagators for |w| <= W are valid at |w| = `required_W`, with W not much larger than that."""
+    return (
+        required_W <= W <= CONTOUR_SETTINGS.max_reused_W_over_w * max(required_W, ARM_ELEMENT_SETTINGS.min_W)
+    )
+
+
+@compiled
+def _distance_to_next_node(reach: float, growth: float) -> float:
+    """Distance to the next node: `distance_over_sum_of_valid_radii` times the sum of the current valid radius
+    and of the valid radius expected there. reach: the current valid radius. growth: expected change of the
+    valid radius per distance, clipped to between -1 and `max_valid_radius_growth`."""
+    overlap = CONTOUR_SETTINGS.distance_over_sum_of_valid_radii
+    return (
+        2 * overlap * reach / (1 - overlap * min(max(growth, -1.0), CONTOUR_SETTINGS.max_valid_radius_growth))
+    )
+
+
+@compiled
+def _shortened_distance_to_next_node(reach: float, growth: float, distance: float) -> float:
+    """A distance to the next node below `distance`. Repeated calls lead to a distance below `reach`, the
+    valid radius. growth: expected change of the valid radius per distance."""
+    shorter_distance = min(
+        _distance_to_next_node(reach, growth), CONTOUR_SETTINGS.max_shortened_step_ratio * distance
+    )
+    return (
+        shorter_distance
+        if shorter_distance > reach
+        else min(CONTOUR_SETTINGS.safe_step_over_radius * reach, distance / 2)
+    )
+
+
+@compiled
+def _phase_change_between(node: PhaseNode, next_node: PhaseNode, samples: ExponentSamples) -> float:
+    """The change of arg D between two nodes with overlapping discs, from their tangents and values of D."""
+    fraction = node.valid_radius / (node.valid_radius + next_node.valid_radius)
+    middle_w = node.w + fraction * (next_node.w - node.w)
+    # The tangents at both nodes predict the change. The values of D give the remainder, which is below pi
+    # because the discs overlap.
+    linear_change = (
+        linearised_log_determinant(node, middle_w, samples).imag
+        - linearised_log_determinant(next_node, middle_w, samples).imag
+    )
+    remaining_rotation = next_node.phase_factor / node.phase_factor * cmath.exp(complex(0.0, -linear_change))
+    return linear_change + cmath.phase(remaining_rotation)

@@ -1,0 +1,57 @@
+"""Search by Newton's method for the stable cycle near a motion: when Newton's method starts, and its
+failures."""
+
+from ...orbit.matrix.workspace import NewtonWorkspace
+from ...orbit.orbit import Orbit
+from ...unsolvable import Unsolvable
+from ..accuracy.refined_cycle import RefinedCycle
+from ..accuracy.refinement import refined_cycle
+from .transient_settings import TRANSIENT_SETTINGS
+
+
+class CycleSearch:
+    """Attempts of Newton's method near one motion. accuracy: requested relative accuracy of the cycle.
+    parameter_name: parameter of the cycle's tangent, or None. unstable_cycle: a nearby unstable cycle, or
+    None. attempt_count: number of attempts, up to a maximum. min_returns: number of returns of the motion
+    before the next attempt. successive_failures: number of successive failures."""
+
+    def __init__(
+        self,
+        accuracy: float,
+        parameter_name: str | None,
+        unstable_cycle: RefinedCycle | None,
+        workspace: NewtonWorkspace,
+    ) -> None:
+        self.accuracy = accuracy
+        self.parameter_name = parameter_name
+        self.unstable_cycle = unstable_cycle
+        self.workspace = workspace
+        self.attempt_count = self.min_returns = self.successive_failures = 0
+
+    def max_return_distance(self, may_settle: bool) -> float:
+        """Relative distance between returns below which Newton's method starts. may_settle: whether a motion
+        with a stored path may still settle."""
+        settings = TRANSIENT_SETTINGS
+        divisor = settings.return_distance_divisor_per_attempt**self.attempt_count
+        limit = settings.max_return_distance_for_newton / divisor
+        return min(limit, settings.max_return_distance_with_stored_path) if may_settle else limit
+
+    def count_attempt(self, returns: int) -> None:
+        """Counts an attempt after `returns` returns. The number of returns between attempts doubles with each
+        attempt."""
+        self.min_returns = returns + TRANSIENT_SETTINGS.returns_per_run * 2**self.attempt_count
+        self.attempt_count = min(self.attempt_count + 1, TRANSIENT_SETTINGS.max_counted_newton_attempts)
+
+    def stable_cycle_near(self, orbit: Orbit) -> RefinedCycle | None:
+        """The stable cycle near `orbit`; None if Newton's method fails or finds another cycle."""
+        try:
+            cycle = refined_cycle(orbit, self.accuracy, self.workspace, self.parameter_name)
+        except Unsolvable:
+            self.successive_failures += 1
+            return None
+        self.successive_failures = 0
+        if cycle.is_stable is False:
+            self.unstable_cycle = cycle
+        # If the largest multiplier is 1 to rounding error, periodic orbits of any amplitude form a family.
+        is_isolated = 1 - cycle.largest_multiplier_modulus >= TRANSIENT_SETTINGS.min_unit_circle_distance
+        return cycle if cycle.is_stable and is_isolated else None
