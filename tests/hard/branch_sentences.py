@@ -179,7 +179,8 @@ def _special_line(page, line, kind, true):
     for _, match in read(
         page, stated + rf", largest tip y (?:NUMBER|({NUMBER}) \(\+- ({NUMBER})\)) L", only=line
     ):
-        near = min((s for s in true.special_points if s.kind == kind), key=lambda s: abs(s.at - float(match[1])))
+        at = float(match[1])
+        near = min((s for s in true.special_points if s.kind == kind), key=lambda s: abs(s.at - at))
         why = [with_error(match[1], match[2], near.at)]
         for (plain, stated_, error), value in zip(
             ((match[3], match[4], match[5]), (match[6], match[7], match[8])),
