@@ -74,9 +74,9 @@ def jumps_on_mesh(rod: Rod, mesh: Mesh) -> Jumps:
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def _side_weights_at_jumps(material: RodMaterial, taper: float, mesh: Mesh) -> Array:
-    """The `jump_sides` of an arm, (k, 2, 7), with the weights of both sides in the means, and 0 in the
-    columns of the coefficients. Cached, because the weights are independent of all parameters except
-    the taper."""
+    """Columns for both sides of every jump of an arm, (k, 2, 7), with the weights of both sides in the means,
+    and 0 in the columns of the coefficients. Cached, because the weights are independent of all parameters
+    except the taper."""
     indices, _ = _indices_beside_jumps(material, mesh)
     points = mesh.one_sided_nodes[indices]
     weights = _one_sided_node_points(mesh).quadrature_weights[indices]

@@ -5,8 +5,8 @@ strain of both sides. The error of a shape that is integrated from mean strains 
 power of the order. The strains of both sides follow from the stress (`rodsweep.model.material.jump`); a shape
 that is integrated from these strains converges exponentially.
 
-Arrays over the nodes of every element contain the elements one after the other, like
-`Elements.element_nodes`.
+Arrays over the nodes of every element contain the elements one after the other; a node between two elements
+appears twice.
 """
 
 import numpy as np

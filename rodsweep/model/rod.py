@@ -131,9 +131,9 @@ class Rod:
 
     @property
     def equivalent_linear_rod_and_rate_factor(self) -> tuple["Rod", float]:
-        """Returns (linear rod, rate). Eigenvalues of this rod are `rate` times eigenvalues of the linear rod.
-        With the bending factor K = B(nu) of this rod's law, the linear rod has the coefficients (F/K, nu, c2
-        K, gamma3), and rate = K. Raises NotUniform for an arm that varies."""
+        """Returns (linear rod, rate factor). Eigenvalues of this rod are those of the linear rod, times the
+        factor. With the bending factor K = B(nu) of this rod's law, the linear rod has the coefficients (F/K,
+        nu, c2 K, gamma3), and the factor is K. Raises NotUniform for an arm that varies."""
         if not self.is_uniform:
             raise NotUniform(f"{self} is not uniform")
         law = self.material.constitutive_law

@@ -83,8 +83,9 @@ class PortraitRequest:
 def solve_rod_results(request: PortraitRequest, solve: SolveJobFunction = solve_job_in_memory) -> RodResults:
     """Solves and returns all results of a portrait.
 
-    solve: function that solves the only point of a job. If a result cannot be solved, `RodResults.missing`
-    has the reason. Raises InputError if the parameters are outside their ranges.
+    solve: function that solves the only point of a job. If a result cannot be solved,
+    `RodResults.missing_result_reasons` has the reason. Raises InputError if the parameters are outside their
+    ranges.
     """
     F_max = {"F_max": request.F_max}
     views = {"thresholds": solve(request.job_of_task("thresholds", F_max))}

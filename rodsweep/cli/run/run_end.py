@@ -77,7 +77,7 @@ class RunStatistics:
     """Number of points interrupted by a stop."""
     solved_items: dict[str, int] | None
     """Number of work items for the curves that this run solved, by kind of item: the phrase
-    `WorkItems.outcome`. None if no curves were to be computed."""
+    `WorkItems.done_item_phrase`. None if no curves were to be computed."""
     items_for_next_run: int | None
     """Number of work items for the curves whose results are stored for the next run, because the curves are
     incomplete; else None."""

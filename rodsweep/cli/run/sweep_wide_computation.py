@@ -59,8 +59,8 @@ class SweepWideComputation:
     ) -> tuple[PendingSweepWideVariables, dict[str, int]]:
         """Solves the work items of `pending`, and all that follow from their results, on all ranks, until
         none is left or the run is stopped. Returns (`pending` with the last work items, counts). counts: on
-        the first rank, number of items that all ranks solved in this run, by `WorkItems.outcome`; else 0.
-        Other arguments as in `solve`."""
+        the first rank, number of items that all ranks solved in this run, by `WorkItems.done_item_phrase`;
+        else 0. Other arguments as in `solve`."""
         solved_counts: dict[str, int] = {}
         items = pending.work_items
         while items is not None:

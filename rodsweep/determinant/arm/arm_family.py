@@ -23,7 +23,7 @@ from .elements.propagators import element_propagators
 from .elements.settings import ARM_ELEMENT_SETTINGS
 
 LINEAR_SPACING = math.inf
-"""Value of `ArmFamily.scale` for series in p itself, not in a logarithm of p."""
+"""Value of `ArmFamily.log_spacing_scale` for series in p itself, not in a logarithm of p."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,8 +39,9 @@ class ArmFamilySettings(KernelConstants):
         0.05,
         0.05,
     )
-    """`ArmFamily.scale` over the length of the interval, for each trial. Logarithmic spacing needs fewer arms
-    near complex forces of the size of the stiffness, where the stretch of rubber has branch points."""
+    """`ArmFamily.log_spacing_scale` over the length of the interval, for each trial. Logarithmic spacing
+    needs fewer arms near complex forces of the size of the stiffness, where the stretch of rubber has branch
+    points."""
     max_propagator_entries: int = 500_000
     """No family is made if the propagators of one arm have more entries: single arms are then faster."""
     max_chebyshev_tail: float = 1e-15

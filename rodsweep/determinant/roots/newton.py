@@ -39,8 +39,8 @@ def crossing_by_newton(
     """The zero of D(i eta; p) near the guess (eta, p), with errors from rounding and the last Newton step.
 
     origin, direction: coefficients at p = 0 and their derivative by p. scale: expected sizes of eta and p.
-    Returns `FAILED_EIGENVALUE` if a step exceeds `ROOT_NEWTON_SETTINGS.max_relative_step`, if eta <= 0, if
-    the Jacobian is singular, or if the method does not converge."""
+    Returns `FAILED_EIGENVALUE` if a step exceeds `ROOT_NEWTON_SETTINGS.max_step_over_expected_value`, if eta
+    <= 0, if the Jacobian is singular, or if the method does not converge."""
     last = math.inf
     for _ in range(ROOT_NEWTON_SETTINGS.max_steps):
         coefficients = coefficients_at(p, origin, direction)

@@ -29,7 +29,8 @@ class RootSettings(KernelConstants):
     """An eigenvalue w is checked for a double root if |D/D'| > this number times |w|."""
     min_ill_conditioned_relative_error: float = 1e-15
     """An eigenvalue w is ill-conditioned if its error by the typical rounding error of D exceeds this number
-    times |w|. Below, `SpectrumErrorSettings.rounding_in_ulps` covers the largest rounding errors of D."""
+    times |w|. Below, `SpectrumErrorSettings.rounding_error_in_ulps` covers the largest rounding errors of
+    D."""
     rounding_bound_fraction_at_root: float = 0.3
     """The rounding error of D at an ill-conditioned eigenvalue is estimated by this fraction of its bound
     `rounding_error_at_root`. With 0.22, of 46000 ill-conditioned eigenvalues of random rods near double

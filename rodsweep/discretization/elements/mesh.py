@@ -89,7 +89,7 @@ def mesh_with_edges(
     # At a node shared by two elements, D gives the mean of both slopes with the quadrature weights, so that W
     # D is the assembled matrix.
     D = weighted_D / node_weights[:, None]
-    # -D^T W: `weighted` is W D.
+    # -D^T W: `weighted_D` is W D.
     parts = D, D.T, -weighted_D.T, node_weights
     return Mesh(edges, order, NodeMatrices(*map(np.ascontiguousarray, parts)), **ratios)
 

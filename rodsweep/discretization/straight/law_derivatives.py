@@ -19,7 +19,7 @@ from ..nodal_rod import NodalRod
 @dataclass(frozen=True)
 class DerivativesByForce:
     """Derivatives with respect to the force F at all nodes: of the stretch nu of the straight rod,
-    (nodes + 1,), and of `LawDerivativesAtRest.tangent`, (3, nodes + 1)."""
+    (nodes + 1,), and of `LawDerivativesAtRest.law_tangent`, (3, nodes + 1)."""
 
     nu: Array
     law_tangent: Array

@@ -220,8 +220,8 @@ def _axes_table(view: ResultView) -> TextTable:
 
 def _count_and_range(values: np.ndarray, digits: int = ARM_QUANTITY_DIGITS) -> tuple[str, str, str]:
     """Returns (count, smallest, largest) of `values`, of any shape, as text. count: number of distinct
-    values. NaN is ignored. `largest` is empty if all values are equal. digits: significant digits of the
-    texts."""
+    values. NaN is ignored. The text of the largest value is empty if all values are equal. digits:
+    significant digits of the texts."""
     distinct = {f"{value:.{DIGITS_OF_EQUAL_PARAMETERS}g}" for value in values[~np.isnan(values)]}
     range_ends = sorted(map(float, distinct))
     texts = [f"{end:.{digits}g}" for end in range_ends]

@@ -12,7 +12,7 @@ class SpectrumSampleSettings:
     """Settings of the samples of the spectrum along a path and of the interpolation between two samples."""
 
     min_computed_modes: int = 4
-    """Minimum number of leading eigenvalues computed for one arm of a path (`arm.axis_modes`); at least two
+    """Minimum number of leading eigenvalues computed for one arm of a path; at least two
     more than the number of unstable modes are computed."""
     arm_eigenvalue_accuracy: float = 1e-6
     """Relative accuracy of the eigenvalues of one arm, before the refinement by Newton's method on D."""

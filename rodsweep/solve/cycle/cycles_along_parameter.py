@@ -60,8 +60,8 @@ PARAMETER_STEP_CONTROL = StepControl(
     max_solutions=100,
 )
 """Control of the steps into which a parameter change is divided; a step length is a fraction of this change.
-Newton's method needs two matrices for a prediction error of `target_prediction_error`. `max_error` is
-infinite, because `orbit_near_prediction` already rejects cycles far from the prediction."""
+Newton's method needs two matrices for a prediction error of `target_prediction_error`. `max_prediction_error`
+is infinite, because `orbit_near_prediction` already rejects cycles far from the prediction."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -60,8 +60,8 @@ def solve_cycle(
     """Outcome of the search for the cycle of a rod from its leading mode, a neighbour's cycle or a Hopf
     point; a failure becomes a status, never an exception.
 
-    start: `CycleOutcome.neighbour` of the previous rod of a chain, or None. parameter_name: name of the
-    parameter that varies along the chain. workspace: memory of Newton's matrices, or None for new memory.
+    start: `CycleOutcome.start_for_next_rod` of the previous rod of a chain, or None. parameter_name: name of
+    the parameter that varies along the chain. workspace: memory of Newton's matrices, or None for new memory.
     """
     memory = workspace or NewtonWorkspace()
 

@@ -82,7 +82,7 @@ def _coefficient_log_decay_per_order(c: Array) -> float:
     envelope = COEFFICIENT_TAIL_SETTINGS.min_coefficient_ratio
     slope_sum = 0.0
     squares = 0.0
-    # From the last coefficient down: `highest` is an envelope, on which single zeros have no effect.
+    # From the last coefficient down: `envelope` is the running maximum, on which single zeros have no effect.
     for k in range(size - 1, size // 2 - 1, -1):
         for a in range(fields):
             envelope = max(envelope, c[a, k] / max(c[a].max(), EXPONENT_SETTINGS.min_divisor))
@@ -142,7 +142,7 @@ def smooth_space_and_time_tails(orbit: Orbit) -> Array:
 def smooth_element_and_time_tails(orbit: Orbit) -> Array:
     """Tail in space of each element, then the tail in time, (elements + 1,), each divided by the largest
     value of the field. These tails change smoothly along a branch, because a tail in space is the norm of
-    `COEFFICIENT_TAIL_SETTINGS.last_coefficients` coefficients: a single coefficient may vanish."""
+    `COEFFICIENT_TAIL_SETTINGS.last_coefficient_count` coefficients: a single coefficient may vanish."""
     stresses = _stresses_of_elements(orbit, orbit.all_states)
     max_stress = np.max([np.abs(values).max(axis=(1, 2)) for values in stresses], axis=0)
     end_norms = np.array(
@@ -172,7 +172,7 @@ def _stresses_of_elements(orbit: Orbit, states: Array) -> list[Array]:
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def _last_columns_of_analysis_matrix(order: int) -> Array:
     """Last columns of `_analysis_matrix_on_element`, (p + 1,
-    `COEFFICIENT_TAIL_SETTINGS.last_coefficients`)."""
+    `COEFFICIENT_TAIL_SETTINGS.last_coefficient_count`)."""
     return np.ascontiguousarray(
         _analysis_matrix_on_element(order)[:, -COEFFICIENT_TAIL_SETTINGS.last_coefficient_count :]
     )

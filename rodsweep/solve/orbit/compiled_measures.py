@@ -57,7 +57,7 @@ class TipPath(NamedTuple):
 
 
 class PowerMeansAndLeastStretch(NamedTuple):
-    """Means (`_mean`) and rms fluctuations (`_rms`) of the powers over a period, and the smallest h1; names
+    """Means and rms fluctuations of the powers over a period, and the smallest h1; names
     and units as in `CycleMeasures`."""
 
     injection_mean: float

@@ -32,7 +32,8 @@ def gauss_method(stage_count: int) -> tuple[Array, Array, Array]:
 
 @cache
 def _collocation_method() -> IntegrationMatrices:
-    """The collocation method of `ARM_ELEMENT_SETTINGS.stages` Gauss points, as arrays for compiled code."""
+    """The collocation method of `ARM_ELEMENT_SETTINGS.stage_count` Gauss points, as arrays for compiled
+    code."""
     _, integrals, weights = gauss_method(ARM_ELEMENT_SETTINGS.stage_count)
     return IntegrationMatrices(np.ascontiguousarray(integrals), np.ascontiguousarray(weights))
 

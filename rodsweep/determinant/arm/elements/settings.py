@@ -32,7 +32,7 @@ class ArmElementSettings(KernelConstants):
     """Smallest W, the bound of |w| up to which elements are valid; for smaller |w| the load and the taper,
     not w, determine the length of elements. A mean of c2 gamma2 + c3 gamma3 above 1 divides it."""
     W_over_w: float = 1.1
-    """New elements are valid up to W = w_bound_ratio |w|: the reserve is for slightly larger |w|."""
+    """New elements are valid up to W = W_over_w |w|: the reserve is for slightly larger |w|."""
     max_reused_W_over_w: float = 1e3
     """Existing elements are reused at w if their W is at most this number times |w|. Making new elements
     costs as much as thirty evaluations of D on twice as many elements."""

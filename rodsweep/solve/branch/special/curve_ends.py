@@ -30,7 +30,7 @@ class SpecialCurveEndSettings:
 
 SPECIAL_CURVE_END_SETTINGS = SpecialCurveEndSettings()
 ROW_EDGE_MARGIN_INDICES = (2, 3)
-"""Indices, in `SpecialCurveProblem.margins`, of the two edges that are parallel to the rows."""
+"""Indices, in `SpecialCurveProblem.margins_to_curve_end`, of the two edges that are parallel to the rows."""
 END_REASON_BY_MARGIN = (
     *4 * (CurveEndReason.edge,),
     CurveEndReason.crushed,

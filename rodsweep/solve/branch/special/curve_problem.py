@@ -127,7 +127,8 @@ class SpecialCurveProblem(CurvePointSolver):
 
     def margins_to_curve_end(self, point: SolvedCurvePoint) -> Array:
         """Margins, (7,); the curve ends where a margin becomes 0: distances from the four edges, 1 -
-        `RodMaterial.crushing_ratio` - `crushing`, smallest h1, largest tip y minus `min_amplitude`."""
+        `RodMaterial.force_over_crushing_force` - `crushing_margin`, smallest h1, largest tip y minus
+        `min_amplitude`."""
         # The edges belong to the plane, whichever parameter varies along the branch.
         plane_point = self.with_unexchanged_roles(point)
         x = self.axis_along_row.scaled_coordinate(plane_point.branch_parameter)

@@ -19,9 +19,9 @@ def trace_half_curve(
     special_points: Sequence[RowSpecialPoint],
     values_of_rows_with_known_branches: Mapping[int, float],
 ) -> TracedHalfCurve:
-    """One half of a curve, from the point in `located` that agrees with `special_point`; the field `half` is
-    None if no point agrees or after a failure. located: special points of the row, with cycles.
-    special_points: special points of all rows. values_of_rows_with_known_branches: value of the row
+    """One half of a curve, from the point in `located` that agrees with `special_point`; the field
+    `half_curve` is None if no point agrees or after a failure. located: special points of the row, with
+    cycles. special_points: special points of all rows. values_of_rows_with_known_branches: value of the row
     parameter, by index, of the rows whose branches are all known."""
     row_length = abs(problem.axis_along_row.parameter_per_scaled_coordinate(special_point.parameter_value))
     # The stored point has no cycle; the located point that has one is recognised by its values.

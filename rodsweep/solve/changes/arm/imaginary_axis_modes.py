@@ -84,9 +84,9 @@ class ModesAlongPath:
         return self.modes_by_p[p]
 
     def _compute_modes(self, p: float, guesses: Complex | None) -> ArmModes:
-        """The modes near the imaginary axis if `has_many_modes(p)` and their count is decided, otherwise the
-        leading modes; raises Unsolvable. guesses: approximate eigenvalues near the imaginary axis, (n,), one
-        of each pair, if available."""
+        """The modes near the imaginary axis if `computes_only_near_imaginary_axis(p)` and their count is
+        decided, otherwise the leading modes; raises Unsolvable. guesses: approximate eigenvalues near the
+        imaginary axis, (n,), one of each pair, if available."""
         # The neighbour's count gives the number of modes: the unstable modes and one more pair.
         nearest_modes = min(self.modes_by_p.values(), key=lambda place: abs(place.p - p), default=None)
         expected_count = 0 if nearest_modes is None else nearest_modes.unstable_count

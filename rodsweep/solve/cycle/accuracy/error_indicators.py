@@ -28,7 +28,7 @@ and theta; only the slopes determine the very last harmonic."""
 def error_indicators(solved: ConvergedOrbit, motion: CycleMotion) -> Array:
     """Indicators, (3,), of the errors due to the time intervals: w/(2 E), the estimated relative error of the
     amplitude, and the 2-norm of the last harmonics of the tip's path, divided by the largest y; not below
-    `CYCLE_ERROR_SETTINGS.rounding_error`. motion: motion of the orbit `solved`.
+    `CYCLE_ERROR_SETTINGS.relative_rounding_error`. motion: motion of the orbit `solved`.
 
     w: energy lost by the collocation in the solved part of the period. E: energy of the motion. E is
     proportional to the squared amplitude, so the loss w changes the amplitude by the fraction w/(2 E). A

@@ -73,8 +73,8 @@ def eliminate_newton_matrix(
             B[start_block_index(a)] = right_matrices[a]
         reduce_right_sides(B, columns[k], p)
         map_start_to_end(B, columns[k], p, ends)
-        # `right` was computed for x_0 = M^-1, so that B[INTERVAL_MAP] acts on M x_0: M is between the maps of
-        # two intervals.
+        # `right_matrices` was computed for x_0 = M^-1, so that B[INTERVAL_MAP] acts on M x_0: M is between
+        # the maps of two intervals.
         square_matrix_product(B[INTERVAL_MAP], so_far, factors.propagator, 1.0, 0.0)
         for r in range(n):
             for q in range(n):
@@ -132,7 +132,7 @@ def _eliminate_first_two_stages(B: Array, right_matrices: Array, parts: Array, p
     n = B.shape[2]
     d = p.stage_differentiation_matrix
     mass = p.mass_diagonal
-    # For x_0 = M^-1 the columns of `right` have the factor -1 instead of M.
+    # For x_0 = M^-1 the columns of `right_matrices` have the factor -1 instead of M.
     minus = -np.ones(n)
     Z = parts[0]
     W = parts[1]

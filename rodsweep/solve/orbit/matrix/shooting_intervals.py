@@ -100,7 +100,7 @@ class ShootingIntervals:
             for A in (*earlier_maps, orbit.symmetry.apply_inverse_to_flow(last_map, orbit.form.layout)):
                 basis, R = np.linalg.qr(A @ basis)
                 triangle = R @ triangle
-        # The map is `ahead triangle start^T`, which has the nonzero eigenvalues of this matrix.
+        # The map is `basis triangle start^T`, which has the nonzero eigenvalues of this matrix.
         triangular_map = triangle @ (start.T @ basis)
         if not np.isfinite(triangular_map).all():
             raise np.linalg.LinAlgError("the flow derivative of the cycle is not finite")

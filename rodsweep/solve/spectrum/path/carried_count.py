@@ -1,9 +1,9 @@
 """A count of eigenvalues carried along a path, as long as a proof with a moving line succeeds.
 
-At the first point the leading `known` followed eigenvalues are proved to be all eigenvalues to the right of a
-line. A line in a gap between followed eigenvalues is moved, with the gap, to another point. If no eigenvalue
-crosses the moving line (`rodsweep.determinant.moving_line`), the number of eigenvalues to the right of the
-line is the same at every point between.
+At the first point it is proved that the leading followed eigenvalues, up to one of them, are all eigenvalues
+to the right of a line. A line in a gap between followed eigenvalues is moved, with the gap, to another point.
+If no eigenvalue crosses the moving line (`rodsweep.determinant.moving_line`), the number of eigenvalues to
+the right of the line is the same at every point between.
 """
 
 from dataclasses import dataclass
@@ -149,7 +149,8 @@ def carry_count(
             )
             proved, _ = proves_no_crossing(first, end, direction, most)
         if proved:
-            # The number of eigenvalues to the right of this gap is proved, even if `known` was larger before.
+            # The number of eigenvalues to the right of this gap is proved, even if the proved number was
+            # larger before.
             proved_counts[i + 1 : j + 1] = gap
             i = j
             # After a successful proof, a proof over twice as many points often succeeds.

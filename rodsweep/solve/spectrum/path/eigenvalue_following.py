@@ -97,7 +97,7 @@ def curvature_estimate(w: Complex, k: int) -> float:
 def converged_error(step: CorrectedEigenvalue, crowding: float, exact: bool) -> float:
     """Absolute error of an eigenvalue after a Newton step; inf until the remainder crowding step^2 is small
     enough. crowding: upper estimate of |D''/(2 D')| at the eigenvalue. exact: whether the remainder must be
-    below the rounding error, instead of `EIGENVALUE_FOLLOWING_SETTINGS.accuracy` |w|."""
+    below the rounding error, instead of `EIGENVALUE_FOLLOWING_SETTINGS.accuracy_beyond_leading_modes` |w|."""
     remainder = crowding * step.step_length * step.step_length
     allowed = (
         max(step.rounding_error, MACHINE_EPSILON * abs(step.w))
