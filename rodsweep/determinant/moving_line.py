@@ -67,8 +67,8 @@ class IntervalEnd(NamedTuple):
 
 
 class UnprovedStrip(NamedTuple):
-    """The part above y of the strip over a subinterval of p; D may still have zeros in this part. p_start,
-    stop_fraction: ends of the subinterval, as fractions of the whole interval of p.
+    """The part above y of the strip over a subinterval of p; D may still have zeros in this part.
+    start_fraction, stop_fraction: ends of the subinterval, as fractions of the whole interval of p.
     next_rectangle_half_height: half the height of the next rectangle to try, in y."""
 
     start_fraction: float

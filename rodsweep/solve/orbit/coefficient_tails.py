@@ -45,8 +45,9 @@ COEFFICIENT_TAIL_SETTINGS = CoefficientTailSettings()
 @dataclass(frozen=True, slots=True)
 class CoefficientTails:
     """Tails of an orbit. space_tail: size of the last Legendre coefficients in space, divided by the largest
-    coefficient. time_tail: size of the last coefficient in time, divided by the largest value. space_decay:
-    decrease of the natural logarithm of the coefficients in space per order."""
+    coefficient. time_tail: size of the last coefficient in time, divided by the largest value.
+    log_coefficient_decay_per_order: decrease of the natural logarithm of the coefficients in space per
+    order."""
 
     space_tail: float
     time_tail: float

@@ -58,7 +58,7 @@ CANDIDATE_SETTINGS = CandidateSettings()
 
 @dataclass(frozen=True, slots=True)
 class Candidates:
-    """Outcome of one solve on `mesh`: k roots of D, sorted as defined in `rodsweep.model`. vectors:
+    """Outcome of one solve on `mesh`: k roots of D, sorted as defined in `rodsweep.model`. eigenvectors:
     eigenvectors on the mesh, (unknowns, k), or None. failure: error message of SLEPc or LAPACK, or empty."""
 
     mesh: AnyMesh

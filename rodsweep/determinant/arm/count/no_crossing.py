@@ -55,10 +55,10 @@ class ArmsOfInterval(NamedTuple):
 
 
 class LineNode(NamedTuple):
-    """The node w0 of a disc, with values of the middle arm. w: w0. D: D(w0) exp(-S), S = `log_scale`. L:
-    D'/D, with the eigenvalues divided out. divided_out_indices: indices of the known eigenvalues that are
-    divided out, (k,). dominant_exponent_and_slope: (Phi, dPhi/dw) if h contains the dominant wave, else (0,
-    0)."""
+    """The node w0 of a disc, with values of the middle arm. w: w0. D: D(w0) exp(-S), S = `log_scale`.
+    log_derivative: D'/D, with the eigenvalues divided out. divided_out_indices: indices of the known
+    eigenvalues that are divided out, (k,). dominant_exponent_and_slope: (Phi, dPhi/dw) if h contains the
+    dominant wave, else (0, 0)."""
 
     w: complex
     D: complex

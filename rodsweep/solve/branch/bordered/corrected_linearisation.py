@@ -49,9 +49,10 @@ LINEARISATION_CORRECTION_SETTINGS = LinearisationCorrectionSettings()
 @dataclass(frozen=True, eq=False)
 class CorrectedLinearisation:
     """Tangent and multipliers at `orbit`, corrected with the factors of the nearby matrix `nearby_matrix`.
-    corrected_tangent: tangent of the branch, (N + 1,), of unit arc length. multipliers_over_solved_part:
-    multipliers over the solved part of the period, (rank,). relative_error: estimate of the relative error of
-    the tangent and of the multipliers, divided by the largest modulus or 1."""
+    corrected_tangent: tangent of the branch, (N + 1,), of unit arc length.
+    multipliers_over_solved_time_interval: multipliers over the solved part of the period, (rank,).
+    relative_error: estimate of the relative error of the tangent and of the multipliers, divided by the
+    largest modulus or 1."""
 
     orbit: Orbit
     nearby_matrix: BorderedMatrix

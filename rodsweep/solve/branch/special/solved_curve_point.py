@@ -121,9 +121,9 @@ class MeasuredCurveError:
     """Measured error of a point of a curve. At the next points the error is used again, scaled with the
     squared coefficient tails.
 
-    relative_error: relative error of the parameter along a row at the measured point. tails, mesh:
-    coefficient tails in space and time, (2,), and mesh of the orbit at the measured point.
-    reuse_count: number of points since the measurement."""
+    relative_error: relative error of the parameter along a row at the measured point. coefficient_tails,
+    mesh: coefficient tails in space and time, (2,), and mesh of the orbit at the measured point. reuse_count:
+    number of points since the measurement."""
 
     relative_error: float
     coefficient_tails: Array
