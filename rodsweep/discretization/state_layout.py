@@ -23,7 +23,7 @@ BENDING_INDEX: index of the component m3. Both constants are for compiled code."
 @dataclass(frozen=True, slots=True)
 class StateLayout:
     """Order of the unknowns in states of the shape (..., unknowns). component_count: number of stress
-    components. node_count: number of nodes without the tip. unknown_velocity_components: indices of the
+    components. node_count: number of nodes without the tip. unknown_velocities: indices of the
     components of V that are unknowns. Velocities at the tip are unknowns, stresses at the tip are 0."""
 
     component_count: int
@@ -99,7 +99,7 @@ class StateLayout:
 
 def plane_layout(node_count: int, unknown_velocities: tuple[int, ...] = ()) -> StateLayout:
     """Layout of the states of a rod in the plane. node_count: number of nodes without the tip.
-    unknown_velocity_components: indices of the components of V that are unknowns."""
+    unknown_velocities: indices of the components of V that are unknowns."""
     return StateLayout(SE2_DIMENSION, node_count, unknown_velocities)
 
 

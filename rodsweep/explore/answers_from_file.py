@@ -73,10 +73,9 @@ class AnswersFromFile:
         return point if is_filmed else None
 
     def load_selected_by_click(self, state: PageState, load: float) -> float:
-        """Load that a click at the load `load_name` selects, in the unit of the control: the nearest stored
-        load if its distance is small, see `CLICK_TOLERANCE_IN_SPACINGS`; otherwise `load_name`. Also
-        `load_name` if the file has no cycles, fewer than two loads for the rod of `state`, or results of the
-        other tab."""
+        """Load that a click at `load` selects, in the unit of the control: the nearest stored load if its
+        distance is small, see `CLICK_TOLERANCE_IN_SPACINGS`; otherwise `load`. Also `load` if the file has no
+        cycles, fewer than two loads for the rod of `state`, or results of the other tab."""
         if state.tab != self.state.tab or not self.has_cycles:
             return load
         stored_loads = np.unique(

@@ -104,7 +104,7 @@ def _rod_scale(
     name: str, lowest_value: float, highest_value: float, logarithmic: bool = True, has_inf: bool = False
 ) -> SliderScale:
     """Scale of a rod's parameter `name`. lowest_value, highest_value: values at the ends of the slider.
-    is_upper_end_inf: whether the upper end means inf."""
+    has_inf: whether the upper end means inf."""
     parameter = PARAMETERS[name]
     unit = "" if parameter.unit == "1" else f" ({parameter.unit})"
     label = f"{name}: {parameter.meaning}{unit}"

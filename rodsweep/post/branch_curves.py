@@ -100,7 +100,7 @@ class RodBranches:
 
 
 def runs_of_equal_stability(stable: NDArray[np.integer]) -> Iterator[tuple[slice, int]]:
-    """Yields (vertices, stability) of each run of equal values in `stability`, (n - 1,). vertices: a
+    """Yields (vertices, stability) of each run of equal values in `stable`, (n - 1,). vertices: a
     slice."""
     starts = [0, *(np.flatnonzero(np.diff(stable)) + 1), len(stable)]
     yield from ((slice(start, end + 1), int(stable[start])) for start, end in pairwise(starts) if end > start)

@@ -78,7 +78,7 @@ class LoadFormatter:
 
 
 def _shortened_load(load: object, value: float, si_unit: str) -> str:
-    """The load `load_name` as text: as the user typed it, or rounded to four digits if its number is long. A
+    """The load `load` as text: as the user typed it, or rounded to four digits if its number is long. A
     load given as a number is written in the SI unit `si_unit`, in which it is `value`."""
     if not isinstance(load, str):
         return f"{value:.4g} {si_unit}"

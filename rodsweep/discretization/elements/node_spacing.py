@@ -38,5 +38,5 @@ def position_slopes(t: Array, spacing_ratio: float) -> Array:
 
 
 def node_spacing_ratios_of_halves(ratios: tuple[float, ...]) -> tuple[float, ...]:
-    """`spacing_ratio` of all elements after every element is halved: the spacing is linear in v."""
+    """Spacing ratios of all elements after every element is halved: the spacing is linear in v."""
     return tuple(half for s in ratios for half in ((1 + s) / 2, 2 * s / (1 + s)))

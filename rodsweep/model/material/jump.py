@@ -53,7 +53,7 @@ class LawUnknowns(NamedTuple):
 
 @compiled
 def _section_of_side(side: Array) -> LocalSection:
-    """The section on one side of a jump; side: a row of `sides`, (7,)."""
+    """The section on one side of a jump; side: the values of this side, (7,)."""
     return LocalSection(side[0], side[1], side[2])
 
 

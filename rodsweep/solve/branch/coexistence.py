@@ -92,7 +92,8 @@ def solve_coexistence(
 
 
 def crushed_coexistence_row(values: Array) -> CoexistenceRow:
-    """A row in which the force crushes the rod at all `parameter_values`, (values,): it has no cycles."""
+    """A row in which the force crushes the rod at all parameter values `values`, (values,): it has no
+    cycles."""
     states = np.full(len(values), StableStates.crushed, dtype=np.int8)
     return CoexistenceRow(
         straight_rod_row=crushed_row(values), stable_states=states, status=CoexistenceStatus.ok
@@ -146,7 +147,7 @@ def special_points_of(branches: BranchesOfRod) -> tuple[SpecialPoint, ...]:
 
 
 def _undecided_values_text(name: str, values: Array) -> str:
-    """Message about the `parameter_values` of the parameter `name`, (n,), at which the stable states are
+    """Message about the values `values` of the parameter `name`, (n,), at which the stable states are
     undecided because of the cycles; empty for n = 0."""
     if not len(values):
         return ""

@@ -73,7 +73,7 @@ def _period_and_largest_tip_y_errors(errors: CycleErrors) -> Array:
 def _normal_form_point_at_range_end(
     start: BranchCycle, hopf: HopfBranchStart, limits: BranchLimits, index: int
 ) -> SpecialPoint:
-    """The special point at the end `range_end_index` of the range: the normal form, corrected by its
+    """The special point at the end `index` of the range (0 or 1): the normal form, corrected by its
     deviation from the cycles near the Hopf point. The errors of the correction, of the coefficients of the
     normal form and of the Hopf point are added."""
     coordinate = limits.coordinate_range[index]

@@ -110,7 +110,7 @@ class CountComparison:
 
     @property
     def agrees(self) -> bool:
-        """Whether `count_right_of` and `found_count` are equal, and every found eigenvalue is clear of the
+        """Whether `count` and `found_count` are equal, and every found eigenvalue is clear of the
         line."""
         return self.is_line_clear and self.count.number == self.found_count
 

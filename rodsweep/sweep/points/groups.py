@@ -72,7 +72,7 @@ class PointGroups:
         return indices_along(self.shape, self.axis, line, positions)
 
     def missing_counts(self, groups: IndexRange, missing: IndexSet) -> NDArray[np.int64]:
-        """Number of points in `missing_points` of each group in a range of group numbers, (groups,)."""
+        """Number of points in `missing` of each group in a range of group numbers, (groups,)."""
         position_of_group, line = np.divmod(np.arange(*groups)[:, None], self.line_count)
         positions = position_of_group * MAX_GROUP_POINTS + np.arange(MAX_GROUP_POINTS)
         index = indices_along(self.shape, self.axis, line, positions)

@@ -112,7 +112,7 @@ def rods_for_flutter_forces(config: Config) -> list[Rod]:
 def require_in_range(
     allowed: Range, name: str, values: Iterable[float], place: str = "", reason: str = ""
 ) -> None:
-    """Raises InputError for the first of `values` outside the range `allowed_range` of the parameter `name`.
+    """Raises InputError for the first of `values` outside the range `allowed` of the parameter `name`.
     place, reason: phrases inserted into the message after the value and at the end."""
     invalid_value = allowed.first_outside(values)
     if invalid_value is not None:

@@ -61,8 +61,8 @@ class TrialPoints(NamedTuple):
 @compiled
 def trial_points(u: Array, coefficients: Array, loads: Array, F: float, h: float) -> TrialPoints:
     """The points for the half-width h of an arm under the force F with the points u, (points,), where the arm
-    has the `LocalCoefficients` `coefficients`, (6, points), and the `load_terms` of `TrialPoints`,
-    (points,)."""
+    has the `LocalCoefficients` `coefficients`, (6, points), and `loads`, the terms of the load as in
+    `TrialPoints`, (points,)."""
     points, sources = _with_points_where_window_ends_jump(u, h)
     coefficients_at_points = np.empty((6, len(points)))
     loads_at_points = np.empty(len(points))

@@ -103,7 +103,7 @@ class BorderCondition:
         return matrix.newton_step_at_nearby_orbit(orbit, self.border, residual)
 
     def relative_change_within_limit(self, orbit: Orbit, step: Array) -> float:
-        """Relative change of orbit and parameter in Newton's `newton_step`, (N + 1,); raises Unsolvable if
+        """Relative change of orbit and parameter in Newton's step `step`, (N + 1,); raises Unsolvable if
         this change is too large."""
         change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate_unit)
         # Negated, so that a step of nan ends the search too.

@@ -56,7 +56,7 @@ class BoundarySeed:
 def seed_of(
     values: tuple[float, float], kind: int, frequency: float, growth_rate: float
 ) -> BoundarySeed | None:
-    """The seed at a threshold with the given `parameter_values` of both parameters; None for an overtaking of
+    """The seed at a threshold with the given `values` of both parameters; None for an overtaking of
     a real eigenvalue and a pair, because no boundary consists of overtakings. kind: value of `ThresholdKind`.
     frequency, growth_rate: Im and Re of the eigenvalue, in 1/tau2."""
     if kind in (ThresholdKind.hopf, ThresholdKind.hopf_reverse, ThresholdKind.restabilization):

@@ -90,7 +90,7 @@ def solve_row(rod: Rod, request: RowRequest) -> DiagramRow:
 
 
 def crushed_row(values: Array) -> DiagramRow:
-    """A row in which the force crushes the rod at all `parameter_values`, (values,), of the parameter."""
+    """A row in which the force crushes the rod at all `values`, (values,), of the parameter."""
     return _row_of_one_class(ThresholdStatus.ok, values, StabilityClass.crushed)
 
 

@@ -159,7 +159,7 @@ class ProvedEigenvalues(NamedTuple):
 
     def spectrum(self, mode_count: int, accuracy: float) -> Spectrum | None:
         """The leading `mode_count` eigenvalues if they were followed, have the relative accuracy
-        `eigenvalue_accuracy` and are proved complete; else None."""
+        `accuracy` and are proved complete; else None."""
         if self.track.w.shape[1] < mode_count:
             return None
         is_good, unstable_counts = certified_points_and_unstable_counts(
