@@ -150,13 +150,25 @@ class Elements:
             matrix[indices, columns] = lagrange_interpolation_matrix(nodes, coordinates)
         return matrix
 
+    def element_indices(self, points: Array) -> NDArray[np.integer]:
+        """Index of the element of each of the `points`, (n,), in [0, 1]. A point between two elements belongs
+        to the right element."""
+        # The clip puts u = 1, which lies right of the last edge, into the last element.
+        return np.clip(np.searchsorted(self.edges, points, side="right") - 1, 0, self.element_count - 1)
+
+    def points_inside_elements(self, points: Array) -> Array:
+        """The `points`, (n,), in [0, 1], each moved inside its element if it lies at an end, as for
+        `one_sided_nodes`."""
+        distance = ELEMENT_SETTINGS.one_sided_node_offset
+        element = self.element_indices(points)
+        edges = np.array(self.edges)
+        return np.clip(points, edges[element] + distance, edges[element + 1] - distance)
+
     def points_by_element(self, points: Array) -> Iterator[tuple[int, NDArray[np.integer], Array]]:
         """Yields (element, indices, coordinates) for each element that contains some of the `points`, (n,).
         indices: indices of the points in the element. coordinates: coordinates of these points, from -1 to 1
-        along the element (2 t - 1 with t of `node_spacing`). A point between two elements belongs to the
-        right element."""
-        # The clip puts u = 1, which lies right of the last edge, into the last element.
-        element = np.clip(np.searchsorted(self.edges, points, side="right") - 1, 0, self.element_count - 1)
+        along the element (2 t - 1 with t of `node_spacing`)."""
+        element = self.element_indices(points)
         for e in np.unique(element):
             indices = np.nonzero(element == e)[0]
             v = (points[indices] - self.edges[e]) / self.lengths[e]

@@ -1,4 +1,4 @@
-"""The transverse eigenproblem of one rod on one mesh as dense matrices, and strains of its eigenvectors.
+"""The transverse eigenproblem of one rod on one mesh as dense matrices, and the fields of its eigenvectors.
 
 The unknowns (y, theta, s) and their scales are defined in `pencil` and `arm_pencil`.
 """
@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
 from ...model.rod import Rod
-from ..elements.elements import ELEMENT_SETTINGS, Elements
+from ..elements.elements import Elements
 from .arm_pencil import ArmPencil
-from .pencil import Pencil, displacements_of_eigenvectors, field_derivatives_at, shear_force
+from .pencil import Pencil, displacements_of_eigenvectors, shear_force, value_and_slope_matrices
 
 AnyPencil = Pencil | ArmPencil
 """The pencil of a uniform rod of linear material, or of an arm."""
@@ -36,13 +36,27 @@ class DenseEigenproblem:
         (nodes + 1, k) each."""
         return displacements_of_eigenvectors(vectors, self.displacement_factors)
 
-    def strains(self, vectors: Complex, points: Array) -> Complex:
-        """Strains (h2, Pi) = (Y' - nu Theta, Theta') of k eigenvectors, (unknowns, k), at points, (points,):
-        (2, k, points). h2 = c2 s is exactly 0 in an unshearable rod. At a jump of a coefficient both strains
-        are limits from the right."""
-        c2 = self.rod.local_coefficients(_points_moved_inside_elements(self.mesh, points)).c2
-        shear = c2[:, None] * shear_force(self.mesh, vectors, points)
-        return np.stack([shear.T, field_derivatives_at(self.mesh, self.displacements(vectors)[1], points).T])
+    def fields_at(self, X: Complex, Z: Complex, points: Array) -> Complex:
+        """Fields of k modes at points, (points,): (6, k, points).
+
+        X, Z: right and left eigenvectors, (unknowns, k) each. The fields are Y and Theta of X, its strains h2
+        = Y' - nu Theta and Pi = Theta', and Y+ and Theta+ of Z. h2 = c2 s is exactly 0 in an unshearable rod.
+        At a jump of a coefficient both strains are limits from the right.
+        """
+        c2 = self.rod.local_coefficients(self.mesh.points_inside_elements(points)).c2
+        value, slope = value_and_slope_matrices(self.mesh, points)
+        y, theta = self.displacements(X)
+        # The adjoint modes belong to the conjugate of the eigenvalue of Z, hence the conjugates.
+        adjoint_y, adjoint_theta = self.displacements(Z.conj())
+        columns = [
+            value @ y,
+            value @ theta,
+            c2[:, None] * shear_force(self.mesh, X, points),
+            slope @ theta,
+            value @ adjoint_y,
+            value @ adjoint_theta,
+        ]
+        return np.stack([field.T for field in columns])
 
     def A_with_tip_terms(self, p: float, r: float) -> Array:
         """A plus the matrix of the tip term p (a theta - b y) - r a y at u = 1, (unknowns, unknowns). p, r:
@@ -68,16 +82,3 @@ def dense_eigenproblem(rod: Rod, pencil: AnyPencil) -> DenseEigenproblem:
         matrices.B,
         matrices.displacement_factors,
     )
-
-
-def _points_moved_inside_elements(mesh: Elements, points: Array) -> Array:
-    """The points, (n,), each moved just inside its element by `Elements.points_by_element`."""
-    points_inside = np.array(points, dtype=float)
-    for e, indices, coordinates in mesh.points_by_element(points):
-        position = mesh.edges[e] + mesh.lengths[e] * (coordinates + 1) / 2
-        points_inside[indices] = np.clip(
-            position,
-            mesh.edges[e] + ELEMENT_SETTINGS.one_sided_node_offset,
-            mesh.edges[e + 1] - ELEMENT_SETTINGS.one_sided_node_offset,
-        )
-    return points_inside

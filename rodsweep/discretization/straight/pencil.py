@@ -163,16 +163,27 @@ def shear_force(mesh: Elements, vectors: Complex, points: Array) -> Complex:
     return shear
 
 
-def field_derivatives_at(mesh: Elements, values: Complex, points: Array) -> Complex:
-    """Derivatives d/du at points, (points,), of k fields, shape (points, k). values: the fields at all nodes,
-    (nodes + 1, k)."""
+def value_and_slope_matrices(mesh: Elements, points: Array) -> tuple[Array, Array]:
+    """Matrices (n, nodes + 1) from values of a field at all nodes to values and to derivatives d/du at
+    `points`, (n,), in [0, 1]; all elements of `mesh` have the order of the mesh."""
     nodes, _ = gauss_lobatto_rule(mesh.order)
-    derivative = 2 * differentiation_matrix(nodes)
-    derivatives = np.empty((len(points), values.shape[1]), complex)
+    derivative = _lobatto_differentiation_matrix(mesh.order)
+    value = np.zeros((len(points), mesh.node_count + 1))
+    slope = np.zeros_like(value)
     for e, indices, coordinates in mesh.points_by_element(points):
-        element_slopes = derivative @ values[mesh.node_ranges[e]] / mesh.lengths[e]
-        derivatives[indices] = lagrange_interpolation_matrix(nodes, coordinates) @ element_slopes
-    return derivatives
+        element_values = lagrange_interpolation_matrix(nodes, coordinates)
+        value[indices, mesh.node_ranges[e]] = element_values
+        slope[indices, mesh.node_ranges[e]] = element_values @ derivative * (2 / mesh.lengths[e])
+    return value, slope
+
+
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
+def _lobatto_differentiation_matrix(order: int) -> Array:
+    """The differentiation matrix of the Lobatto nodes of an element of order `order` on [-1, 1], (order + 1,
+    order + 1)."""
+    matrix = differentiation_matrix(gauss_lobatto_rule(order)[0])
+    matrix.flags.writeable = False
+    return matrix
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_pencils)

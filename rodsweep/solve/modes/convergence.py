@@ -1,20 +1,15 @@
 """Right and left modes of given eigenvalues on a sufficiently fine mesh, with error estimates.
 
-The modes of the finer of two meshes are returned; the difference between the two meshes is the error
-estimate. Near a double eigenvalue, where condition numbers grow like the inverse distance of the two
-eigenvalues, two meshes may agree by chance; there an estimate of the rounding error is added.
+The modes of the finer of two meshes are returned. The error estimate is the difference between the two meshes
+plus an estimate of the rounding errors, which two meshes may share.
 """
 
 from dataclasses import dataclass, replace
-from math import ceil, inf, ulp
+from math import ceil, inf
 
 import numpy as np
 
 from ...arrays import Array, Complex
-from ...determinant.arm.determinant import arm_determinant
-from ...determinant.arm.newton import second_derivative
-from ...determinant.exponents import EXPONENT_SETTINGS
-from ...determinant.value import distance_to_next_root
 from ...discretization.elements.resolution import mesh_accuracy
 from ...discretization.straight.transverse_mesh import mesh_for, pencil_on
 from ...model.rod import Rod
@@ -37,9 +32,6 @@ class ModeMeshSettings:
     """Largest number of unknowns of a mesh; dense linear algebra on a larger mesh takes seconds."""
     finest_first_mesh_accuracy: float = 1e-24
     """The first mesh is chosen for a relative accuracy of eigenvalues not smaller than this."""
-    condition_rounding_per_separation: float = 2.0
-    """Relative rounding error of a condition number, divided by (rounding error of the eigenvalue)/(distance
-    to the nearest eigenvalue); measured: median 0.6, maximum 3.4."""
 
 
 MODE_MESH_SETTINGS = ModeMeshSettings()
@@ -57,8 +49,7 @@ def converged_modes(
     estimate; None if even the second mesh has more than `ModeMeshSettings.max_unknowns` unknowns. max_q: wave
     number that the mesh must resolve. accuracy: requested relative accuracy, at which the refinement ends."""
     mesh = mesh_for(rod, max_q, mesh_accuracy_for_modes(accuracy))
-    separations = np.array([eigenvalue_separation(rod, complex(w)) for w in eigenvalues])
-    coarse_modes = mode_vectors(rod, pencil_on(mesh), eigenvalues, points)
+    coarse_modes = mode_vectors(rod, pencil_on(mesh), eigenvalues, points, estimates_rounding=False)
     best_modes: ModeVectors | None = None
     min_error = inf
     for _ in range(MODE_MESH_SETTINGS.max_finer_meshes):
@@ -70,7 +61,7 @@ def converged_modes(
             order = ceil(MODE_MESH_SETTINGS.further_mesh_order_ratio * mesh.order)
         mesh = replace(mesh, order=min(order, max_order))
         fine_modes = mode_vectors(rod, pencil_on(mesh), eigenvalues, points)
-        result = _with_errors_from_coarse(coarse_modes, fine_modes, separations)
+        result = _with_errors_from_coarse(coarse_modes, fine_modes)
         error = max(result.errors_by_name().values())
         # If a finer mesh does not halve the error, rounding errors dominate.
         has_improved = error < min_error / 2
@@ -83,31 +74,10 @@ def converged_modes(
     return best_modes
 
 
-def _with_errors_from_coarse(coarse: ModeVectors, fine: ModeVectors, separations: Array) -> ModeVectors:
-    """`fine` with their differences from `coarse` added to their rounding errors. separations: distance to
-    the nearest other eigenvalue, (modes,)."""
-    # Rounding does not turn the eigenvectors of a normal operator, whose condition numbers are 1.
-    rotation_by_rounding = (
-        MODE_MESH_SETTINGS.condition_rounding_per_separation
-        * (1 - 1 / fine.condition**2)
-        * fine.eigenvalue_rounding
-        / np.maximum(separations, EXPONENT_SETTINGS.min_divisor)
-    )
-    condition_change = np.abs(coarse.condition / fine.condition - 1)
+def _with_errors_from_coarse(coarse: ModeVectors, fine: ModeVectors) -> ModeVectors:
+    """`fine` with their differences from `coarse` added to their rounding errors."""
     return replace(
         fine,
-        mode_error=fine.mode_error + largest_relative_change(coarse, fine),
-        condition_error=fine.condition_error + condition_change + rotation_by_rounding,
+        mode_error=fine.mode_error + largest_relative_change(coarse.fields, fine.fields),
+        condition_error=fine.condition_error + np.abs(coarse.condition / fine.condition - 1),
     )
-
-
-def eigenvalue_separation(rod: Rod, w: complex) -> float:
-    """Estimated distance from the eigenvalue w to the nearest other eigenvalue, 2 |D'/D''|, D: determinant;
-    accurate if the distance is small."""
-    if rod.is_uniform_and_linear:
-        return distance_to_next_root(w, rod.coefficients)
-    determinant = arm_determinant(rod)
-    value = determinant.value(w)
-    D_ww = abs(second_derivative(w, value.log_scale, determinant))
-    # The smallest positive number makes the distance infinite instead of dividing by 0.
-    return 2 * abs(value.D_w) / max(D_ww, ulp(0.0))

@@ -108,7 +108,7 @@ def converged_transient_growth(
             break
         pencil = pencil_on(mesh)
         previous_abscissa = abscissa
-        abscissa, rounding = numerical_abscissa(rod, pencil)
+        abscissa, rounding = numerical_abscissa(rod, pencil, previous_abscissa)
         abscissa_change = abs(abscissa - previous_abscissa) + rounding
         growth = GROWTH_BY_STABILITY[is_stable]
         # Without growth at t = 0+ there is no later growth: the norm of exp(L t) decreases from 1.

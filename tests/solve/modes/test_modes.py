@@ -11,6 +11,7 @@ from rods import rod_of
 from scipy.linalg import expm
 from surveyed import few
 
+from rodsweep.determinant.exponents import MACHINE_EPSILON
 from rodsweep.determinant.value import distance_to_next_root
 from rodsweep.discretization.elements.basis import differentiation_matrix
 from rodsweep.discretization.elements.quadrature import gauss_lobatto_rule, lobatto_points
@@ -27,9 +28,10 @@ from rodsweep.solve.modes import convergence as convergence_module
 from rodsweep.solve.modes import inverse_iteration as inverse_module
 from rodsweep.solve.modes import norm_maximum as peak_module
 from rodsweep.solve.modes import transient_growth as growth_module
-from rodsweep.solve.modes.inverse_iteration import mode_vectors, null_vectors
+from rodsweep.solve.modes.inverse_iteration import mode_vectors
 from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
 from rodsweep.solve.modes.norm_maximum import NORM_MAXIMUM_SETTINGS, maximum_propagator_norm
+from rodsweep.solve.modes.null_vectors import effects_of_rounding, factorised_pencil, null_vectors
 from rodsweep.solve.modes.numerical_abscissa import numerical_abscissa
 from rodsweep.solve.modes.propagator import Propagator, matrix_exponential
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
@@ -326,7 +328,7 @@ def test_left_null_vector_of_the_pencil_has_the_adjoint_ends():
     for order in (8, 12, 16):
         pencil = assemble_pencil(1, order)
         form = dense_eigenproblem(rod, pencil)
-        _, z = null_vectors(form.A, form.B, w)
+        _, z = null_vectors(factorised_pencil(form.A, form.B, w))
         force = shear_force(pencil, z[:, None].astype(complex), np.linspace(0, 1, 11))
         left_over.append(abs(force[-1, 0]) / abs(force).max())
     assert left_over[0] < 1e-3
@@ -847,7 +849,7 @@ def test_a_point_that_fails_is_a_status():
 
 
 def test_a_failing_mesh_is_a_status(monkeypatch):
-    def broken(*_):
+    def broken(*_, **__):
         raise np.linalg.LinAlgError("Singular matrix")
 
     monkeypatch.setattr(convergence_module, "mode_vectors", broken)
@@ -881,10 +883,10 @@ def test_a_tip_that_does_not_move_leaves_a_mode_without_scale():
 
 
 def test_a_mode_whose_tip_does_not_move_is_nan_and_not_called_accurate(monkeypatch):
-    def still(A, B, w):
-        x, z = null_vectors(A, B, w)
-        if w.real < -100:
-            x[len(B) // 3 - 1] = 0
+    def still(pencil):
+        x, z = null_vectors(pencil)
+        if pencil.w.real < -100:
+            x[len(x) // 3 - 1] = 0
         return x, z
 
     monkeypatch.setattr(inverse_module, "null_vectors", still)
@@ -900,9 +902,9 @@ def test_of_a_pair_only_one_vector_is_computed(monkeypatch):
     """The other is its conjugate; two of different pairs are not mistaken for one."""
     calls = []
 
-    def counted(A, B, w):
-        calls.append(w)
-        return null_vectors(A, B, w)
+    def counted(pencil):
+        calls.append(pencil.w)
+        return null_vectors(pencil)
 
     rod, pencil = Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4), assemble_pencil(1, 24)
     pair = solve_spectrum(rod, SpectrumRequest(2, 1e-10, True)).eigenvalues
@@ -935,3 +937,29 @@ def test_growth_on_a_coarse_mesh_is_refined_until_meshes_agree():
     assert max(growth.errors_by_name(45.0).values()) < 1e-10
     assert growth.transient_growth == pytest.approx(exact.growth.transient_growth, rel=1e-10)
     assert growth.numerical_abscissa == pytest.approx(exact.growth.numerical_abscissa, rel=1e-9)
+
+
+def test_a_pivot_that_is_exactly_zero_gives_null_vectors():
+    x, z = null_vectors(factorised_pencil(np.diag([1.0, 2.0, 3.0]), np.ones(3), 2.0))
+    assert x == pytest.approx([0, 1, 0], abs=1e-15)
+    assert z == pytest.approx([0, 1, 0], abs=1e-15)
+
+
+def test_rms_errors_by_rounding_are_those_of_random_matrices():
+    """Of the tip displacement, and of the condition number, for random relative errors of 1e-9."""
+    form = dense_eigenproblem(rod_of(*FIG_2A), assemble_pencil(1, 12))
+    A, B, tip = form.A, form.B, form.mesh.node_count - 1
+    w = float(ClosedForm(rod_of(*FIG_2A), -44.02).w.real)
+    x, z = null_vectors(factorised_pencil(A, B, w))
+    found = effects_of_rounding(factorised_pencil(A, B, w), A**2, (x, z), tip)
+    rng = np.random.default_rng(1)
+    numbers = []
+    for _ in range(200):
+        changed = A * (1 + 1e-9 * rng.standard_normal(A.shape))
+        right, left = null_vectors(factorised_pencil(changed, B, w))
+        tips = right[tip] / (z @ (B * right)), left[tip] / (x @ (B * left))
+        norms = np.sqrt(B @ right**2) * np.sqrt(B @ left**2)
+        numbers.append([*tips, norms / abs(left @ (B * right))])
+    right_tip, left_tip, condition = np.std(np.log(np.abs(numbers)), axis=0) / 1e-9 * MACHINE_EPSILON
+    assert found.tip_error == pytest.approx(max(right_tip, left_tip), rel=0.3)
+    assert found.condition_error == pytest.approx(condition, rel=0.3)

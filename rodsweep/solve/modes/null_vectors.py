@@ -1,0 +1,174 @@
+"""Right and left null vectors of the dense pencil A - w diag(B) at an eigenvalue w, and the effects of
+rounding errors on them.
+
+One LU factorisation gives both null vectors, by inverse iteration, and their first-order changes.
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from math import sqrt
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg.lapack import dgetrf, dgetrs, zgetrf, zgetrs
+
+from ...arrays import Array, Complex
+from ...determinant.exponents import MACHINE_EPSILON
+from ...discretization.elements.elements import ELEMENT_SETTINGS
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ModeIterationSettings:
+    """Settings of the inverse iteration that computes the right and left mode of an eigenvalue."""
+
+    iteration_count: int = 4
+    """Number of inverse iterations per eigenvalue; two suffice unless the eigenvalue is nearly double."""
+    conjugate_tolerance: float = 1e-12
+    """An eigenvalue w is the conjugate v* of its predecessor v if |w - v*|/|w| is at most this."""
+    max_correction: float = 1e-8
+    """Largest entry of a correction of an eigenvector with largest entry 1. The neglected terms of second
+    order are then below rounding; larger corrections, next to a double eigenvalue, are not used."""
+    rounding_safety_factor: float = 8.0
+    """Rounding error of a mode, divided by the effect of one sample of rounding errors plus the rms error of
+    the tip displacement, to which modes are scaled. Rounding error of a condition number, divided by its rms
+    error. Measured on 200 rods: at most 5.5 and 3.6."""
+
+
+MODE_ITERATION_SETTINGS = ModeIterationSettings()
+
+
+class FactorisedPencil(NamedTuple):
+    """LU factors of A - w diag(B) at an eigenvalue w, where the matrix is singular to rounding."""
+
+    A: Array
+    """Matrix of the pencil, (unknowns, unknowns)."""
+    B: Array
+    """Diagonal matrix of the pencil, (unknowns,)."""
+    w: complex
+    """The eigenvalue, in 1/tau2."""
+    lu: NDArray
+    """The factors, as LAPACK stores them, (unknowns, unknowns); real for real w."""
+    pivots: NDArray
+    """Row interchanges, as LAPACK stores them, (unknowns,)."""
+
+    def solution(self, right_side: NDArray, side: int) -> NDArray:
+        """Solution of the system with the matrix (side 0) or its transpose (side 1) and `right_side`,
+        (unknowns,)."""
+        solve = zgetrs if np.iscomplexobj(self.lu) else dgetrs
+        return solve(self.lu, self.pivots, right_side, side)[0]
+
+    def change(self, residual: NDArray, vectors: tuple[NDArray, NDArray], side: int) -> NDArray:
+        """Change of the right (side 0) or left (side 1) null vector, to first order, that adds `residual`,
+        (unknowns,), to the product of matrix and vector. vectors: right and left null vector."""
+        vector, other = vectors[side], vectors[1 - side]
+        pairing = other @ (self.B * vector)
+        # Without a component that the nearly singular matrix magnifies, its LU factors give all digits of
+        # the change but those of the component along the vector, which only scales the vector.
+        change = self.solution(residual - self.B * vector * (other @ residual) / pairing, side)
+        return change - vector * (other @ (self.B * change)) / pairing
+
+
+def factorised_pencil(A: Array, B: Array, w: complex) -> FactorisedPencil:
+    """LU factors of A - w diag(B). A: (unknowns, unknowns). B: (unknowns,)."""
+    matrix = A - np.diag((w if w.imag else w.real) * B)
+    lu, pivots, info = (zgetrf if w.imag else dgetrf)(matrix)
+    if info > 0:
+        # A pivot that is exactly 0 becomes a rounding error, as it is at most eigenvalues.
+        diagonal = np.einsum("ii->i", lu)
+        diagonal[diagonal == 0] = MACHINE_EPSILON * np.abs(lu).max()
+    return FactorisedPencil(A, B, w, lu, pivots)
+
+
+def null_vectors(pencil: FactorisedPencil) -> tuple[NDArray, NDArray]:
+    """Right and left null vector of A - w diag(B), (unknowns,) each, with largest entry 1; real for real w.
+    Inverse iteration gives them, and a correction reduces their error to the rounding of the matrix."""
+    vectors = _null_vector(pencil, 0), _null_vector(pencil, 1)
+    w = pencil.w if pencil.w.imag else pencil.w.real
+    corrected = []
+    for side, (vector, matrix) in enumerate(zip(vectors, (pencil.A, pencil.A.T), strict=True)):
+        change = pencil.change(matrix @ vector - w * pencil.B * vector, vectors, side)
+        is_small = np.abs(change).max() <= MODE_ITERATION_SETTINGS.max_correction
+        corrected.append(vector - change if is_small else vector)
+    return corrected[0], corrected[1]
+
+
+def _null_vector(pencil: FactorisedPencil, side: int) -> NDArray:
+    """Right (side 0) or left (side 1) null vector of a nearly singular matrix by inverse iteration,
+    (unknowns,), with largest entry 1.
+
+    The error of a solution lies along the null vector. A larger growth in an iteration means a smaller
+    residual of the result. At a double eigenvalue the inverse almost annihilates its last result, and the
+    next iteration gives rounding errors: of the last two results, the result with the larger growth is
+    returned.
+    """
+    x: NDArray = np.ones(len(pencil.B))
+    previous_vector = x
+    previous_growth = growth = 0.0
+    for _ in range(MODE_ITERATION_SETTINGS.iteration_count):
+        previous_vector = x
+        previous_growth = growth
+        x = pencil.solution(pencil.B * x, side)
+        growth = float(np.abs(x).max())
+        x = x / growth
+    # The growth falls once rounding errors of the iterate dominate.
+    return x if growth >= previous_growth else previous_vector
+
+
+class RoundingEffects(NamedTuple):
+    """Effects on a right and a left null vector, to first order, of random relative errors of the entries of
+    the matrix that have the size of rounding errors."""
+
+    vectors: list[NDArray]
+    """Right and left vector, (unknowns,) each, for one random pattern, the same for every mesh size."""
+    tip_error: float
+    """Larger rms relative error of the tip displacement of the two vectors."""
+    condition_error: float
+    """Rms relative error of the condition number."""
+
+
+def effects_of_rounding(
+    pencil: FactorisedPencil, squared_A: Array, vectors: tuple[NDArray, NDArray], tip: int
+) -> RoundingEffects:
+    """Effects of rounding errors on `vectors`, right and left null vector, (unknowns,) each. squared_A:
+    squares of the entries of A, (unknowns, unknowns). tip: index of the tip displacement."""
+    B = pencil.B
+    signs = _rounding_signs(len(B))
+    perturbed = []
+    squared_tip_errors: list[float] = []
+    squared_norm_errors: list[float] = []
+    for side, (vector, squares) in enumerate(zip(vectors, (squared_A, squared_A.T), strict=True)):
+        squared_residual = squares @ np.abs(vector) ** 2
+        change = pencil.change(signs[0] * np.sqrt(squared_residual), vectors, side)
+        perturbed.append(vector + MACHINE_EPSILON * (change + signs[1] * vector))
+        # One pattern may leave a single number unchanged by chance; its rms error is exact. The derivative of
+        # the number by the residual solves the transposed system.
+        tip_gradient = np.zeros_like(vector)
+        tip_gradient[tip] = 1 / vector[tip]
+        # Changes keep the pairing, so the condition number changes with the norms.
+        norm_gradient = B * vector.conj() / (B * np.abs(vector) ** 2).sum()
+        for gradient, errors in ((tip_gradient, squared_tip_errors), (norm_gradient, squared_norm_errors)):
+            by_residual = pencil.change(gradient, vectors, 1 - side)
+            errors.append(float(np.abs(by_residual) ** 2 @ squared_residual))
+    return RoundingEffects(
+        perturbed,
+        MACHINE_EPSILON * sqrt(max(squared_tip_errors)),
+        MACHINE_EPSILON * sqrt(sum(squared_norm_errors)),
+    )
+
+
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
+def _rounding_signs(n: int) -> Array:
+    """Random signs of two rounding errors of each of `n` unknowns, (2, n); the same in every call."""
+    signs: Array = np.random.default_rng(0).choice([-1.0, 1.0], (2, n))
+    signs.flags.writeable = False
+    return signs
+
+
+def eigenvalue_rounding(A: Array, B: Array, X: Complex, Z: Complex) -> Array:
+    """Rounding errors of the eigenvalues of A - w diag(B) with right and left eigenvectors `X` and `Z`,
+    (unknowns, modes) each: (modes,). A: (unknowns, unknowns). B: (unknowns,)."""
+    # Random rounding errors of the entries of A add up in squares: an rms estimate, not a bound.
+    squared_rounding = (np.abs(Z) ** 2 * (np.abs(A) ** 2 @ np.abs(X) ** 2)).sum(axis=0)
+    rounding: Array = MACHINE_EPSILON * np.sqrt(squared_rounding) / np.abs((B[:, None] * Z * X).sum(axis=0))
+    return rounding
