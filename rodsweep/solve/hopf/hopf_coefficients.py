@@ -1,11 +1,11 @@
 """Normal form coefficients of a Hopf point, with error estimates from two meshes and from the determinant D.
 
 The Landau coefficient c is computed on successively finer meshes, at least two. The value of the last mesh is
-stored, and its difference from the value of the mesh before is the error estimate, which overestimates the
-error by some decades. The effects of rounding and of the error of the Hopf point are added. The slope dw/dF
-is the slope of the root of D, free of mesh error; its difference from the slope on the last mesh is the error
-estimate. For arms, the slope on the last mesh is stored, with its difference from the slope on the mesh
-before as the error estimate.
+stored, and its difference from the value of a mesh with the same elements of a lower order is the error
+estimate, which overestimates the error by some decades. The effects of rounding and of the error of the Hopf
+point are added. The slope dw/dF is the slope of the root of D, free of mesh error; its difference from the
+slope on the last mesh is the error estimate. For arms, the slope on the last mesh is stored, with its error
+estimated from the same two meshes as that of c.
 """
 
 import math
@@ -31,8 +31,8 @@ class HopfCoefficientSettings:
 
     order_increase: int = 4
     """Increase of the element order from the first mesh to the second: the error of c falls by 10 to 10^4."""
-    max_finer_meshes: int = 4
-    """Maximum number of meshes after the first."""
+    max_finer_meshes: int = 5
+    """Maximum number of meshes after the first. A mesh with halved elements measures no error."""
     coarsest_accuracy: float = 1e-2
     """Coarsest relative accuracy for which the first mesh is chosen: the mesh must identify the
     eigenvalue."""
@@ -99,37 +99,15 @@ def hopf_coefficients(rod: Rod, hopf: Threshold, accuracy: float) -> HopfCoeffic
     `accuracy`, or if the finest mesh does not suffice."""
     settings = HOPF_COEFFICIENT_SETTINGS
     w = complex(0.0, hopf.frequency)
-    # The worst-case factor of the mesh rule is not needed: here the second mesh measures the actual error.
-    first_elements = elements_for_landau_coefficient(
-        rod,
-        w,
-        min(accuracy / NORMAL_FORM_SETTINGS.mesh_accuracy_ratio, settings.coarsest_accuracy),
-    )
-    fine_form = normal_form_on(first_elements, rod, w, settings.coarsest_accuracy)
-    landau_change = math.inf
-    rounding_error = 0.0
-    for refinement in range(settings.max_finer_meshes):
-        elements = Elements(fine_form.mixed_form.mesh.edges, fine_form.mixed_form.mesh.order)
-        finer_elements = (
-            elements_with_third_more_unknowns(elements)
-            if refinement
-            else Elements(elements.edges, elements.order + settings.order_increase)
-        )
-        coarse_form = fine_form
-        fine_form = normal_form_on(finer_elements, rod, w, accuracy)
-        landau_change = abs(fine_form.landau - coarse_form.landau) / abs(fine_form.landau)
-        # The rounding error of c follows from the condition number of the eigenvalue.
-        product_sizes = fine_form.transverse_matrices.A_product_magnitude(fine_form.p, fine_form.q)
-        rounding_error = settings.landau_rounding_per_condition_number * product_sizes / abs(fine_form.w)
-        if landau_change <= max(accuracy, rounding_error):
-            break
+    fine_form, landau_change, slope_change = _form_and_changes(rod, w, accuracy)
+    rounding_error = _rounding_error(fine_form)
     # The slope of the root of D has no error of a mesh.
     slope, second_derivative = _eigenvalue_slope_and_curvature(rod, w)
     if rod.is_uniform_and_linear:
         slope_difference = abs(fine_form.eigenvalue_slope - slope) / abs(slope)
     else:  # for an arm the root's slope is a difference quotient, less accurate than the slope on the mesh
         slope = fine_form.eigenvalue_slope
-        slope_difference = abs(fine_form.eigenvalue_slope - coarse_form.eigenvalue_slope) / abs(slope)
+        slope_difference = slope_change
     # c was computed at the force of `hopf`: an error of this force changes c.
     sensitivity_unit = second_derivative / abs(slope) + 1 / abs(rod.F) + 1 / abs(rod.crushing_force - rod.F)
     force_effect = settings.max_landau_force_sensitivity * hopf.error * sensitivity_unit
@@ -138,6 +116,44 @@ def hopf_coefficients(rod: Rod, hopf: Threshold, accuracy: float) -> HopfCoeffic
     return _coefficients_with_errors(
         replace(fine_form, eigenvalue_slope=slope), landau_error, slope_error, hopf.error / abs(rod.F)
     )
+
+
+def _form_and_changes(rod: Rod, w: complex, accuracy: float) -> tuple[NormalForm, float, float]:
+    """Returns (normal form of the eigenvalue w on the last mesh, relative change of c from the mesh before,
+    relative change of dw/dF). The changes are those of the last two meshes with the same elements. accuracy:
+    change of c at which the refinement ends, or at its rounding error."""
+    settings = HOPF_COEFFICIENT_SETTINGS
+    # The worst-case factor of the mesh rule is not needed: here the second mesh measures the actual error.
+    first_elements = elements_for_landau_coefficient(
+        rod,
+        w,
+        min(accuracy / NORMAL_FORM_SETTINGS.mesh_accuracy_ratio, settings.coarsest_accuracy),
+    )
+    form = normal_form_on(first_elements, rod, w, settings.coarsest_accuracy)
+    landau_change = slope_change = math.inf
+    for refinement in range(settings.max_finer_meshes):
+        elements = Elements(form.mixed_form.mesh.edges, form.mixed_form.mesh.order)
+        finer_elements = (
+            elements_with_third_more_unknowns(elements)
+            if refinement
+            else Elements(elements.edges, elements.order + settings.order_increase)
+        )
+        coarse_form = form
+        form = normal_form_on(finer_elements, rod, w, settings.coarsest_accuracy)
+        if finer_elements.edges != elements.edges:
+            # Halved elements of a lower order may be no more accurate: the change says nothing of the error.
+            continue
+        landau_change = abs(1 - coarse_form.landau / form.landau)
+        slope_change = abs(1 - coarse_form.eigenvalue_slope / form.eigenvalue_slope)
+        if landau_change <= max(accuracy, _rounding_error(form)):
+            break
+    return form, landau_change, slope_change
+
+
+def _rounding_error(form: NormalForm) -> float:
+    """Relative rounding error of c, from the condition number of the eigenvalue."""
+    product_sizes = form.transverse_matrices.A_product_magnitude(form.p, form.q)
+    return HOPF_COEFFICIENT_SETTINGS.landau_rounding_per_condition_number * product_sizes / abs(form.w)
 
 
 def _coefficients_with_errors(
