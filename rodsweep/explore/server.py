@@ -6,6 +6,7 @@ import signal
 import socket
 import sys
 from collections.abc import Awaitable
+from http import HTTPStatus
 from typing import Any
 
 from bokeh.application import Application
@@ -15,10 +16,13 @@ from bokeh.document.events import DocumentPatchedEvent
 from bokeh.server.connection import ServerConnection
 from bokeh.server.server import BaseServer
 from bokeh.server.tornado import BokehTornado
+from bokeh.server.util import check_allowlist
 from tornado.httpserver import HTTPServer
+from tornado.httputil import HTTPMessageDelegate, HTTPServerRequest
 from tornado.ioloop import IOLoop
 from tornado.iostream import IOStream
 from tornado.netutil import bind_sockets
+from tornado.web import ErrorHandler
 
 from ..errors import InputError
 from .answers_from_file import AnswersFromFile
@@ -68,7 +72,15 @@ class BatchConnection(ServerConnection):
 
 
 class BatchTornado(BokehTornado):
-    """Bokeh's web application, with a `BatchConnection` for each page."""
+    """Bokeh's web application, with a `BatchConnection` for each page. It answers only requests to its own
+    hosts, which are also the only origins of websockets. A page of another site whose name was bound to this
+    machine (DNS rebinding) is refused."""
+
+    def find_handler(self, request: HTTPServerRequest, **options: Any) -> HTTPMessageDelegate:
+        """Finds the handler of a request; of a request to another host one that answers with status 403."""
+        if check_allowlist(request.host.lower(), self.websocket_origins):
+            return super().find_handler(request, **options)
+        return self.get_handler_delegate(request, ErrorHandler, {"status_code": HTTPStatus.FORBIDDEN})
 
     def new_connection(self, *arguments: Any) -> ServerConnection:
         """Creates and returns the connection for a page that a browser opens."""

@@ -36,9 +36,17 @@ async def connected(server: ExploreServer, origin: str) -> str:
     return str(message)
 
 
+async def status_of_page(server: ExploreServer, host: str) -> int:
+    """Status of the answer to a request for the page under a host name."""
+    response = await AsyncHTTPClient().fetch(server.url, headers={"Host": host}, raise_error=False)
+    return response.code
+
+
 OWN = ("http://127.0.0.1:{port}", "http://localhost:{port}")
 FOREIGN = ("http://evil.example", "http://127.0.0.1:1", "http://evil.example:{port}")
 """Origins, with {port} for the port of the server."""
+FOREIGN_HOSTS = ("evil.example", "evil.example:{port}", "localhost.evil.example:{port}", "127.0.0.1:1")
+"""Host headers, with {port} for the port of the server."""
 
 
 @pytest.fixture(scope="module")
@@ -55,6 +63,9 @@ def answers() -> dict[str, str | int]:
                     found[origin] = await connected(server, origin.format(port=server.port))
                 except HTTPClientError as refusal:
                     found[origin] = refusal.code
+            for host in (*OWN, *FOREIGN_HOSTS):
+                name = host.format(port=server.port).removeprefix("http://")
+                found[f"page at {host}"] = await status_of_page(server, name)
         finally:
             server.stop()
         return found
@@ -71,6 +82,15 @@ def test_the_page_itself_may_connect(answers, origin):
 @pytest.mark.parametrize("origin", FOREIGN)
 def test_a_foreign_origin_is_forbidden(answers, origin):
     assert answers[origin] == 403
+
+
+@pytest.mark.parametrize("host", FOREIGN_HOSTS)
+def test_the_page_under_a_foreign_host_name_is_forbidden(answers, host):
+    assert answers[f"page at {host}"] == 403
+
+
+def test_the_page_is_shown_under_each_own_host_name(answers):
+    assert [answers[f"page at {origin}"] for origin in OWN] == [200, 200]
 
 
 def test_no_other_machine_reaches_the_server():
