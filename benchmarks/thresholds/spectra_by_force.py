@@ -16,9 +16,9 @@ from rodsweep.arrays import Array
 from rodsweep.bench.spectrum.rodsweep_and_exact_spectra import leading_eigenvalues
 from rodsweep.bench.study import TimedMethod
 from rodsweep.bench.thresholds.study import HOPF, ONSET, FirstThreshold, ThresholdCase
-from rodsweep.discretization.elements.resolution import Resolution, expected_wave_number, resolution_for
+from rodsweep.discretization.elements.resolution import Resolution
 from rodsweep.discretization.straight.arm_resolution import ArmMesh, arm_mesh
-from rodsweep.model.dispersion import largest_growth_and_wave_number
+from rodsweep.discretization.straight.uniform_resolution import first_resolution
 
 from ..lapack import Eigenvalues, inverse_spectrum, whole_matrices
 
@@ -42,8 +42,7 @@ def threshold_mesh(case: ThresholdCase) -> Resolution | ArmMesh:
     rod = case.rod(case.onset if isnan(case.hopf) else case.hopf)
     if not rod.is_uniform_and_linear:
         return arm_mesh(rod, MESH_MODES, MESH_ACCURACY)
-    wave = largest_growth_and_wave_number(rod)[1]
-    return resolution_for(expected_wave_number(MESH_MODES, wave), MESH_ACCURACY)
+    return first_resolution(rod, MESH_MODES, MESH_ACCURACY)
 
 
 def affine_pencil(case: ThresholdCase) -> tuple[Array, Array, Array]:

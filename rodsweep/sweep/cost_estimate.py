@@ -9,9 +9,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..discretization.elements.resolution import RESOLUTION_SETTINGS, expected_wave_number, resolution_for
+from ..discretization.elements.resolution import RESOLUTION_SETTINGS
 from ..discretization.straight.arm_resolution import arm_mesh
-from ..model.dispersion import expected_unstable_count, largest_growth_and_wave_number, sampled_arm
+from ..discretization.straight.uniform_resolution import first_resolution
+from ..model.dispersion import expected_unstable_count, sampled_arm
 from ..model.rod import Rod
 from .points.groups import PointGroups
 from .points.points import Points
@@ -234,8 +235,7 @@ def _unknown_count(rod: Rod, mode_count: int, accuracy: float) -> int:
     accuracy `accuracy`."""
     if not rod.is_uniform_and_linear:
         return arm_mesh(rod, mode_count, accuracy).unknown_count
-    _, wave = largest_growth_and_wave_number(rod)
-    return resolution_for(expected_wave_number(mode_count, wave), accuracy).unknown_count
+    return first_resolution(rod, mode_count, accuracy).unknown_count
 
 
 def sampled_points_with_rod(points: Points, max_count: int = MAX_SAMPLED_POINTS) -> NDArray[np.int64]:

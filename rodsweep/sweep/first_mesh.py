@@ -8,9 +8,8 @@ import numpy as np
 
 from ..arrays import Array, list_of
 from ..discretization.elements.elements import Elements, equal_edges
-from ..discretization.elements.resolution import expected_wave_number, resolution_for
 from ..discretization.straight.arm_resolution import arm_mesh
-from ..model.dispersion import largest_growth_and_wave_number
+from ..discretization.straight.uniform_resolution import first_resolution
 from ..model.rod import Crushed, Rod
 from ..solve.changes.search_range import search_end_below_crushing
 from .cost_estimate import sampled_points_with_rod
@@ -22,8 +21,7 @@ def spectrum_mesh(rod: Rod, mode_count: int, accuracy: float) -> Elements:
     mesh."""
     if not rod.is_uniform:
         return arm_mesh(rod, mode_count, accuracy)
-    _, wave_number = largest_growth_and_wave_number(rod.equivalent_linear_rod_and_rate_factor[0])
-    resolution = resolution_for(expected_wave_number(mode_count, wave_number), accuracy)
+    resolution = first_resolution(rod.equivalent_linear_rod_and_rate_factor[0], mode_count, accuracy)
     return Elements(equal_edges(resolution.element_count), resolution.order)
 
 

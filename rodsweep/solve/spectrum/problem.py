@@ -29,12 +29,12 @@ from ...determinant.roots.roots import Roots, refined_roots
 from ...discretization.elements.resolution import (
     RESOLUTION_SETTINGS,
     Resolution,
-    expected_wave_number,
     finer_resolution,
     resolution_for,
 )
 from ...discretization.straight.arm_resolution import ArmMesh, arm_mesh, finer_arm_mesh, graded_towards_ends
 from ...discretization.straight.transverse_mesh import AnyMesh, finer_mesh
+from ...discretization.straight.uniform_resolution import first_resolution
 from ...model.dispersion import (
     largest_growth_and_wave_number,
     largest_growth_at_ends,
@@ -131,7 +131,7 @@ class UniformProblem(TransverseProblem):
         self.has_eigenvalue_bound = isfinite(self._sqrt_frequency_bound)
 
     def mesh_for(self, mode_count: int, accuracy: float) -> Resolution:
-        return resolution_for(expected_wave_number(mode_count, self.largest_wave_number), accuracy)
+        return first_resolution(self.rod, mode_count, accuracy)
 
     def finer_mesh_for_waves(self, mesh: Resolution, waves: Array, accuracy: float) -> Resolution:
         """The mesh for the largest wave number of `waves`, (modes,), and the relative accuracy `accuracy`; at

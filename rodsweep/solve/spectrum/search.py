@@ -140,6 +140,8 @@ class SpectrumSearch:
     def request_missing_eigenvalues(self, counted: int, found_count: int) -> None:
         """Requests more eigenvalues or a finer mesh, after a count of `counted` eigenvalues."""
         if counted <= found_count:  # spurious eigenvalues, or a line within the errors
+            # A line within the error of the last eigenvalue has room if a further one is found.
+            self.requested_count += SEARCH_SETTINGS.spare_mode_count * (counted == found_count)
             self.mesh = self.problem.finer_mesh(self.mesh)
             return
         requested_count = counted + SEARCH_SETTINGS.spare_mode_count

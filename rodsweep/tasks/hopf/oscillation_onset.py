@@ -13,10 +13,9 @@ from ...determinant.stability_changes import (
     StabilityChange,
     oscillation_onset_between,
 )
-from ...discretization.elements.resolution import expected_wave_number, resolution_for
 from ...discretization.straight.dense_eigenproblem import dense_eigenproblem
 from ...discretization.straight.transverse_mesh import pencil_on
-from ...model.dispersion import largest_growth_and_wave_number
+from ...discretization.straight.uniform_resolution import first_resolution
 from ...model.rod import Rod
 from ...solve.modes.propagator import symmetrised_shifted_inverse
 
@@ -71,8 +70,7 @@ def _is_double_eigenvalue_leading(rod: Rod, change: StabilityChange) -> bool:
 def leading_pair_on_mesh(rod: Rod) -> Complex:
     """The two leading eigenvalues of a uniform rod, in 1/tau2, (2,), on a mesh of the relative accuracy
     MESH_ACCURACY."""
-    wave_number = expected_wave_number(2, largest_growth_and_wave_number(rod)[1])
-    eigenproblem = dense_eigenproblem(rod, pencil_on(resolution_for(wave_number, MESH_ACCURACY)))
+    eigenproblem = dense_eigenproblem(rod, pencil_on(first_resolution(rod, 2, MESH_ACCURACY)))
     inverses = np.linalg.eigvals(symmetrised_shifted_inverse(eigenproblem.A, eigenproblem.B, 0.0)).astype(
         complex
     )
