@@ -139,13 +139,14 @@ class SpectrumSearch:
 
     def request_missing_eigenvalues(self, counted: int, found_count: int) -> None:
         """Requests more eigenvalues or a finer mesh, after a count of `counted` eigenvalues."""
-        if counted <= found_count:  # spurious eigenvalues, or a line within the errors
-            # A line within the error of the last eigenvalue has room if a further one is found.
-            self.requested_count += SEARCH_SETTINGS.spare_mode_count * (counted == found_count)
+        if counted < found_count:  # spurious eigenvalues
             self.mesh = self.problem.finer_mesh(self.mesh)
             return
         requested_count = counted + SEARCH_SETTINGS.spare_mode_count
-        if requested_count <= self.requested_count:
+        if counted == found_count:
+            # The line is within the error of an eigenvalue; left of a further eigenvalue it has room.
+            requested_count = self.requested_count + SEARCH_SETTINGS.spare_mode_count
+        elif requested_count <= self.requested_count:
             # The missing eigenvalues are far from the shift or unresolved.
             requested_count = self.requested_count + counted - found_count + SEARCH_SETTINGS.spare_mode_count
             self.problem.move_shift_right()
