@@ -22,6 +22,7 @@ from .range_end import (
     index_of_passed_range_end,
     range_end_condition,
 )
+from .range_end_near_hopf import end_before_first_cycle
 from .settings import BRANCH_END_SETTINGS
 from .special.detection import fold_and_breaking_between, lie_on_one_branch, special_points_between
 from .special.locating import special_point_between
@@ -81,9 +82,7 @@ def _follow_to_end(
         return curve
     passed_end = index_of_passed_range_end(start, limits.coordinate_range)
     if passed_end >= 0:
-        passage = RangeEndPassage(start, passed_end, limits.accuracy)
-        special = _end_without_cycle(curve, limits.end_reasons[passed_end])
-        curve.append_end(BranchEnd(special, is_complete=True, range_end_passage=passage))
+        curve.append_end(end_before_first_cycle(curve, start, limits, passed_end))
         return curve
     return follow_from_cycle(curve, start, limits)
 

@@ -1,9 +1,11 @@
-"""The end of a branch at an end of the range just before a Hopf point, by the normal form of this Hopf point.
+"""The end of a branch at an end of the range next to a Hopf point, by the normal form of this Hopf point, or
+next to a symmetry breaking.
 
 The cycles there are so small that a mesh may not hold them: it displaces the Hopf point by more than the
 distance between this point and the end of the range.
 """
 
+from dataclasses import replace
 from math import inf
 
 import numpy as np
@@ -15,7 +17,7 @@ from ..orbit.measures import CycleMotion
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import mesh_of_orbit
 from .arc_length_step import BranchCycle
-from .branch_curve import BranchEnd, RangeEndPassage
+from .branch_curve import BranchCurve, BranchEnd, RangeEndPassage
 from .branch_limits import BranchLimits
 from .settings import BRANCH_END_SETTINGS
 from .special.special_point import SpecialPoint, SpecialPointKind
@@ -36,6 +38,32 @@ def end_at_range_end_near_hopf(
         return None
     special = _normal_form_point_at_range_end(start, hopf, limits, index)
     passage = RangeEndPassage(start, index, limits.accuracy, hopf, special)
+    return BranchEnd(special, is_complete=True, range_end_passage=passage)
+
+
+def end_before_first_cycle(
+    curve: BranchCurve, first: BranchCycle, limits: BranchLimits, index: int
+) -> BranchEnd:
+    """The end of the branch `curve`, which has only its first special point, at the end of the range with the
+    index `index`, before its first cycle `first` beyond the range."""
+    passage = RangeEndPassage(first, index, limits.accuracy)
+    if curve.start_hopf_index >= 0:
+        hopf = limits.hopfs[curve.start_hopf_index]
+        special = _normal_form_point_at_range_end(first, hopf, limits, index)
+    else:
+        breaking = curve.special_points[0]
+        measures = first.cycle.measures
+        value = float(PARAMETERS[first.scale.parameter_name].value(limits.coordinate_range[index]))
+        special = replace(
+            breaking,
+            kind=SpecialPointKind.end,
+            parameter_value=value,
+            error=BRANCH_END_SETTINGS.relative_parameter_error_at_range_end * abs(value),
+            # The cycle at the end of the range lies between the symmetry breaking and the first cycle.
+            period_error=breaking.period_error + abs(measures.period / breaking.period - 1),
+            tip_y_max_error=breaking.tip_y_max_error + abs(measures.tip_y_max / breaking.tip_y_max - 1),
+            end_reason=limits.end_reasons[index],
+        )
     return BranchEnd(special, is_complete=True, range_end_passage=passage)
 
 
@@ -73,9 +101,9 @@ def _period_and_largest_tip_y_errors(errors: CycleErrors) -> Array:
 def _normal_form_point_at_range_end(
     start: BranchCycle, hopf: HopfBranchStart, limits: BranchLimits, index: int
 ) -> SpecialPoint:
-    """The special point at the end `index` of the range (0 or 1): the normal form, corrected by its
-    deviation from the cycles near the Hopf point. The errors of the correction, of the coefficients of the
-    normal form and of the Hopf point are added."""
+    """The special point at the end of the range with the index `index`, between the cycle `start` and the
+    Hopf point `hopf`: the normal form, corrected by its deviation from the cycles near the Hopf point. The
+    errors of the correction, of the coefficients of the normal form and of the Hopf point are added."""
     coordinate = limits.coordinate_range[index]
     distance = abs(coordinate - hopf.parameter_coordinate)
     deviations, (period_error, amplitude_error) = _deviations_of_normal_form(start, hopf, distance)

@@ -202,3 +202,33 @@ def test_a_branch_along_the_rotational_drag_ends_at_zero():
     rough, fine = ends
     assert abs(rough.period - fine.period) <= rough.period_error + fine.period_error < 1e-4
     assert abs(rough.tip_y_max - fine.tip_y_max) <= rough.tip_y_max_error + fine.tip_y_max_error < 1e-4
+
+
+@pytest.mark.parametrize("distance", [5e-4, 1e-5, 1e-7])
+def test_a_range_that_stops_before_the_first_cycle_ends_with_the_cycle_there(distance):
+    """The first cycle that is solved has y = 0.02 L, at a relative distance of 7e-4 from the Hopf point."""
+    rod = Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4)
+    (hopf,) = find_imaginary_axis_crossings(ParameterPath(rod, "F"), 0.0, 40.0).thresholds
+    value = hopf.value * (1 + distance)
+    found = branches_to(value, rod)
+    (curve,) = found.curves
+    beyond = solve_branches(rod, BranchRequest("F", value, 40.0, 1e-9, True, 100, 10))
+    end, exact = curve.special_points[-1], beyond.curves[0].special_points[0]
+    assert found.status == BranchStatus.ok and not curve.points
+    assert (end.kind, end.end_reason) == (SpecialPointKind.end, BranchEndReason.range_end)
+    assert end.parameter_value == pytest.approx(value, rel=1e-13)
+    period_error = end.period_error + exact.period_error
+    assert abs(end.period / exact.period - 1) <= period_error < 1e-5
+    tip_y_max_error = end.tip_y_max_error + exact.tip_y_max_error
+    assert abs(end.tip_y_max / exact.tip_y_max - 1) <= tip_y_max_error < 1e-3
+
+
+@pytest.mark.long
+def test_a_branch_without_symmetry_ends_at_the_end_of_the_range_before_its_first_cycle():
+    rod = Rod(F=0.0, k1=30.0, k2=0.5, gamma3=0.1)
+    start = 19.9027  # the symmetry breaks at 19.902805
+    curves = solve_branches(rod, BranchRequest("F", start, 19.91, 1e-5, False, 500, 50)).curves
+    (curve,) = (one for one in curves if one.start_breaking is not None and not one.points)
+    breaking, end = curve.special_points
+    assert end.parameter_value == pytest.approx(start, rel=1e-13)
+    assert end.period == breaking.period and 1e-6 < end.period_error < 1e-2
